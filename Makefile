@@ -1,0 +1,54 @@
+# make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
+# make test    ruff, mypy, import-linter and the whole pytest suite
+# make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
+# make lock    resolve the dependencies of pyproject.toml anew
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+STAMP  := $(VENV)/.installed
+
+export PYTHONDONTWRITEBYTECODE :=
+
+.PHONY: serve test demo check quick bench lock clean
+
+serve: $(STAMP)
+	@exec $(BIN)/mechsynth serve
+
+demo: $(STAMP)
+	@$(BIN)/mechsynth demo --output var/demo.svg
+
+test: check
+	$(BIN)/pytest
+
+check: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# The inner loop: everything but the tests marked slow.
+quick: $(STAMP)
+	$(BIN)/pytest -m "not slow" -q
+
+bench: $(STAMP)
+	$(BIN)/python -m benchmarks.motion
+	$(BIN)/python -m benchmarks.service
+
+# The virtual environment is made without ensurepip, which some systems leave out;
+# the system's pip fills it. Compiling the kernels here keeps that out of the first job.
+$(STAMP): requirements.lock pyproject.toml
+	@test -x $(BIN)/python || $(PYTHON) -m venv --without-pip $(VENV)
+	@echo "installing the locked packages (once; a minute or two)"
+	@$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	@$(BIN)/mechsynth warm
+	@touch $@
+
+lock: $(STAMP)
+	$(PYTHON) -m pip --python $(BIN)/python install --quiet uv
+	$(BIN)/uv pip compile pyproject.toml --extra dev --python-version 3.11 --universal \
+	    --generate-hashes --no-emit-index-url --no-header --quiet -o requirements.lock
+
+clean:
+	rm -rf $(VENV) var

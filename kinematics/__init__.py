@@ -1,0 +1,1 @@
+"""What a given mechanism does: pure numerics on arrays, without optimizers, files, clocks or HTTP."""

@@ -1,0 +1,119 @@
+"""Reading request bodies: which are taken, how large they may be, and how their JSON is parsed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.routing import APIRoute
+from pydantic_core import from_json
+
+from service.api.errors import Refusal, malformed_json
+
+MAX_VALUES = 20_000
+"""Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a
+million tiny faults would keep the validation busy for a second."""
+
+
+class JsonRequest(Request):
+    """A request whose body is checked and parsed by the rules of this module."""
+
+    _checked: Any
+
+    async def read(self, limit: int) -> None:
+        """Read and parse the body, at most ``limit`` bytes.
+
+        Raises
+        ------
+        Refusal
+            413, 415 or 400, as documented for the endpoints that take a body.
+        """
+        self._refuse_foreign()
+        self._body = await self._limited(limit)
+        self._checked = _parsed(self._body)
+
+    async def json(self) -> Any:
+        """The parsed body; :meth:`read` comes first."""
+        return self._checked
+
+    def _refuse_foreign(self) -> None:
+        media_type = self.headers.get("content-type", "").partition(";")[0].strip().lower()
+        if media_type != "application/json":
+            raise Refusal(
+                415, "unsupported-media-type", "Unsupported media type", "The body must be application/json.",
+                headers={"Accept": "application/json"},
+            )  # fmt: skip
+        if self.headers.get("content-encoding", "identity").strip().lower() != "identity":
+            raise Refusal(
+                415, "unsupported-media-type", "Unsupported media type", "The body must not be compressed.",
+                headers={"Accept-Encoding": "identity"},
+            )  # fmt: skip
+
+    async def _limited(self, limit: int) -> bytes:
+        # The header is only a promise, but a body that announces itself as too large need not be read at all.
+        announced = self.headers.get("content-length", "0")
+        if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
+            raise _too_large(limit)
+        body = bytearray()
+        async for chunk in self.stream():
+            body += chunk
+            if len(body) > limit:
+                raise _too_large(limit)
+        return bytes(body)
+
+
+class JsonRoute(APIRoute):
+    """A route that reads its body through :class:`JsonRequest`."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """The framework's handler, on a request that is read and parsed already."""
+        handle = super().get_route_handler()
+        if self.body_field is None:
+            return handle
+
+        async def read_first(request: Request) -> Response:
+            ours = JsonRequest(request.scope, request.receive)
+            await ours.read(request.app.state.settings.max_body_bytes)
+            return await handle(ours)
+
+        return read_first
+
+
+def _too_large(limit: int) -> Refusal:
+    # The rest of the body stays unread, so the connection cannot serve another request.
+    return Refusal(
+        413, "body-too-large", "Body too large", f"The body may have {limit} bytes at most.",
+        headers={"Connection": "close"},
+    )  # fmt: skip
+
+
+def _parsed(body: bytes) -> Any:
+    # This parser bounds depth and digits by itself, and passes NaN and 1e999 on to the validation, which knows the
+    # field that they are in.
+    try:
+        parsed = from_json(body)
+    except ValueError as error:
+        # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
+        raise malformed_json(f"The body is not valid JSON: {error}.") from None
+    if _has_more_values_than(parsed, MAX_VALUES):
+        raise Refusal(422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.")
+    return parsed
+
+
+def _has_more_values_than(parsed: Any, limit: int) -> bool:
+    count = 0
+    pending = [parsed]
+    while pending:
+        value = pending.pop()
+        if isinstance(value, dict):
+            count += len(value)
+            if count > limit:
+                return True
+            pending.extend(value.values())
+        elif isinstance(value, list):
+            count += len(value)
+            if count > limit:
+                return True
+            pending.extend(value)
+    return False

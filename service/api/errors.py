@@ -1,0 +1,195 @@
+"""Every error as problem details (RFC 9457), with the place of each fault as a JSON pointer (RFC 6901)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import Response
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_json
+from starlette.exceptions import HTTPException
+from starlette.routing import Match
+
+PROBLEM_JSON = "application/problem+json"
+
+MAX_ERRORS = 20
+"""A client corrects what it is shown and asks again; a longer list of faults helps nobody."""
+
+MAX_STEP = 100
+"""Longest name in a path, characters."""
+
+
+class FieldError(BaseModel):
+    """A fault at one place of the request."""
+
+    model_config = ConfigDict(title="Field error")
+
+    path: str = Field(
+        description="JSON pointer into the request body; a query parameter is at /query/name.",
+        examples=["/problem/positions/1/x"],
+    )
+    detail: str = Field(description="What is wrong there, in a sentence.")
+
+
+class ProblemDetails(BaseModel):
+    """What went wrong (RFC 9457)."""
+
+    model_config = ConfigDict(title="Problem details")
+
+    type: str = Field(description="A stable URI path that names the kind of error.", examples=["/problems/not-found"])
+    title: str = Field(description="The kind of error in words.", examples=["Not found"])
+    status: int = Field(description="The HTTP status.", examples=[404])
+    detail: str = Field(description="What went wrong this time.")
+    instance: str = Field(description="The path of the request.", examples=["/v1/jobs"])
+    errors: list[FieldError] | None = Field(
+        default=None, description=f"The faults of an invalid request by place, {MAX_ERRORS} at most."
+    )
+
+
+class Refusal(Exception):
+    """A request that is answered with an error, by a client's fault or by the state of things."""
+
+    def __init__(
+        self,
+        status: int,
+        type_: str,
+        title: str,
+        detail: str,
+        *,
+        errors: Sequence[tuple[str, str]] = (),
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.status = status
+        self.type = f"/problems/{type_}"
+        self.title = title
+        self.detail = detail
+        self.errors = errors
+        self.headers = headers
+
+
+def malformed_json(detail: str) -> Refusal:
+    """The body is not JSON."""
+    return Refusal(400, "malformed-json", "Malformed JSON", detail)
+
+
+def not_found(detail: str) -> Refusal:
+    """There is no such thing."""
+    return Refusal(404, "not-found", "Not found", detail)
+
+
+def invalid_problem(errors: Sequence[tuple[str, str]]) -> Refusal:
+    """The problem is well-formed, but cannot be meant; ``errors`` are pairs of path and detail."""
+    return Refusal(422, "invalid-problem", "Invalid problem", _counted(len(errors)), errors=errors)
+
+
+def responses(**described: str) -> dict[int | str, dict[str, Any]]:
+    """The error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
+    content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
+    return {int(name[1:]): {"description": text, "content": content} for name, text in described.items()}
+
+
+def pointer(location: Iterable[str | int]) -> str:
+    """The JSON pointer to a place that is given step by step; the empty string is the whole.
+
+    A step is cut at :data:`MAX_STEP` characters: a name so long is no field's, and must not come back in full.
+    """
+    return "".join("/" + str(step)[:MAX_STEP].replace("~", "~0").replace("/", "~1") for step in location)
+
+
+def install(app: FastAPI) -> None:
+    """Make ``app`` answer every error in this form."""
+    app.add_exception_handler(Refusal, _refused)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(Exception, _defect)
+
+
+async def _refused(request: Request, refusal: Exception) -> Response:
+    assert isinstance(refusal, Refusal)
+    return _answer(
+        request, refusal.status, refusal.type, refusal.title, refusal.detail, refusal.errors, refusal.headers
+    )
+
+
+async def _invalid(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    faults = [(_place(fault["loc"]), _sentence(fault)) for fault in error.errors()[:MAX_ERRORS]]
+    detail = _counted(len(error.errors()))
+    return _answer(request, 422, "/problems/invalid-request", "Invalid request", detail, faults)
+
+
+async def _http_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    if error.status_code == 404:
+        return _answer(request, 404, "/problems/not-found", "Not found", "There is nothing at this path.")
+    if error.status_code == 405:
+        allowed = _allowed_methods(request)
+        detail = f"This path does not take {_method(request)}; it takes {', '.join(allowed)}."
+        headers = {"Allow": ", ".join(allowed)}
+        return _answer(request, 405, "/problems/method-not-allowed", "Method not allowed", detail, headers=headers)
+    return _answer(
+        request, error.status_code, "/problems/http-error", "HTTP error", "The request cannot be served.",
+        headers=error.headers,
+    )  # fmt: skip
+
+
+async def _defect(request: Request, _error: Exception) -> Response:
+    # The server logs the exception with its traceback after this; none of it is the client's business.
+    detail = "The service failed on this request by a defect of its own; its log has the details."
+    return _answer(request, 500, "/problems/internal-error", "Internal error", detail)
+
+
+def _answer(
+    request: Request,
+    status: int,
+    type_: str,
+    title: str,
+    detail: str,
+    errors: Sequence[tuple[str, str]] = (),
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    content: dict[str, Any] = {
+        "type": type_,
+        "title": title,
+        "status": status,
+        "detail": detail,
+        "instance": request.scope.get("raw_path", b"").decode("ascii", "replace"),
+    }
+    if errors:
+        content["errors"] = [{"path": path, "detail": text} for path, text in errors[:MAX_ERRORS]]
+    return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
+
+
+def _place(location: Sequence[str | int]) -> str:
+    # The framework puts the part of the request first; in a body the pointer starts at the body itself.
+    return pointer(location[1:] if location[:1] == ("body",) else location)
+
+
+def _sentence(fault: Mapping[str, Any]) -> str:
+    if fault["type"] == "extra_forbidden":
+        return "There is no such field; check its name."
+    if fault["type"] == "missing":
+        return "This field is required."
+    message = str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
+    return f"{message[:1].upper()}{message[1:].rstrip('.')}."
+
+
+def _counted(faults: int) -> str:
+    shown = f"; the first {MAX_ERRORS} are listed" if faults > MAX_ERRORS else ""
+    return f"The request has {faults} {'fault' if faults == 1 else 'faults'}{shown}."
+
+
+def _method(request: Request) -> str:
+    # Some other method may be any word of the client's; it is not repeated.
+    known = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
+    return request.method if request.method in known else "this method"
+
+
+def _allowed_methods(request: Request) -> list[str]:
+    # The framework names the methods of one route only, where several may share the path.
+    matching = (route for route in request.app.state.routes if route.matches(request.scope)[0] is not Match.NONE)
+    return sorted({method for route in matching for method in getattr(route, "methods", None) or ()})

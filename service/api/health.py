@@ -1,0 +1,33 @@
+"""``/healthz`` and ``/readyz``: for those who watch over the service."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+
+from service.api import errors
+from service.api.errors import Refusal
+from service.api.schemas import Health
+
+TAG = {"name": "health", "description": "For those who watch over the service."}
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", operation_id="healthz", summary="Is it alive?")
+async def healthz() -> Health:
+    """The process answers."""
+    return Health(status="ok")
+
+
+@router.get(
+    "/readyz",
+    operation_id="readyz",
+    summary="Does it take jobs?",
+    responses=errors.responses(e503="The store does not answer, or no worker has started yet."),
+)
+async def readyz(request: Request) -> Health:
+    """The store answers and at least one worker is ready."""
+    missing = await request.app.state.desk.ready()
+    if missing is not None:
+        raise Refusal(503, "not-ready", "Not ready", missing, headers={"Retry-After": "1"})
+    return Health(status="ok")

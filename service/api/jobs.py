@@ -1,0 +1,240 @@
+"""``/v1/jobs``: state a problem, follow the job, read and draw the answer."""
+
+from __future__ import annotations
+
+import base64
+import re
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_json
+from starlette.concurrency import run_in_threadpool
+
+from service.api import errors
+from service.api.body import JsonRoute
+from service.api.errors import Refusal, invalid_problem, not_found
+from service.api.prefer import wait_seconds
+from service.api.schemas import KINDS, Job, JobList, JobRequest, list_item, whole_job
+from service.jobs.desk import JobDesk
+from service.jobs.schema import JobRow
+from service.jobs.states import Status
+from synthesis.designs import Result
+from synthesis.problems import PROBLEM_KINDS, example
+
+TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
+
+RETRY_AFTER_S = 1
+"""When a client that does not wait should look again; most jobs are done by then."""
+
+_ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
+_DESIGN_NUMBER = re.compile("[0-9]{1,4}")
+_NO_JOB = "There is no job with this id."
+
+
+def _desk(request: Request) -> JobDesk:
+    desk = request.app.state.desk
+    assert isinstance(desk, JobDesk)
+    return desk
+
+
+Desk = Annotated[JobDesk, Depends(_desk)]
+
+router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
+
+
+class JobFilter(BaseModel):
+    """Which jobs to list."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    status: Literal["queued", "running", "succeeded", "failed", "cancelled"] | None = Field(
+        default=None, description="Only jobs in this state."
+    )
+    kind: str | None = Field(default=None, description="Only jobs of this kind of problem.", examples=list(KINDS))
+    limit: int = Field(default=20, ge=1, le=100, description="Jobs on a page, at most.")
+    cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
+
+
+_BODY = Body(
+    openapi_examples={
+        kind: {"summary": model.model_config.get("title", kind), "value": {"problem": example(kind), "label": kind}}
+        for kind, model in PROBLEM_KINDS.items()
+    }
+)
+_LOCATION = {"Location": {"description": "The path of the job.", "schema": {"type": "string"}}}
+_RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited for.", "schema": {"type": "string"}}}
+
+
+@router.post(
+    "",
+    operation_id="create_job",
+    summary="State a problem",
+    response_class=Response,
+    status_code=202,
+    responses={
+        200: {
+            "model": Job,
+            "description": "The finished job, in time for `Prefer: wait`.",
+            "headers": {**_LOCATION, **_APPLIED},
+        },
+        202: {
+            "model": Job,
+            "description": "The job is accepted and will be run.",
+            "headers": {**_LOCATION, **_RETRY_AFTER},
+        },
+        **errors.responses(
+            e400="The body is not JSON.",
+            e413="The body is too large.",
+            e415="The body is not `application/json`.",
+            e422="The body does not state a problem; `errors` says where.",
+        ),
+    },
+)
+async def create_job(
+    request: Request,
+    desk: Desk,
+    body: Annotated[JobRequest, _BODY],
+    prefer: Annotated[
+        str | None,
+        Header(
+            description="`wait=10` waits up to so many seconds (30 at most) for the job to end.", examples=["wait=10"]
+        ),
+    ] = None,
+) -> Response:
+    """Accept a problem as a job. Once this is answered the job is stored, and it ends, whatever process dies."""
+    contradictions = body.problem.contradictions()
+    if contradictions:
+        raise invalid_problem([(f"/problem{fault.path}", _sentence(fault.detail)) for fault in contradictions])
+    # All lines of the header; the parameter is there for the documentation and holds only one of them.
+    wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
+    job = await desk.accept(
+        kind=body.problem.kind, label=body.label, problem=body.problem.model_dump_json(), wait_s=wait_s
+    )
+    headers = {"Location": f"/v1/jobs/{job.id}"}
+    if job.status.finished:
+        return _json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"})
+    return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+
+
+@router.get(
+    "",
+    operation_id="list_jobs",
+    summary="List jobs",
+    response_class=Response,
+    responses={200: {"model": JobList}, **errors.responses(e422="A parameter is not valid; `errors` says which.")},
+)
+async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Response:
+    """The jobs, newest first, a page at a time, without their problems and results."""
+    page = await desk.page(
+        limit=filter_.limit + 1,
+        status=None if filter_.status is None else Status(filter_.status),
+        kind=_storable(filter_.kind),
+        before=None if filter_.cursor is None else _job_of_cursor(filter_.cursor),
+    )
+    shown = page[: filter_.limit]
+    more = len(page) > filter_.limit
+    return _json({"jobs": [list_item(job) for job in shown], "next_cursor": _cursor(shown[-1].id) if more else None})
+
+
+@router.get(
+    "/{job_id}",
+    operation_id="get_job",
+    summary="Read a job",
+    response_class=Response,
+    responses={200: {"model": Job}, **errors.responses(e404=_NO_JOB)},
+)
+async def get_job(desk: Desk, job_id: str) -> Response:
+    """The job as it stands."""
+    return _json(whole_job(await _job(desk, job_id)))
+
+
+@router.delete(
+    "/{job_id}",
+    operation_id="delete_job",
+    summary="Cancel or remove a job",
+    response_class=Response,
+    status_code=202,
+    responses={
+        202: {
+            "model": Job,
+            "description": "The job was unfinished and is cancelled; its computation is being stopped.",
+        },
+        204: {"description": "The job was finished and is removed."},
+        **errors.responses(e404=_NO_JOB),
+    },
+)
+async def delete_job(desk: Desk, job_id: str) -> Response:
+    """Cancel a queued or running job; remove a finished one."""
+    job = await desk.cancel_or_delete(job_id) if _ULID.fullmatch(job_id) else None
+    if job is None:
+        raise not_found(_NO_JOB)
+    return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
+
+
+@router.get(
+    "/{job_id}/designs/{number}.svg",
+    operation_id="draw_design",
+    summary="Draw a design",
+    response_class=Response,
+    responses={
+        200: {"description": "The drawing.", "content": {"image/svg+xml": {"schema": {"type": "string"}}}},
+        **errors.responses(e404="There is no such job or design.", e409="The job has no result (yet)."),
+    },
+)
+async def draw_design(desk: Desk, job_id: str, number: str) -> Response:
+    """A labelled drawing of design ``number`` of the job's result, counted from 0."""
+    job = await _job(desk, job_id)
+    if job.result is None:
+        what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
+        raise Refusal(409, "no-result", "No result", f"The job {what}.")
+    result = Result.model_validate_json(job.result)
+    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= len(result.designs):
+        raise not_found(f"The job has {len(result.designs)} designs, counted from 0; this is none of them.")
+    return Response(await run_in_threadpool(_drawn, job, result, int(number)), media_type="image/svg+xml")
+
+
+def _drawn(job: JobRow, result: Result, number: int) -> str:
+    # Drawing is for those who ask for it; the other requests do not wait for its import.
+    from service.render import drawing
+
+    problem = PROBLEM_KINDS[job.kind].model_validate_json(job.problem)
+    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {number}"
+    return drawing(result.designs[number], problem, title)
+
+
+async def _job(desk: JobDesk, job_id: str) -> JobRow:
+    # Only what can be an id reaches the database, which need not stand every string.
+    job = await desk.get(job_id) if _ULID.fullmatch(job_id) else None
+    if job is None:
+        raise not_found(_NO_JOB)
+    return job
+
+
+def _storable(text: str | None) -> str | None:
+    # No kind has a NUL in it, and PostgreSQL does not take one even to compare.
+    return None if text is None else text.replace("\0", "\ufffd")
+
+
+def _cursor(job_id: str) -> str:
+    return base64.urlsafe_b64encode(job_id.encode()).decode().rstrip("=")
+
+
+def _job_of_cursor(cursor: str) -> str:
+    try:
+        job_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
+    except ValueError:
+        job_id = ""
+    if not _ULID.fullmatch(job_id):
+        fault = ("/query/cursor", "This is not a cursor that the service has given out.")
+        raise Refusal(422, "invalid-request", "Invalid request", "The request has 1 fault.", errors=[fault])
+    return job_id
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
+
+
+def _json(content: dict[str, Any], status: int = 200, headers: dict[str, str] | None = None) -> Response:
+    return Response(to_json(content), status_code=status, headers=headers, media_type="application/json")

@@ -1,0 +1,132 @@
+"""What goes over the wire besides problems and results, which are the models of :mod:`synthesis`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import from_json
+
+from service.api.errors import ProblemDetails
+from service.jobs.schema import JobRow, JobSummary
+from service.jobs.states import Status
+from synthesis.designs import Result
+from synthesis.problems import PROBLEM_KINDS, Problem, example
+
+KINDS = tuple(PROBLEM_KINDS)
+
+Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, examples=["2026-01-31T12:00:00.000000Z"])]
+
+
+def _printable(label: str) -> str:
+    if "\0" in label or any("\ud800" <= character <= "\udfff" for character in label):
+        raise ValueError("the label must not contain NUL or lone surrogates")
+    return label
+
+
+class JobRequest(BaseModel):
+    """A problem to solve, with an optional label to recognize the job by."""
+
+    model_config = ConfigDict(
+        title="Job request",
+        extra="forbid",
+        frozen=True,
+        json_schema_extra={"examples": [{"problem": example(kind), "label": "first try"} for kind in KINDS]},
+    )
+
+    problem: Problem
+    label: Annotated[str, Field(strict=True, max_length=200), AfterValidator(_printable)] | None = None
+
+
+class Progress(BaseModel):
+    """How far a job is."""
+
+    fraction: float = Field(ge=0.0, le=1.0, description="Share of the work that is done.")
+    message: str = Field(description="What is being done.")
+
+
+class JobListItem(BaseModel):
+    """A job in a list: everything but its problem, its result and its error, which the job itself has."""
+
+    model_config = ConfigDict(title="Job in a list")
+
+    id: str = Field(description="A ULID; ids sort by time of creation.", examples=["01K6WM2B7Q3W9Z0V5N8XJ4R1TD"])
+    kind: str = Field(description="The kind of the problem.", examples=list(KINDS))
+    label: str | None
+    status: Status
+    created_at: Timestamp
+    started_at: Timestamp | None = Field(description="When the present attempt began.")
+    finished_at: Timestamp | None
+    progress: Progress
+
+
+class Job(JobListItem):
+    """A job and its answer.
+
+    ``succeeded`` means that the computation ended and its answer can be relied on; it may be that no design exists.
+    """
+
+    model_config = ConfigDict(title="Job")
+
+    problem: Problem = Field(description="The problem as accepted, defaults filled in.")
+    result: Result | None = Field(description="The answer of a job that has succeeded.")
+    error: ProblemDetails | None = Field(description="Why a job has failed.")
+
+
+class JobList(BaseModel):
+    """A page of jobs, newest first."""
+
+    model_config = ConfigDict(title="Job list")
+
+    jobs: list[JobListItem]
+    next_cursor: str | None = Field(description="The cursor of the next page; null on the last one.")
+
+
+class ProblemKind(BaseModel):
+    """A kind of problem that the service solves."""
+
+    model_config = ConfigDict(title="Problem kind")
+
+    kind: str = Field(examples=list(KINDS))
+    title: str
+    description: str
+    schema_: dict[str, Any] = Field(alias="schema", description="JSON schema of the problem.")
+    example: dict[str, Any] = Field(description="A problem of this kind that runs as it is.")
+
+
+class ProblemKinds(BaseModel):
+    """All kinds of problems."""
+
+    model_config = ConfigDict(title="Problem kinds")
+
+    problems: list[ProblemKind]
+
+
+class Health(BaseModel):
+    """A sign of life."""
+
+    status: str = Field(examples=["ok"])
+
+
+def list_item(job: JobSummary) -> dict[str, Any]:
+    """A job as :class:`JobListItem`."""
+    return {
+        "id": job.id,
+        "kind": job.kind,
+        "label": job.label,
+        "status": job.status.value,
+        "created_at": job.created_at,
+        "started_at": job.started_at,
+        "finished_at": job.finished_at,
+        "progress": {"fraction": job.progress_fraction, "message": job.progress_message},
+    }
+
+
+def whole_job(job: JobRow) -> dict[str, Any]:
+    """A job as :class:`Job`; problem, result and error go out as the JSON that the models wrote into the store."""
+    return {
+        **list_item(job),
+        "problem": from_json(job.problem),
+        "result": None if job.result is None else from_json(job.result),
+        "error": None if job.error is None else from_json(job.error),
+    }

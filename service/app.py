@@ -1,0 +1,76 @@
+"""The application: everything put together, started and stopped."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+
+import structlog
+from fastapi import FastAPI
+from starlette.concurrency import run_in_threadpool
+
+from service.api import docs, errors, health, jobs, problems
+from service.jobs.changes import Changes
+from service.jobs.database import connect, upgrade
+from service.jobs.desk import JobDesk
+from service.jobs.executor import Executor
+from service.jobs.store import JobStore
+from service.settings import Settings
+
+log = structlog.get_logger(__name__)
+
+_DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
+
+State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
+`GET /v1/problems` lists what can be asked, each with an example that runs as it is.
+
+Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
+are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
+
+
+def create_app(settings: Settings, executor: Executor) -> FastAPI:
+    """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        engine = connect(settings.store_url, durable=True)
+        store = JobStore(engine)
+        changes = Changes(asyncio.get_running_loop())
+        try:
+            executor.subscribe(changes.publish)
+            executor.start()
+            await run_in_threadpool(upgrade, engine)
+            unfinished = await run_in_threadpool(store.requeue_unfinished)
+            for job_id in unfinished:
+                executor.submit(job_id)
+            if unfinished:
+                log.info("unfinished jobs taken up again", jobs=len(unfinished))
+            app.state.desk = JobDesk(store, executor, changes)
+            yield
+        finally:
+            changes.close()
+            await run_in_threadpool(executor.stop)
+            engine.dispose()
+
+    app = FastAPI(
+        title="mechsynth",
+        summary="A REST service that designs mechanisms.",
+        description=_DESCRIPTION,
+        version=version("mechsynth"),
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        # Problems and designs have one schema each, whether they come or go.
+        separate_input_output_schemas=False,
+        openapi_tags=[jobs.TAG, problems.TAG, health.TAG],
+    )
+    app.state.settings = settings
+    errors.install(app)
+    docs.install(app)
+    for router in (jobs.router, problems.router, health.router):
+        app.include_router(router)
+    app.state.routes = [*app.routes, *jobs.router.routes, *problems.router.routes, *health.router.routes]
+    return app

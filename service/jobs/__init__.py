@@ -1,0 +1,1 @@
+"""How a job lives: its row, its states, and who runs it."""

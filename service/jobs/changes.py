@@ -1,0 +1,48 @@
+"""Tells whoever waits for a job that it has changed."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class Changes:
+    """Passes the news of changed jobs from any thread to coroutines that watch a job on one event loop."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._watches: dict[str, set[asyncio.Event]] = {}
+        self.closed = False
+        """True once nobody should wait any longer, because the service stops."""
+
+    def publish(self, job_id: str) -> None:
+        """Wake the watchers of a job. Callable from any thread."""
+        # A job may end while the service stops; when the loop is gone, so are the watchers.
+        if not self._loop.is_closed():
+            self._loop.call_soon_threadsafe(self._wake, job_id)
+
+    @contextmanager
+    def watch(self, job_id: str) -> Iterator[asyncio.Event]:
+        """An event that is set at every change of the job. To be used on the event loop only."""
+        event = asyncio.Event()
+        if self.closed:
+            event.set()
+        self._watches.setdefault(job_id, set()).add(event)
+        try:
+            yield event
+        finally:
+            watchers = self._watches[job_id]
+            watchers.discard(event)
+            if not watchers:
+                del self._watches[job_id]
+
+    def close(self) -> None:
+        """Wake everybody for the last time, so that no request is kept waiting by a service that stops."""
+        self.closed = True
+        for job_id in list(self._watches):
+            self._wake(job_id)
+
+    def _wake(self, job_id: str) -> None:
+        for event in self._watches.get(job_id, ()):
+            event.set()

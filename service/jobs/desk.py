@@ -1,0 +1,84 @@
+"""What a client can do with jobs: the store, the executor and the news of changes under one counter."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import Literal
+
+import structlog
+from starlette.concurrency import run_in_threadpool
+
+from service.jobs.changes import Changes
+from service.jobs.executor import Executor
+from service.jobs.schema import JobRow, JobSummary
+from service.jobs.states import Status
+from service.jobs.store import JobStore
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class JobDesk:
+    """Accepts, shows, cancels and removes jobs. All methods run on the event loop; the store is asked in a thread."""
+
+    store: JobStore
+    executor: Executor
+    changes: Changes
+
+    async def accept(self, *, kind: str, label: str | None, problem: str, wait_s: float) -> JobRow:
+        """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is."""
+        job = await run_in_threadpool(self.store.create, kind=kind, label=label, problem=problem)
+        log.info("job accepted", job=job.id, kind=kind)
+        with self.changes.watch(job.id) as changed:
+            self.executor.submit(job.id)
+            if wait_s <= 0:
+                return job
+            return await self._ended(job, changed, wait_s)
+
+    async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
+        try:
+            async with asyncio.timeout(wait_s):
+                while not job.status.finished and not self.changes.closed:
+                    await changed.wait()
+                    changed.clear()
+                    job = await self.get(job.id) or job
+        except TimeoutError:
+            return await self.get(job.id) or job
+        return job
+
+    async def get(self, job_id: str) -> JobRow | None:
+        """The job, or None where there is none."""
+        return await run_in_threadpool(self.store.get, job_id)
+
+    async def page(
+        self, *, limit: int, status: Status | None, kind: str | None, before: str | None
+    ) -> list[JobSummary]:
+        """At most ``limit`` jobs, newest first."""
+        return await run_in_threadpool(self.store.page, limit=limit, status=status, kind=kind, before=before)
+
+    async def cancel_or_delete(self, job_id: str) -> JobRow | Literal["deleted"] | None:
+        """Cancel the job when it is unfinished (returns it), else remove it; None where there is none.
+
+        A job that ends by itself while it is being cancelled is returned and not removed: the client asked when
+        it was unfinished, and must not lose a result that it has never seen.
+        """
+        job = await self.get(job_id)
+        if job is None:
+            return None
+        if job.status.finished:
+            return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None
+        if await run_in_threadpool(self.store.cancel, job_id):
+            log.info("job cancelled", job=job_id, was=job.status)
+            self.executor.cancel(job_id)
+            self.changes.publish(job_id)
+        return await self.get(job_id)
+
+    async def ready(self) -> str | None:
+        """None when jobs can be taken and run; else what is missing, in a sentence."""
+        try:
+            await run_in_threadpool(self.store.ping)
+        except Exception:  # whatever a database driver raises means the same here: no store
+            log.exception("the store does not answer")
+            return "The job store does not answer."
+        return None if self.executor.ready() else "No worker has finished starting yet."

@@ -1,0 +1,37 @@
+"""Who runs the jobs: the protocol that the rest of the service knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+Changed = Callable[[str], None]
+"""Called with the id of a job that has changed in the store; from any thread."""
+
+
+class Executor(Protocol):
+    """Runs stored jobs by their ids. What became of a job stands in the store alone."""
+
+    def start(self) -> None:
+        """Begin to take jobs; nothing happens when it has begun already. The workers may still be starting after."""
+        ...
+
+    def subscribe(self, changed: Changed) -> None:
+        """Tell one subscriber from now on which jobs have changed by what the executor and its workers did."""
+        ...
+
+    def submit(self, job_id: str) -> None:
+        """Have the queued job run."""
+        ...
+
+    def cancel(self, job_id: str) -> None:
+        """Stop the computation of a job that is cancelled in the store already; native code included."""
+        ...
+
+    def ready(self) -> bool:
+        """Whether there is a worker that has finished starting."""
+        ...
+
+    def stop(self) -> None:
+        """Stop within a few seconds. Jobs under way go back into the queue of the store."""
+        ...

@@ -1,0 +1,222 @@
+"""A lane: a thread of the server that has one worker process and gives it one job after the other.
+
+Each lane has a pebble pool of a single worker, not a share in a pool of many, for two reasons. The workers of one pool
+take their tasks from one pipe under one lock, and a worker that is killed while it holds the lock stops the others for
+a minute. And a worker that is killed while it has nothing to do makes pebble declare the whole pool broken, with the
+jobs of the other workers. With a pool for each worker both end at the lane that they happen in, and the cure for
+everything that can go wrong (cancel, timeout, memory, death) is the same: stop the pool, which kills the worker, and
+make another.
+
+Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when its worker has finished starting.
+"""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from queue import Empty, SimpleQueue
+from typing import Any
+
+import pebble
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.jobs import faults, worker
+from service.jobs.executor import Changed
+from service.jobs.states import Status
+from service.jobs.store import JobStore
+
+CHECK_PERIOD_S = 1.0
+"""An idle lane looks this often whether its worker is alive, so that a job never meets a dead one."""
+
+START_TIMEOUT_S = 300.0
+"""A worker may compile all kernels when it starts for the first time; that takes a minute, not five."""
+
+RETRY_PERIOD_S = 1.0
+"""Pause before a failed start of a worker, or a failed write to the store, is tried again."""
+
+# pebble asks a worker to end and kills it after this many seconds. The workers end at once when asked, except one that
+# is suspended, and that one does not get better by waiting.
+pebble.CONSTS.term_timeout = 0.3
+
+log = structlog.get_logger(__name__)
+
+
+class WorkerLost(Exception):
+    """The worker died, or could not be started."""
+
+
+class Lane(threading.Thread):
+    """Runs the jobs of a queue, one at a time, in a worker process of its own.
+
+    The thread lives as long as the lane does, and it is the thread that creates the worker; so the worker dies with it
+    (see :func:`service.jobs.orphans.die_with`).
+    """
+
+    def __init__(
+        self,
+        name: str,
+        queue: SimpleQueue[str | None],
+        store: JobStore,
+        settings: worker.WorkerSettings,
+        timeout_s: float,
+        changed: Changed,
+        after: Lane | None,
+    ) -> None:
+        super().__init__(name=name, daemon=True)
+        self._queue = queue
+        self._store = store
+        self._settings = settings
+        self._timeout_s = timeout_s
+        self._changed = changed
+        self._after = after
+        self._lock = threading.Lock()
+        self._stopping = threading.Event()
+        self._pool: Any = None
+        self._future: Any = None
+        self._job_id: str | None = None
+        self.ready = False
+        """Whether the worker has finished starting."""
+        self.settled = threading.Event()
+        """Set when the first worker has started, or has failed to."""
+
+    def cancel(self, job_id: str) -> None:
+        """Stop the job if this lane is running it. Callable from any thread; the worker is killed soon after."""
+        with self._lock:
+            if self._job_id == job_id and self._future is not None:
+                self._future.cancel()
+
+    def stop(self) -> None:
+        """Make the lane end soon. A job under way goes back into the queue of the store. Join the thread after."""
+        with self._lock:
+            self._stopping.set()
+            self.settled.set()
+            if self._future is not None:
+                self._future.cancel()
+
+    def run(self) -> None:
+        """Take jobs until told to stop."""
+        if self._after is not None:
+            self._after.settled.wait()
+        while not self._stopping.is_set():
+            try:
+                self._ensure_worker()
+                self.settled.set()
+                job_id = self._queue.get(timeout=CHECK_PERIOD_S)
+            except Empty:
+                continue
+            except WorkerLost as loss:
+                log.error("worker could not be started", lane=self.name, reason=str(loss))
+                self.settled.set()
+                self._stopping.wait(RETRY_PERIOD_S)
+                continue
+            if job_id is not None:
+                self._run_job(job_id)
+                self._changed(job_id)
+        self._discard_worker()
+
+    def _ensure_worker(self) -> None:
+        if self._pool is not None and self._pool.active:
+            return
+        self._discard_worker()
+        # spawn: a forked child would inherit the server's threads' locks and open connections.
+        self._pool = pebble.ProcessPool(
+            max_workers=1, initializer=worker.start, initargs=(self._settings,), context=get_context("spawn")
+        )
+        try:
+            pid = self._call(START_TIMEOUT_S, worker.hello)
+        except TimeoutError:
+            self._discard_worker()
+            raise WorkerLost(f"it did not start within {START_TIMEOUT_S:g} s") from None
+        except CancelledError:  # the lane stops
+            return
+        except WorkerLost:
+            self._discard_worker()
+            raise
+        self.ready = True
+        log.info("worker ready", lane=self.name, pid=pid)
+
+    def _discard_worker(self) -> None:
+        self.ready = False
+        pool, self._pool = self._pool, None
+        if pool is None:
+            return
+        try:
+            pool.stop()
+            pool.join()
+        except Exception:  # a worker that not even the kernel gets rid of must not take the lane with it
+            log.exception("the worker could not be stopped", lane=self.name)
+
+    def _run_job(self, job_id: str) -> None:
+        try:
+            outcome = self._call(self._timeout_s, worker.run, job_id, job_id=job_id)
+        except TimeoutError:
+            self._discard_worker()
+            fault = faults.timeout(self._timeout_s)
+            if self._stored(self._store.give_up, job_id, fault.as_json(job_id)):
+                log.warning("job failed", job=job_id, reason="timeout")
+        except CancelledError:
+            self._discard_worker()
+            if self._stopping.is_set() and self._stored(self._store.requeue, job_id):
+                log.info("job requeued", job=job_id, reason="the service stops")
+        except WorkerLost as loss:
+            self._discard_worker()
+            status = self._stored(self._store.crashed, job_id)
+            log.warning("worker lost", lane=self.name, job=job_id, reason=str(loss), job_is_now=status)
+            if status == Status.QUEUED:
+                self._queue.put(job_id)
+        else:
+            if outcome == "out of memory":
+                # Libraries that were refused memory half-way through may be left in any state.
+                self._discard_worker()
+
+    def _call(self, timeout_s: float, function: Any, *args: Any, job_id: str | None = None) -> Any:
+        """Call a function in the worker.
+
+        Raises
+        ------
+        TimeoutError
+            It took longer than ``timeout_s``; it is still running.
+        CancelledError
+            The job was cancelled, or the lane stops; it is still running.
+        WorkerLost
+            The worker died, or the function raised.
+        """
+        with self._lock:
+            if self._stopping.is_set():
+                raise CancelledError
+            try:
+                self._future = self._pool.schedule(function, args=args)
+            except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe can be had
+                raise WorkerLost(str(error)) from None
+            self._job_id = job_id
+        try:
+            # Not pebble's own timeout, which goes by the wall clock and so by whoever sets it.
+            return self._future.result(timeout_s)
+        except TimeoutError:
+            if self._future.done():  # raised in the worker by the function itself
+                raise WorkerLost("unexpected TimeoutError in the worker") from None
+            raise
+        except CancelledError:
+            raise
+        except (pebble.ProcessExpired, BrokenProcessPool) as error:
+            raise WorkerLost(f"{error}; exit code {getattr(error, 'exitcode', 'unknown')}") from None
+        except Exception as error:  # whatever the worker could not store or handle: it is of no more use
+            log.exception("the worker raised", lane=self.name, job=job_id)
+            raise WorkerLost(f"{type(error).__name__} in the worker") from None
+        finally:
+            with self._lock:
+                self._job_id = None
+                self._future = None
+
+    def _stored(self, write: Any, *args: Any) -> Any:
+        """Write to the store, and keep trying while it is out of reach: else the job would be lost until a restart."""
+        while True:
+            try:
+                return write(*args)
+            except SQLAlchemyError:
+                log.exception("the store refused a write", lane=self.name)
+                if self._stopping.wait(RETRY_PERIOD_S):
+                    return None

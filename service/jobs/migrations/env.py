@@ -1,0 +1,14 @@
+"""Runs the migrations on the connection that :func:`service.jobs.database.upgrade` hands over."""
+
+from alembic import context
+
+from service.jobs.schema import metadata
+
+context.configure(
+    connection=context.config.attributes["connection"],
+    target_metadata=metadata,
+    # SQLite cannot alter a column in place; Alembic then copies the table.
+    render_as_batch=True,
+)
+with context.begin_transaction():
+    context.run_migrations()

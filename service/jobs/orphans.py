@@ -1,0 +1,36 @@
+"""No orphans: a worker dies with its server, however the server dies."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+import threading
+import time
+
+_PR_SET_PDEATHSIG = 1
+_WATCH_PERIOD_S = 0.5
+
+
+def die_with(parent_pid: int) -> None:
+    """See to it that this process is killed when its parent, the process ``parent_pid``, ends.
+
+    On Linux the kernel does it, at once and in native code too. The kernel takes the *thread* that created this
+    process for the parent, so that thread has to live as long as the process is wanted. Elsewhere a thread looks
+    for a change of parent, which native code that holds the interpreter can delay.
+    """
+    if sys.platform == "linux":
+        if ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0) != 0:
+            raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG) failed")
+    else:
+        threading.Thread(target=_watch, args=(parent_pid,), daemon=True, name="parent-watch").start()
+    # The parent may have ended before the kernel was asked; then nobody will send the signal any more.
+    if os.getppid() != parent_pid:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def _watch(parent_pid: int) -> None:
+    while os.getppid() == parent_pid:
+        time.sleep(_WATCH_PERIOD_S)
+    os.kill(os.getpid(), signal.SIGKILL)

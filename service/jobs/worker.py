@@ -1,0 +1,150 @@
+"""What runs in a worker process: claim a job, solve it, store the answer.
+
+This module is imported before the worker has set its number of threads, so it must not import numpy, directly or
+through the solvers; :func:`start` does that when everything is in place.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import resource
+import signal
+import sys
+import time
+from dataclasses import dataclass
+from typing import Literal
+
+import structlog
+
+from service import logs
+from service.jobs import faults
+from service.jobs.database import connect
+from service.jobs.orphans import die_with
+from service.jobs.store import Claim, JobStore
+
+Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "superseded"]
+"""What became of a job as its worker knows it; ``superseded``: cancelled or given to another attempt meanwhile."""
+
+PROGRESS_PERIOD_S = 0.2
+"""Progress is stored at most this often: each time is a write to the disk that all workers share."""
+
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkerSettings:
+    """What a worker has to know; passed to it when it starts."""
+
+    store_url: str
+    server_pid: int
+    memory_mb: int
+    log_level: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Post:
+    store: JobStore
+    settings: WorkerSettings
+
+
+_post: _Post | None = None
+
+
+def start(settings: WorkerSettings) -> None:
+    """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
+    global _post
+    die_with(settings.server_pid)
+    # Ctrl-C at a terminal reaches the whole group of processes; it is the server's to act on, and it stops its workers.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The default action ends the process at once; a handler in Python would wait for native code to return.
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    # As many workers as processors run side by side, so threads inside them would only compete.
+    for variable in _THREADS:
+        os.environ[variable] = "1"
+    logs.configure(settings.log_level)
+    importlib.import_module("synthesis.dispatch").warm_up()
+    _limit_memory(settings.memory_mb)
+    _post = _Post(JobStore(connect(settings.store_url, durable=False)), settings)
+    _post.store.ping()
+
+
+def hello() -> int:
+    """The process id of the worker; the answer shows that the worker has finished starting."""
+    return os.getpid()
+
+
+def run(job_id: str) -> Outcome:
+    """Run a queued job to its end. The store has the answer when this returns.
+
+    Raises whatever the store raises: the executor then treats the worker as dead and the job is tried again.
+    """
+    assert _post is not None, "start() comes first"
+    claim = _post.store.claim(job_id)
+    if claim is None:
+        return "not claimed"
+    bound = log.bind(job=job_id, attempt=claim.attempt)
+    bound.info("job running")
+    began = time.perf_counter()
+    outcome = _attempt(_post, job_id, claim)
+    bound.info(f"job {outcome}", seconds=round(time.perf_counter() - began, 4))
+    return outcome
+
+
+def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
+    try:
+        result = _solve(post.store, job_id, claim)
+    except MemoryError:
+        fault = faults.out_of_memory(post.settings.memory_mb)
+        stored = post.store.fail(job_id, claim.attempt, fault.as_json(job_id))
+        return "out of memory" if stored else "superseded"
+    except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
+        log.exception("the solver raised", job=job_id, attempt=claim.attempt)
+        stored = post.store.fail(job_id, claim.attempt, faults.INTERNAL_ERROR.as_json(job_id))
+        return "failed" if stored else "superseded"
+    return "succeeded" if post.store.succeed(job_id, claim.attempt, result) else "superseded"
+
+
+def _solve(store: JobStore, job_id: str, claim: Claim) -> str:
+    from synthesis import dispatch
+    from synthesis.problems import PROBLEM_KINDS
+
+    problem = PROBLEM_KINDS[claim.kind].model_validate_json(claim.problem)
+    stored_at = time.monotonic()
+
+    def progress(fraction: float, message: str) -> None:
+        nonlocal stored_at
+        now = time.monotonic()
+        if now - stored_at >= PROGRESS_PERIOD_S:
+            stored_at = now
+            store.progress(job_id, claim.attempt, fraction, message)
+
+    return dispatch.solve(problem, progress).model_dump_json()
+
+
+def _limit_memory(beyond_mb: int) -> None:
+    """Allow ``beyond_mb`` MiB on top of what the process has now.
+
+    On Linux ``RLIMIT_DATA`` counts the private memory that can be written. ``RLIMIT_AS`` would count address space
+    as well that allocators and compilers reserve and never touch, so no honest figure could be set with it.
+    """
+    kind = resource.RLIMIT_DATA if sys.platform == "linux" else resource.RLIMIT_AS
+    limit = _memory_in_use() + (beyond_mb << 20)
+    hard = resource.getrlimit(kind)[1]
+    if hard != resource.RLIM_INFINITY:
+        limit = min(limit, hard)
+    resource.setrlimit(kind, (limit, hard))
+
+
+def _memory_in_use() -> int:
+    """The bytes that count against the limit; 0 where the system does not tell."""
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            for line in status:
+                if line.startswith("VmData:"):
+                    return int(line.split()[1]) << 10
+    except OSError:
+        pass
+    return 0

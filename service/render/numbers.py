@@ -1,0 +1,47 @@
+"""How numbers are written on a sheet: few digits, a true minus sign, and a dash for what does not exist."""
+
+from __future__ import annotations
+
+import math
+
+PLAIN = 1e-3, 1e6
+"""Magnitudes that are written without an exponent."""
+
+NONE = "–"
+
+
+def length(value: float, size: float = 0.0, digits: int = 6, most: int = 15) -> str:
+    """A length to so many significant digits.
+
+    Beside a ``size`` a value is zero where it is rounding, and has more digits (``most`` at most) where it is larger,
+    so that coordinates far from the origin still tell points of the mechanism apart.
+    """
+    if not math.isfinite(value):
+        return NONE
+    if value == 0.0 or abs(value) < 1e-12 * size:
+        return "0"
+    if 0.0 < size < abs(value):
+        digits = min(most, digits + math.ceil(math.log10(abs(value) / size)))
+    if PLAIN[0] <= abs(float(f"{value:.{digits - 1}e}")) < max(PLAIN[1], 10.0**digits):
+        decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+        text = f"{value:.{decimals}f}"
+        return _signed(text.rstrip("0").rstrip(".") if "." in text else text)
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return _signed(f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}")
+
+
+def angle(degrees: float, decimals: int = 3) -> str:
+    """An angle in degrees, with its sign."""
+    if not math.isfinite(degrees):
+        return NONE
+    text = f"{degrees:.{decimals}f}".rstrip("0").rstrip(".")
+    return _signed("0" if text == "-0" else text) + "°"
+
+
+def small(value: float) -> str:
+    """A residual or the like to two digits."""
+    return length(value, digits=2)
+
+
+def _signed(text: str) -> str:
+    return text.replace("-", "−")

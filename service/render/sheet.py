@@ -1,0 +1,164 @@
+"""The sheet of a fourbar design: title, drawing, details, key and tables, side by side or one below the other."""
+
+from __future__ import annotations
+
+import math
+
+from service.render import tables
+from service.render.fourbar import Scene, details, scene
+from service.render.svg import Box, Element, Viewport, clean, element, line, shortened, text, text_width
+from service.render.symbols import CURVE, DEMANDED, GREY, INK, INPUT, PALE
+from service.render.view import FOOT, MARGIN, Detail, panel
+from synthesis.designs import Design
+from synthesis.problems import Problem
+
+WIDTH, EDGE, TOP = 1100.0, 22.0, 74.0
+"""Width of the sheet, its border, and the height of the title, pixels."""
+
+COLUMN, GUTTER = 370.0, 26.0
+"""Width of the tables' column beside the drawing, and the space between columns, pixels."""
+
+WIDE = 1.7
+"""Drawings wider than this in proportion to their height have their tables below instead of beside them."""
+
+BESIDE_HEIGHT, BELOW_HEIGHT = (560.0, 860.0), (330.0, 620.0)
+"""Least and greatest height of the drawing, pixels."""
+
+UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
+
+DETAIL_HEIGHT, KEY_HEIGHT = 300.0, 30.0
+
+
+def fourbar_sheet(design: Design, problem: Problem, title: str) -> Element:
+    """The drawing of a fourbar design as one ``svg`` element."""
+    shown = scene(design, problem)
+    unit = problem.length_unit
+    heading = clean(title) or "Fourbar linkage"
+    blocks = [
+        tables.dimensions(design, shown, unit),
+        tables.targets(design, problem, shown, unit),
+        tables.checks(design),
+        tables.metrics(design, unit),
+    ]
+    box = shown.box()
+    wide = box.width > WIDE * box.height
+    parts: list[Element] = []
+    if wide:
+        bottom = _drawing(parts, shown, unit, WIDTH - 2.0 * EDGE, BELOW_HEIGHT, box)
+        widths = (320.0, 390.0, WIDTH - 2.0 * EDGE - 2.0 * GUTTER - 710.0)
+        left, ends = EDGE, []
+        for width, column in zip(widths, ([blocks[0]], blocks[1:3], [blocks[3]]), strict=True):
+            y = bottom + 10.0
+            for block in column:
+                drawn, y = block(left, y, width)
+                parts.append(drawn)
+            ends.append(y)
+            left += width + GUTTER
+        bottom = max(ends)
+    else:
+        bottom = _drawing(parts, shown, unit, WIDTH - 2.0 * EDGE - COLUMN - GUTTER, BESIDE_HEIGHT, box)
+        y = TOP - 6.0
+        for block in blocks:
+            drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
+            parts.append(drawn)
+        bottom = max(bottom, y)
+    height = math.ceil(bottom + EDGE - 8.0)
+    return element(
+        "svg",
+        element("title", heading),
+        element("desc", _description(design, problem, shown)),
+        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(height), fill="#fff"),
+        *_title(design, heading, unit),
+        *parts,
+        xmlns="http://www.w3.org/2000/svg",
+        role="img",
+        width=WIDTH,
+        height=float(height),
+        viewBox=f"0 0 {WIDTH:g} {height}",
+        font_family="sans-serif",
+    )
+
+
+def _title(design: Design, heading: str, unit: str) -> list[Element]:
+    room = WIDTH - 2.0 * EDGE
+    mechanism, failed = design.mechanism, [c for c in design.verification.checks if not c.passed]
+    kind = tables.GRASHOF[design.metrics.grashof]
+    words = f"Fourbar linkage, {mechanism.assembly} assembly, {kind}; lengths in {UNITS[unit]}"
+    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
+    return [
+        text(EDGE, 34.0, shortened(heading, 20.0, room), 20.0, font_weight="bold", fill=INK),
+        text(EDGE, 55.0, f"{words}; {verdict}", 12.5, fill=GREY),
+    ]
+
+
+def _description(design: Design, problem: Problem, shown: Scene) -> str:
+    mechanism, links = design.mechanism, design.mechanism.links
+    unit = problem.length_unit
+    sizes = ", ".join(
+        f"{name} {value:.6g} {unit}"
+        for name, value in (
+            ("ground", links.ground),
+            ("input", links.input),
+            ("coupler", links.coupler),
+            ("output", links.output),
+        )
+    )
+    met = f"shown at {len(shown.configurations)} of {len(problem.positions)} demanded positions"
+    failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]
+    verdict = f"Failed checks: {', '.join(failed)}." if failed else "All checks passed."
+    return f"Drawing of a fourbar linkage, {mechanism.assembly} assembly: {sizes}; {met}. {verdict}"
+
+
+def _drawing(
+    parts: list[Element], shown: Scene, unit: str, width: float, heights: tuple[float, float], box: Box
+) -> float:
+    """Add main panel, key and details at the left border; returns the y below them."""
+    scale = (width - 2.0 * MARGIN) / box.width if box.width > 0.0 else math.inf
+    height = min(max(scale * box.height + 2.0 * MARGIN + FOOT, heights[0]), heights[1])
+    height = math.floor(height)
+    main = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), MARGIN, FOOT)
+    y = main.panel.high
+    small = []
+    for k, part in enumerate(boxes := details(shown, box)):
+        share = (width - 10.0 * (len(boxes) - 1)) / len(boxes)
+        left, top = EDGE + k * (share + 10.0), y + 10.0
+        viewport = Viewport.fit(part, Box(left, top, left + share, top + DETAIL_HEIGHT), MARGIN, FOOT)
+        small.append(Detail(part, f"detail {k + 1}", viewport))
+    parts.append(panel(shown, main, "main", unit, small))
+    parts.extend(panel(shown, detail.viewport, detail.name, unit, []) for detail in small)
+    if small:
+        y += 10.0 + DETAIL_HEIGHT
+    parts.append(_key(shown, y + 18.0, width))
+    return y + KEY_HEIGHT
+
+
+def _key(shown: Scene, y: float, width: float) -> Element:
+    """What the line styles mean."""
+    entries = [
+        ("target", "demanded position"),
+        ("used", "path of P, used"),
+        ("rest", "rest of branch"),
+        ("ghost", "other targets"),
+    ]
+    if shown.limits is not None:
+        entries.append(("limit", "input limit"))
+    group = element("g", data_key="true")
+    sample, size = 22.0, 10.5
+    spare = width - sum(sample + 6.0 + text_width(words, size) for _, words in entries)
+    x = EDGE
+    for kind, words in entries:
+        group.add(*_sample(kind, complex(x, y - 4.0), sample))
+        group.add(text(x + sample + 6.0, y, words, size, fill=GREY))
+        x += sample + 6.0 + text_width(words, size) + min(26.0, spare / max(1, len(entries) - 1))
+    return group
+
+
+def _sample(kind: str, at: complex, width: float) -> list[Element]:
+    end, middle = at + width, at + 0.5 * width
+    if kind == "target":
+        ring = element("circle", cx=at.real + 5.0, cy=at.imag, r=4.5, fill="none", stroke=DEMANDED, stroke_width=1.5)
+        return [line(at + 5.0, end, stroke=DEMANDED, stroke_width=3.5, stroke_opacity=0.35), ring]
+    if kind == "limit":
+        return [line(middle - 7j, middle + 7j, stroke=INPUT, stroke_width=2.0)]
+    stroke, weight = {"used": (CURVE, 2.2), "rest": (CURVE, 0.9), "ghost": (PALE, 2.4)}[kind]
+    return [line(at, end, stroke=stroke, stroke_width=weight)]

@@ -1,0 +1,333 @@
+"""A small SVG writer: elements, escaping, number format, and the viewport between mechanism and sheet.
+
+Glossary:
+
+sheet     the whole drawing, in pixels, y down;
+panel     a rectangle of the sheet that shows the mechanism;
+viewport  the map from mechanism coordinates (y up, any unit) to a panel; one scale for both directions.
+
+Points are complex numbers on both sides: x + iy in the mechanism, x + iy with y down on the sheet. All styles are
+attributes of the elements and no element has an ``id``, so that many drawings can stand in one page.
+"""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.complex128]
+
+DECIMALS = 2
+"""Digits after the point of sheet coordinates: a hundredth of a pixel."""
+
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
+
+GLYPH_WIDTHS = {
+    character: width
+    for width, characters in ((0.4, "ijl.,:;|'!()[]/ ·"), (1.0, "mwMW%@—×→"), (0.64, "0123456789−+=<>≤≥–"))
+    for character in characters
+}
+"""Widths of glyphs, in units of the font size, of the widest of the common sans-serif faces."""
+
+TURNING = frozenset((*range(0x202A, 0x202F), *range(0x2066, 0x206A)))
+"""Characters that would turn the direction of all text after them."""
+
+FONT_ASCENT, FONT_DESCENT = 0.78, 0.22
+"""Extent of text above and below its base line, in units of the font size."""
+
+
+def number(value: float) -> str:
+    """Sheet coordinate as text; ``ValueError`` for a number that is not finite."""
+    if not math.isfinite(value):
+        raise ValueError(f"expected a finite coordinate, got {value}")
+    text = f"{value:.{DECIMALS}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def clean(text: str) -> str:
+    """Text without the characters that XML 1.0 forbids, and without control of the writing direction.
+
+    Every run of white space becomes one blank.
+    """
+    kept = "".join(c if _allowed(c) else " " if c.isspace() else "" for c in text)
+    return " ".join(kept.split())
+
+
+def _allowed(character: str) -> bool:
+    code = ord(character)
+    if code in TURNING:
+        return False
+    return 0x20 <= code < 0x7F or 0xA0 <= code <= 0xD7FF or 0xE000 <= code <= 0xFFFD or code >= 0x10000
+
+
+def text_width(text: str, size: float) -> float:
+    """Estimated width of a line of text in pixels, rather too wide than too narrow."""
+    return size * sum(_glyph_width(c) for c in text)
+
+
+def _glyph_width(character: str) -> float:
+    known = GLYPH_WIDTHS.get(character)
+    if known is not None:
+        return known
+    if unicodedata.combining(character):
+        return 0.0
+    if unicodedata.east_asian_width(character) in "WF":
+        return 1.05
+    return 0.72 if character.isupper() else 0.63
+
+
+def shortened(text: str, size: float, width: float) -> str:
+    """Text cut, with an ellipsis, to what fits in ``width`` pixels."""
+    if text_width(text, size) <= width:
+        return text
+    room = width - text_width("…", size)
+    used = 0.0
+    for count, character in enumerate(text):
+        used += _glyph_width(character) * size
+        if used > room:
+            return text[:count].rstrip() + "…"
+    return text
+
+
+@dataclass
+class Element:
+    """An SVG element: attributes in the order of writing, and children that are elements or plain text."""
+
+    tag: str
+    attributes: dict[str, str | float]
+    children: list[Element | str] = field(default_factory=list)
+
+    def add(self, *children: Element | str | None) -> Element:
+        """Append the children that are not None; returns the element itself."""
+        self.children.extend(child for child in children if child is not None)
+        return self
+
+    def write(self) -> str:
+        """The element as XML text."""
+        parts: list[str] = []
+        self._write(parts)
+        return "".join(parts)
+
+    def _write(self, parts: list[str]) -> None:
+        parts.append(f"<{self.tag}")
+        for name, value in self.attributes.items():
+            parts.append(f' {name}="{value.translate(ESCAPES) if isinstance(value, str) else number(value)}"')
+        if not self.children:
+            parts.append("/>")
+            return
+        parts.append(">")
+        for child in self.children:
+            if isinstance(child, str):
+                parts.append(child.translate(ESCAPES))
+            else:
+                child._write(parts)
+        parts.append(f"</{self.tag}>")
+
+
+def element(tag: str, *children: Element | str, **attributes: str | float | None) -> Element:
+    """Element with attributes by keyword: underscores stand for hyphens, None leaves an attribute out."""
+    given = {name.rstrip("_").replace("_", "-"): value for name, value in attributes.items() if value is not None}
+    return Element(tag, given, list(children))
+
+
+def text(
+    x: float, y: float, words: str, size: float, *, subscript: str = "", **attributes: str | float | None
+) -> Element:
+    """A line of text with its base line at ``y``, and a subscript after it."""
+    found = element("text", x=x, y=y, font_size=size, **attributes).add(words)
+    if subscript:
+        found.add(element("tspan", subscript, dy=0.25 * size, font_size=0.75 * size))
+    return found
+
+
+def line(start: complex, end: complex, **attributes: str | float | None) -> Element:
+    """A straight line between two points of the sheet."""
+    return element("line", x1=start.real, y1=start.imag, x2=end.real, y2=end.imag, **attributes)
+
+
+def circle(centre: complex, radius: float, **attributes: str | float | None) -> Element:
+    """A circle on the sheet."""
+    return element("circle", cx=centre.real, cy=centre.imag, r=radius, **attributes)
+
+
+def polygon(corners: list[complex], **attributes: str | float | None) -> Element:
+    """A closed polygon on the sheet."""
+    listed = " ".join(f"{number(c.real)},{number(c.imag)}" for c in corners)
+    return element("polygon", points=listed, **attributes)
+
+
+def path(pieces: list[Points], **attributes: str | float | None) -> Element | None:
+    """One path of several open polylines on the sheet; None when there is nothing to draw."""
+    drawn = []
+    for piece in pieces:
+        if not np.isfinite(piece).all():
+            raise ValueError("expected finite coordinates in a path")
+        if piece.size > 1:
+            listed = zip(piece.real.tolist(), piece.imag.tolist(), strict=True)
+            drawn.append("M" + "L".join([f"{x:.{DECIMALS}f} {y:.{DECIMALS}f}" for x, y in listed]))
+    return element("path", d="".join(drawn), fill="none", **attributes) if drawn else None
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle with sides along the axes; in the mechanism or on the sheet."""
+
+    left: float
+    low: float
+    right: float
+    high: float
+
+    @classmethod
+    def around(cls, points: Points) -> Box:
+        """Smallest box around the points that are not NaN."""
+        x, y = points.real, points.imag
+        return cls(float(np.nanmin(x)), float(np.nanmin(y)), float(np.nanmax(x)), float(np.nanmax(y)))
+
+    @property
+    def width(self) -> float:
+        """Extent in x."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """Extent in y."""
+        return self.high - self.low
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the diagonal."""
+        return math.hypot(self.width, self.height)
+
+    @property
+    def centre(self) -> complex:
+        """Middle of the box."""
+        return complex(self.left + 0.5 * self.width, self.low + 0.5 * self.height)
+
+    def grown(self, margin: float) -> Box:
+        """The box with a margin on all sides."""
+        return Box(self.left - margin, self.low - margin, self.right + margin, self.high + margin)
+
+    def united(self, other: Box) -> Box:
+        """Smallest box around both."""
+        return Box(
+            min(self.left, other.left),
+            min(self.low, other.low),
+            max(self.right, other.right),
+            max(self.high, other.high),
+        )
+
+    def common(self, other: Box) -> Box:
+        """What both cover; call it only for boxes that overlap."""
+        return Box(
+            max(self.left, other.left),
+            max(self.low, other.low),
+            min(self.right, other.right),
+            min(self.high, other.high),
+        )
+
+    def overlaps(self, other: Box) -> bool:
+        """Whether the boxes share area."""
+        return self.left < other.right and other.left < self.right and self.low < other.high and other.low < self.high
+
+    def holds(self, point: complex) -> bool:
+        """Whether a point lies in the box."""
+        return self.left <= point.real <= self.right and self.low <= point.imag <= self.high
+
+
+@dataclass(frozen=True)
+class Viewport:
+    """Map from the mechanism (y up) to a panel of the sheet (y down): ``scale`` pixels for a length unit."""
+
+    panel: Box
+    centre: complex
+    middle: complex
+    scale: float
+
+    @classmethod
+    def fit(cls, shown: Box, panel: Box, margin: float, foot: float = 0.0) -> Viewport:
+        """Viewport that shows a box of the mechanism, centred, ``margin`` pixels (below: plus ``foot``) left free."""
+        room = panel.width - 2.0 * margin, panel.height - 2.0 * margin - foot
+        scale = min(
+            room[0] / shown.width if shown.width > 0.0 else math.inf,
+            room[1] / shown.height if shown.height > 0.0 else math.inf,
+        )
+        return cls(panel, shown.centre, panel.centre - 0.5j * foot, scale)
+
+    def point(self, point: complex) -> complex:
+        """Sheet point of a mechanism point."""
+        return self.middle + self.scale * (complex(point) - self.centre).conjugate()
+
+    def points(self, points: Points) -> Points:
+        """Sheet points of an array of mechanism points."""
+        return np.asarray(self.middle + self.scale * (points - self.centre).conj())
+
+    def shown(self, points: Points) -> list[Points]:
+        """Sheet polylines of a mechanism polyline: what lies in the panel; NaN interrupts the line."""
+        return [_thinned(piece) for piece in clipped(self.points(points), self.panel.grown(CLIP_MARGIN))]
+
+
+CLIP_MARGIN = 20.0
+"""Lines are cut this many pixels outside their panel, so that ends and joins of wide strokes stay out of sight."""
+
+
+FINEST_STEP = 0.8
+"""Points of a polyline closer together than about this many pixels are dropped."""
+
+
+def _thinned(line: Points) -> Points:
+    cells = np.floor(np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line))))) / FINEST_STEP)
+    kept = np.concatenate(([True], np.diff(cells) > 0.0))
+    kept[-1] = True
+    return line[kept]
+
+
+def clip_segments(start: Points, end: Points, box: Box) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shares of each segment at which it enters and leaves a box; it misses the box unless enter <= leave.
+
+    Liang and Barsky 1984, doi:10.1145/357332.357333.
+    """
+    step = end - start
+    enter, leave = np.zeros(step.shape), np.ones(step.shape)
+    sides = ((start.real, step.real, box.left, box.right), (start.imag, step.imag, box.low, box.high))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for at, along, low, high in sides:
+            first, second = (low - at) / along, (high - at) / along
+            still = along == 0.0
+            inside = still & (low <= at) & (at <= high)
+            enter = np.maximum(enter, np.where(still, np.where(inside, 0.0, 2.0), np.minimum(first, second)))
+            leave = np.minimum(leave, np.where(still, 1.0, np.maximum(first, second)))
+    return enter, leave
+
+
+def clipped(line: Points, box: Box) -> list[Points]:
+    """Parts of a polyline inside a box; NaN interrupts the line."""
+    if line.size == 0:
+        return []
+    x, y = line.real, line.imag
+    if x.min() >= box.left and x.max() <= box.right and y.min() >= box.low and y.max() <= box.high:
+        return [line]
+    start, end = line[:-1], line[1:]
+    enter, leave = clip_segments(start, end, box)
+    kept = np.flatnonzero(enter <= leave)
+    starts, ends = start + enter * (end - start), start + leave * (end - start)
+    breaks = np.flatnonzero((np.diff(kept) != 1) | (enter[kept[1:]] > 0.0)) + 1
+    return [np.concatenate((starts[run[:1]], ends[run])) for run in np.split(kept, breaks) if run.size]
+
+
+def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
+    """Part of a convex polygon inside a box, by cutting at one side after the other; empty where there is none."""
+    for turn, limit in ((1, box.left), (-1, -box.right), (1j, box.low), (-1j, -box.high)):
+        kept: list[complex] = []
+        for here, there in zip(corners, corners[1:] + corners[:1], strict=True):
+            inside = (here * complex(turn).conjugate()).real - limit
+            beyond = (there * complex(turn).conjugate()).real - limit
+            if inside >= 0.0:
+                kept.append(here)
+            if (inside >= 0.0) != (beyond >= 0.0):
+                kept.append(here + (there - here) * (inside / (inside - beyond)))
+        corners = kept
+    return corners

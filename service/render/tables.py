@@ -1,0 +1,225 @@
+"""The written part of a fourbar's sheet: dimensions, targets, checks and metrics in blocks of rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from service.render.fourbar import Scene
+from service.render.numbers import NONE, angle, length, small
+from service.render.svg import Element, clean, element, line, shortened, text, text_width
+from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT, PALE
+from synthesis.designs import Check, Design
+from synthesis.problems import Problem
+
+ROW, HEADING, GAP = 18.0, 24.0, 16.0
+"""Heights of a row and of a block's heading, and the space after a block, pixels."""
+
+SIZE, SMALL = 11.5, 10.5
+"""Font sizes of rows, and of the targets with their many columns, pixels."""
+
+DEGREES = frozenset({"transmission_angle", "min_transmission_angle"})
+"""Checks whose value is an angle."""
+
+LENGTHS = frozenset({"shortest_link", "longest_link"})
+"""Checks whose value is a length."""
+
+GRASHOF = {
+    "double_crank": "double crank",
+    "crank_rocker": "crank-rocker",
+    "double_rocker": "double rocker",
+    "rocker_crank": "rocker-crank",
+    "rocker_rocker": "rocker-rocker",
+    "change_point": "change point",
+}
+
+Block = Callable[[float, float, float], tuple[Element, float]]
+"""Draws itself at left, top and width; returns its element and the y below it."""
+
+
+def dimensions(design: Design, scene: Scene, unit: str) -> Block:
+    """Links, coupler point, assembly, pivots and reference angle."""
+    mechanism = design.mechanism
+    links, point, pivots = mechanism.links, mechanism.coupler_point, mechanism.fixed_pivots
+    size = max(links.ground, links.input, links.coupler, links.output)
+
+    def pair(x: float, y: float) -> str:
+        return f"({length(x, size)}, {length(y, size)})"
+
+    if scene.limits is None:
+        reach = "turns fully"
+    else:
+        reach = " to ".join(angle(math.degrees(limit), 1) for limit in scene.limits)
+    rows: list[tuple[str, str, str]] = [
+        ("ground", "d  ground O2–O4", length(links.ground)),
+        ("input", "a  input O2–A", length(links.input)),
+        ("coupler", "b  coupler A–B", length(links.coupler)),
+        ("output", "c  output O4–B", length(links.output)),
+        ("", "coupler point A–P", length(point.distance, size)),
+        ("", "its angle from A–B", angle(point.angle)),
+        ("", "fixed pivot O2", pair(*pivots.input)),
+        ("", "fixed pivot O4", pair(*pivots.output)),
+        ("", "assembly", mechanism.assembly),
+        ("", "reference input angle", angle(mechanism.reference_input_angle)),
+        ("", "input range", reach),
+    ]
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        block, y = _block(f"Dimensions ({unit})", left, top, width)
+        for link, name, value in rows:
+            y += ROW
+            block.add(_swatch(link, left, y - 4.0) if link else None, text(left + 34.0, y, name, SIZE, fill=INK))
+            block.add(_value(left + width, y, value, left + 34.0 + text_width(name, SIZE)))
+        return block, y + GAP
+
+    return draw
+
+
+def targets(design: Design, problem: Problem, scene: Scene, unit: str) -> Block:
+    """Demanded positions with the input angle that meets each, and how exactly."""
+    shares = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
+    found = {target.index: target for target in design.targets}
+    assembled = {c.index: c for c in scene.configurations}
+    size = float(scene.linkage.ground + scene.linkage.coupler)
+    rows = []
+    for k, position in enumerate(problem.positions):
+        cells = [f"{k + 1}", *(length(v, size, most=9) for v in (position.x, position.y)), angle(position.angle, 2)]
+        target = found.get(k)
+        if target is None:
+            cells += [NONE, NONE]
+        else:
+            cells += [angle(target.input_angle, 2), small(target.residual)]
+        note = "" if k in assembled else "cannot be assembled here"
+        if k in assembled and not assembled[k].own:
+            note = "only in the other assembly (dashed)"
+        rows.append((cells, note))
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        block, y = _block("Targets", left, top, width)
+
+        def write(cells: list[str], colour: str) -> None:
+            for cell, share, before in zip(cells, shares, (0.0, *shares), strict=False):
+                room = (share - before) * width - 5.0
+                size = SMALL * min(1.0, room / max(text_width(cell, SMALL), 1.0))
+                block.add(text(left + share * width, y, cell, size, text_anchor="end", fill=colour))
+
+        y += ROW
+        write(["", f"x ({unit})", f"y ({unit})", "angle", "input", "residual"], GREY)
+        for cells, note in rows:
+            y += ROW
+            write(cells, INK)
+            if note:
+                y += ROW - 3.0
+                block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
+        return block, y + GAP
+
+    return draw
+
+
+def checks(design: Design) -> Block:
+    """Every check with a mark, its value and its limit."""
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        verdict = "all passed" if design.verification.passed else "not all passed"
+        block, y = _block(f"Checks: {verdict}", left, top, width)
+        for check in design.verification.checks:
+            y += ROW
+            measure = _measure(check)
+            room = width - 22.0 - text_width(measure, SIZE) - 8.0
+            words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
+            row = element("g", _mark(check.passed, left + 8.0, y - 4.0), data_check=clean(check.name))
+            row.add(text(left + 22.0, y, words, SIZE, fill=INK))
+            row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
+            block.add(row)
+        return block, y + GAP
+
+    return draw
+
+
+def metrics(design: Design, unit: str) -> Block:
+    """Measured properties that nothing was demanded of."""
+    found = design.metrics
+    rows = [
+        ("type", f"{GRASHOF[found.grashof]} ({clean(found.barker)})"),
+        ("min transmission angle", angle(found.min_transmission_angle, 2)),
+        ("input rotation", angle(found.input_rotation, 2)),
+        ("input turns fully", _yes(found.full_rotation)),
+        ("one branch, in order", f"{_yes(found.same_branch)}, {_yes(found.visits_in_order)}"),
+        ("longest : shortest link", length(found.link_ratio, digits=4)),
+        ("size", f"{length(found.size, digits=4)} {unit}"),
+        ("quality", length(found.quality, digits=3)),
+    ]
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        block, y = _block("Metrics", left, top, width)
+        for name, value in rows:
+            y += ROW
+            block.add(
+                text(left, y, name, SIZE, fill=INK), _value(left + width, y, value, left + text_width(name, SIZE))
+            )
+        return block, y + GAP
+
+    return draw
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def _block(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
+    """A block with its heading and rule; the y from which rows are counted."""
+    base = top + HEADING - 9.0
+    rule = line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
+    title = text(left, base, heading, 12.5, font_weight="bold", fill=INK)
+    return element("g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()), top + HEADING - 2.0
+
+
+def _value(right: float, y: float, value: str, after: float) -> Element:
+    """A value at the right end of a row, in smaller type where it would touch the row's name."""
+    width = text_width(value, SIZE)
+    size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
+    return text(right, y, value, size, text_anchor="end", fill=INK)
+
+
+def _measure(check: Check) -> str:
+    """Value and limit of a check; their order tells whether the limit is the least or the most allowed."""
+    if check.value is None:
+        return ""
+
+    def written(value: float) -> str:
+        if check.name in DEGREES:
+            return angle(value, 2)
+        return length(value, digits=4) if check.name in LENGTHS else small(value)
+
+    if check.limit is None:
+        return written(check.value)
+    return f"{written(check.value)}  (limit {written(check.limit)})"
+
+
+def _mark(passed: bool, x: float, y: float) -> Element:
+    """A tick or a cross, drawn, so that no font decides about it."""
+    colour = OUTPUT if passed else "#b3261e"
+    shape = f"M{x - 5:.1f} {y:.1f}l3.5 4l6.5 -8.5" if passed else f"M{x - 4:.1f} {y - 4:.1f}l8 8m0 -8l-8 8"
+    return element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())
+
+
+def _swatch(link: str, left: float, y: float) -> Element:
+    """Sample of a link's line style."""
+    start, end = complex(left + 2.0, y), complex(left + 26.0, y)
+    group = element("g", stroke_linecap="round")
+    if link == "ground":
+        return group.add(line(start, end, stroke=GROUND, stroke_width=1.3, stroke_dasharray="12 4 2 4"))
+    if link == "coupler":
+        return element(
+            "rect",
+            x=left + 2.0,
+            y=y - 4.0,
+            width=24.0,
+            height=8.0,
+            fill=COUPLER,
+            fill_opacity=0.22,
+            stroke=COUPLER,
+            stroke_width=1.8,
+        )
+    group.add(line(start, end, stroke=INPUT if link == "input" else OUTPUT, stroke_width=5.0))
+    return group.add(line(start, end, stroke="#fff", stroke_width=1.9) if link == "output" else None)

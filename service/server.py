@@ -1,0 +1,106 @@
+"""Runs the service: takes the port, says when it is ready, and stops in good order."""
+
+from __future__ import annotations
+
+import fcntl
+import signal
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from service import logs
+from service.jobs.local import LocalExecutor
+from service.settings import Settings
+
+
+class ServeError(Exception):
+    """The service cannot run here; the message is a sentence for the operator."""
+
+
+def serve(settings: Settings) -> None:
+    """Run the service until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    ServeError
+        When the port or the data folder cannot be had, or the start fails.
+    """
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
+    logs.configure(settings.log_level)
+    with _data_folder(settings), _listener(settings) as listener:
+        executor = _executor(settings)
+        try:
+            # A worker takes as long to start as the web framework to import: side by side, the service is ready in
+            # half the time. The tables are made in between, long before any worker is given a job.
+            executor.start()
+            from service.web import WebServer
+
+            WebServer(settings, executor).run(sockets=[listener])
+        except _Ended:
+            pass
+        except SystemExit:  # uvicorn's way to say that the application did not start
+            raise ServeError("the service could not start; the log above has the reason") from None
+        finally:
+            executor.stop()
+
+
+class _Ended(BaseException):
+    """Leaves the program by SIGINT or SIGTERM; like KeyboardInterrupt, nothing that handles errors may catch it."""
+
+
+def _end(_signal: int, _frame: FrameType | None) -> None:
+    # Before the server runs this ends the start. While it runs it has handlers of its own, and it raises the signal
+    # again when it has stopped.
+    raise _Ended
+
+
+def _executor(settings: Settings) -> LocalExecutor:
+    try:
+        return LocalExecutor(settings)
+    except (SQLAlchemyError, ImportError, OSError) as error:
+        # Not the URL itself, which may hold a password.
+        raise ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL") from None
+
+
+@contextmanager
+def _listener(settings: Settings) -> Iterator[socket.socket]:
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+    except OSError:
+        raise ServeError(f"there is no address for the host {settings.host!r}; set MECHSYNTH_HOST") from None
+    with socket.socket(family, kind, protocol) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind(address)
+        except OSError as error:
+            raise ServeError(
+                f"cannot listen on {settings.host} port {settings.port} ({error.strerror}); "
+                "stop what uses the port, or set MECHSYNTH_PORT"
+            ) from None
+        yield listener
+
+
+@contextmanager
+def _data_folder(settings: Settings) -> Iterator[None]:
+    """Keep other servers away from the data folder: each would take up the jobs that the other one runs."""
+    try:
+        settings.data_dir.mkdir(parents=True, exist_ok=True)
+        lock = open(settings.data_dir / "server.lock", "w")  # noqa: SIM115 (closed below)
+    except OSError as error:
+        raise ServeError(
+            f"cannot write to the data folder {settings.data_dir} ({error.strerror}); set MECHSYNTH_DATA_DIR"
+        ) from None
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise ServeError(
+                f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR"
+            ) from None
+        yield

@@ -1,0 +1,61 @@
+"""The settings of the service, read from the environment (``MECHSYNTH_...``)."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+PREFIX = "MECHSYNTH_"
+
+
+class SettingsError(ValueError):
+    """A setting has a value that cannot be used; the message is one line that names the variable."""
+
+
+class Settings(BaseSettings):
+    """What an operator can change. Every field is an environment variable with the prefix ``MECHSYNTH_``."""
+
+    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True, env_ignore_empty=True)
+
+    host: str = Field(default="127.0.0.1", min_length=1, description="Address to listen on.")
+    port: Annotated[int, Field(ge=0, le=65535, description="Port to listen on; 0 takes any free one.")] = 8000
+    data_dir: Path = Field(default=Path("var"), description="Folder of the database; made when missing.")
+    database_url: str | None = Field(
+        default=None, description="SQLAlchemy URL of the job store; a SQLite file in data_dir when left out."
+    )
+    workers: Annotated[int, Field(ge=1, le=256, description="Worker processes.")] = min(2, os.cpu_count() or 1)
+    max_body_bytes: Annotated[int, Field(ge=1024, le=1 << 30, description="Largest request body, bytes.")] = 1 << 20
+    job_timeout_s: Annotated[float, Field(gt=0, le=86_400, description="Longest computation of a job, seconds.")] = (
+        600.0
+    )
+    job_memory_mb: Annotated[
+        int, Field(ge=64, le=1 << 20, description="Memory that a job may take beyond its idle worker's, MiB.")
+    ] = 4096
+    max_wait_s: Annotated[
+        int, Field(ge=0, le=600, description="Longest wait that Prefer: wait is granted, seconds.")
+    ] = 30
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+
+    @property
+    def store_url(self) -> str:
+        """The database URL in force."""
+        return self.database_url or f"sqlite:///{(self.data_dir / 'mechsynth.sqlite3').absolute()}"
+
+
+def read_settings() -> Settings:
+    """The settings of this process.
+
+    Raises
+    ------
+    SettingsError
+        When a variable has a value that cannot be used.
+    """
+    try:
+        return Settings()
+    except ValidationError as error:
+        faults = (f"{PREFIX}{str(e['loc'][0]).upper()}: {e['msg']}" for e in error.errors())
+        raise SettingsError("; ".join(faults)) from None

@@ -1,0 +1,60 @@
+"""The web server: says when the service is ready, and stops it in good order."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import socket
+
+import uvicorn
+
+from service.app import create_app
+from service.jobs.executor import Executor
+from service.settings import Settings
+
+GRACE_S = 2
+"""How long requests under way may take to end when the service stops."""
+
+_READY_PERIOD_S = 0.02
+
+
+class WebServer(uvicorn.Server):
+    """Serves the application on a bound socket until SIGINT or SIGTERM."""
+
+    def __init__(self, settings: Settings, executor: Executor) -> None:
+        self._app = create_app(settings, executor)
+        self._executor = executor
+        self._announcement: asyncio.Task[None] | None = None
+        super().__init__(
+            uvicorn.Config(
+                self._app,
+                log_config=None,
+                access_log=False,
+                server_header=False,
+                timeout_graceful_shutdown=GRACE_S,
+                lifespan="on",
+            )
+        )
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start the application and listen; announce the URL once a worker is ready."""
+        await super().startup(sockets)
+        # All that is imported by now stays; without it a collection is ten times as quick, and a large body parsed
+        # in 50 ms instead of 300.
+        gc.freeze()
+        if self.started and sockets:
+            self._announcement = asyncio.create_task(self._announce(sockets[0]))
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Answer the requests that wait for a job now, so that they do not hold the service up, and stop."""
+        self._app.state.desk.changes.close()
+        if self._announcement is not None:
+            self._announcement.cancel()
+        await super().shutdown(sockets)
+
+    async def _announce(self, listener: socket.socket) -> None:
+        while not self._executor.ready():
+            await asyncio.sleep(_READY_PERIOD_S)
+        host, port = listener.getsockname()[:2]
+        shown = f"[{host}]" if ":" in host else host
+        print(f"mechsynth is ready on http://{shown}:{port}", flush=True)  # noqa: T201 (for whoever started it)

@@ -1,0 +1,211 @@
+"""Dyads that carry the body through its positions, from as many conditions as a dyad has freedoms.
+
+A dyad is a link from a fixed pivot O to a moving pivot A on the body; O and A (in the first position) are its four
+unknown numbers. With A_k = c_k + r_k A the image of A in position k (r_k = e^{iα_k}, c_k = P_k − r_k P_1) the link
+keeps its length when |A_k − O|² = |A − O|². The squares of A and of O cancel,
+
+    Re(conj(c_k) r_k A) − Re(conj(O) (A_k − A)) + |c_k|²/2 = 0,
+
+which is bilinear: linear in A for a given O and the reverse. It is the condition behind the standard form
+W(e^{iβ_k} − 1) + Z(e^{iα_k} − 1) = δ_k (Norton 5.35) with the rotation β_k eliminated. A rotation that is given
+replaces it by A_k − O = e^{iβ_k}(A − O), which is linear. Every other choice of Norton's is linear too, but for the
+length z of the coupler vector:
+
+    fixed pivot        O = O*
+    moving pivot       A = A*
+    link angle θ       Im(e^{−iθ}(A − O)) = 0
+    coupler angle φ    Im(e^{−iφ}(P_1 − A)) = 0
+    coupler length z   |P_1 − A|² = z²
+
+Four rows make a square system, and Newton's method solves a batch of them at once: in one step where all rows are
+linear, in two where a pivot is given (the first step puts that pivot in its place, the second solves the rest exactly).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.motion.task import Complex, MotionTask, Real
+
+NEWTON_STEPS = 40
+"""Steps at most; linear conditions need two, the others converge quadratically after a few."""
+
+CONVERGED = 1e-14
+"""Largest residual row, relative to the square of the dyad's size, at which Newton's method has arrived: some tens of
+roundings of the terms in it."""
+
+SINGULAR = 1e-12
+"""Determinant, relative to the product of the row norms, below which a system counts as singular."""
+
+FAR = 1e5
+"""A pivot farther than this many task sizes away stands for a slider: its residual could not be held to 1e-9."""
+
+
+@dataclass(frozen=True)
+class DyadConditions:
+    """Conditions on a batch of dyads, in task coordinates and radians; each a scalar, an array (batch,) or None."""
+
+    fixed_pivot: Complex | None = None
+    moving_pivot: Complex | None = None
+    rotations: tuple[Real | None, ...] = ()
+    link_angle: Real | None = None
+    coupler_length: Real | None = None
+    coupler_angle: Real | None = None
+
+    def with_(self, **changes: object) -> DyadConditions:
+        """These conditions with some of them changed."""
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    def count(self) -> int:
+        """How many numbers are fixed."""
+        scalars = (self.link_angle, self.coupler_length, self.coupler_angle, *self.rotations)
+        pivots = (self.fixed_pivot, self.moving_pivot)
+        return 2 * sum(p is not None for p in pivots) + sum(s is not None for s in scalars)
+
+    @property
+    def moving_pivot_known(self) -> bool:
+        """Whether the conditions state the moving pivot, by itself or as a whole coupler vector."""
+        return self.moving_pivot is not None or (self.coupler_length is not None and self.coupler_angle is not None)
+
+    @property
+    def unique(self) -> bool:
+        """Whether at most one dyad satisfies them (or a whole family where the system is singular)."""
+        if self.coupler_length is not None and not self.moving_pivot_known:
+            return False
+        return self.fixed_pivot is not None or self.moving_pivot_known or None not in self.rotations
+
+
+class Dyads(NamedTuple):
+    """Fixed pivots O and moving pivots A in the first position; complex, shape (batch,), task coordinates."""
+
+    fixed: Complex
+    moving: Complex
+
+
+def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> tuple[Dyads, NDArray[np.bool_]]:
+    """Solve a batch of square systems by Newton's method.
+
+    Parameters
+    ----------
+    task : MotionTask
+        n positions.
+    conditions : DyadConditions
+        Exactly 5 − n numbers; arrays of shape (batch,) or scalars.
+    start : Dyads
+        Shape (batch,); any start does where the conditions are ``unique``.
+
+    Returns
+    -------
+    dyads : Dyads
+        Shape (batch,).
+    found : bool, shape (batch,)
+        False where the system is singular or has no real solution near, where a pivot lies at infinity (a slider would
+        be needed), or where the link or the stated direction is met with a negative length only.
+    """
+    batch = start.fixed.shape
+    conditions = _as_batch(_vector_as_pivot(task, conditions), batch)
+    fixed, moving = start.fixed.astype(np.complex128), start.moving.astype(np.complex128)
+    alive = np.ones(batch, np.bool_)
+    done = np.zeros(batch, np.bool_)
+    for _ in range(NEWTON_STEPS):
+        values, jacobian = _rows(task, conditions, fixed, moving)
+        size = 1.0 + np.abs(fixed) + np.abs(moving)
+        alive &= size < 10.0 * FAR
+        done |= alive & (np.abs(values).max(axis=-1) <= CONVERGED * size * size)
+        going = alive & ~done
+        if not going.any():
+            break
+        norms = np.sqrt((jacobian * jacobian).sum(axis=-1))
+        norms[norms == 0.0] = 1.0
+        jacobian = jacobian / norms[..., None]
+        regular = np.abs(np.linalg.det(jacobian)) > SINGULAR
+        alive &= regular | done
+        going &= regular
+        jacobian[~going] = np.eye(4)
+        step = np.linalg.solve(jacobian, np.where(going[:, None], -values / norms, 0.0)[..., None])[..., 0]
+        fixed = fixed + (step[:, 0] + 1j * step[:, 1])
+        moving = moving + (step[:, 2] + 1j * step[:, 3])
+    dyads = Dyads(fixed, moving)
+    return dyads, done & alive & _directions_hold(task, conditions, dyads) & (np.abs(fixed) < FAR) & (
+        np.abs(moving) < FAR
+    )
+
+
+def _vector_as_pivot(task: MotionTask, conditions: DyadConditions) -> DyadConditions:
+    """A whole coupler vector stated as the moving pivot, which is linear."""
+    if conditions.moving_pivot is not None or not conditions.moving_pivot_known:
+        return conditions
+    assert conditions.coupler_length is not None
+    assert conditions.coupler_angle is not None
+    pivot = task.points[0] - conditions.coupler_length * np.exp(1j * conditions.coupler_angle)
+    return conditions.with_(moving_pivot=np.asarray(pivot), coupler_length=None, coupler_angle=None)
+
+
+def _as_batch(conditions: DyadConditions, batch: tuple[int, ...]) -> DyadConditions:
+    def spread(value: Any) -> Any:
+        return None if value is None else np.broadcast_to(value, batch)
+
+    names = ("fixed_pivot", "moving_pivot", "link_angle", "coupler_length", "coupler_angle")
+    spreads = {name: spread(getattr(conditions, name)) for name in names}
+    return conditions.with_(rotations=tuple(spread(b) for b in conditions.rotations), **spreads)
+
+
+def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: Complex) -> tuple[Real, Real]:
+    """Residuals (batch, 4) and their Jacobian (batch, 4, 4) with respect to (Re O, Im O, Re A, Im A)."""
+    values = np.empty((*fixed.shape, 4))
+    gradients = np.zeros((*fixed.shape, 4, 2), np.complex128)
+    row = 0
+
+    def add(value: Real, by_fixed: Complex | complex, by_moving: Complex | complex) -> None:
+        """A row; a gradient g stands for Re(conj(g) dz)."""
+        nonlocal row
+        values[..., row] = value
+        gradients[..., row, 0] = by_fixed
+        gradients[..., row, 1] = by_moving
+        row += 1
+
+    images = task.images(moving)
+    for k, rotation in enumerate(conditions.rotations, start=1):
+        image, turn = images[:, k], task.turns[k]
+        if rotation is None:
+            shift = task.points[k] - turn * task.points[0]
+            half_square = abs(shift) ** 2 / 2.0
+            value = (np.conj(shift) * turn * moving).real - (np.conj(fixed) * (image - moving)).real + half_square
+            add(value, moving - image, np.conj(turn) * shift - (np.conj(turn) - 1.0) * fixed)
+        else:
+            spin = np.exp(1j * rotation)
+            gap = image - fixed - spin * (moving - fixed)
+            add(gap.real, np.conj(spin - 1.0), np.conj(turn - spin))
+            add(gap.imag, 1j * np.conj(spin - 1.0), 1j * np.conj(turn - spin))
+    if conditions.fixed_pivot is not None:
+        gap = fixed - conditions.fixed_pivot
+        add(gap.real, 1.0, 0.0)
+        add(gap.imag, 1j, 0.0)
+    if conditions.moving_pivot is not None:
+        gap = moving - conditions.moving_pivot
+        add(gap.real, 0.0, 1.0)
+        add(gap.imag, 0.0, 1j)
+    if conditions.link_angle is not None:
+        direction = np.exp(1j * conditions.link_angle)
+        add((np.conj(direction) * (moving - fixed)).imag, -1j * direction, 1j * direction)
+    if conditions.coupler_angle is not None:
+        direction = np.exp(1j * conditions.coupler_angle)
+        add((np.conj(direction) * (task.points[0] - moving)).imag, 0.0, -1j * direction)
+    if conditions.coupler_length is not None:
+        vector = moving - task.points[0]
+        add(np.abs(vector) ** 2 - conditions.coupler_length**2, 0.0, 2.0 * vector)
+    return values, gradients.view(np.float64).reshape(*fixed.shape, 4, 4)
+
+
+def _directions_hold(task: MotionTask, conditions: DyadConditions, dyads: Dyads) -> NDArray[np.bool_]:
+    """Whether stated directions are met forwards, not backwards."""
+    good = np.ones(dyads.fixed.shape, np.bool_)
+    if conditions.link_angle is not None:
+        good &= (np.exp(-1j * conditions.link_angle) * (dyads.moving - dyads.fixed)).real > 0.0
+    if conditions.coupler_angle is not None:
+        good &= (np.exp(-1j * conditions.coupler_angle) * (task.points[0] - dyads.moving)).real > 0.0
+    return good

@@ -1,0 +1,96 @@
+"""Numbers from the literature, and what the tests compare with them. The format is described in ``README.md``."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).parent
+
+DECIMAL = 1e-9
+"""Share of a value by which a decimal tolerance may be missed: 28.5 − 28.4 is not 0.1 in binary."""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """One value that a source gives. ``tolerance`` is None for words, which must be equal."""
+
+    value: Any
+    tolerance: float | None
+    modulo_360: bool = False
+
+    def agrees(self, found: Any) -> bool:
+        """Whether a computed value (or list of values) is the expected one within the printed precision."""
+        if isinstance(self.value, list):
+            same_length = len(found) == len(self.value)
+            return same_length and all(self._near(f, v) for f, v in zip(found, self.value, strict=True))
+        return self._near(found, self.value)
+
+    def _near(self, found: Any, value: Any) -> bool:
+        if self.tolerance is None or isinstance(value, str | bool):
+            return bool(found == value)
+        difference = float(found) - float(value)
+        if self.modulo_360:
+            difference = math.remainder(difference, 360.0)
+        return abs(difference) <= self.tolerance + DECIMAL * abs(float(value))
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row: a source, what goes in and what must come out. ``inputs`` is None where the source has a figure only."""
+
+    id: str
+    kind: str
+    source: str
+    status: str
+    note: str
+    inputs: dict[str, Any] | None
+    expected: dict[str, Expected]
+
+    def check(self, **found: Any) -> None:
+        """Compare every expected value with the computed one of the same name."""
+        missing = self.expected.keys() - found.keys()
+        assert not missing, f"{self.id}: not computed: {sorted(missing)}"
+        wrong = {
+            name: (found[name], expected.value, expected.tolerance)
+            for name, expected in self.expected.items()
+            if not expected.agrees(found[name])
+        }
+        assert not wrong, f"{self.id} ({self.source}): found, expected, tolerance: {wrong}"
+
+
+@cache
+def load(file: str = "linkage") -> tuple[Case, ...]:
+    """All rows of one file."""
+    rows = json.loads((HERE / f"{file}.json").read_text(encoding="utf-8"))
+    return tuple(_case(row) for row in rows)
+
+
+def cases(kind: str, file: str = "linkage") -> list[Any]:
+    """Rows of one kind that can be evaluated, as pytest parameters named after their ids."""
+    found = [pytest.param(case, id=case.id) for case in load(file) if case.kind == kind and case.inputs is not None]
+    assert found, f"no case of kind {kind!r} in {file}.json"
+    return found
+
+
+@cache
+def search_tasks() -> tuple[dict[str, Any], ...]:
+    """The three-position tasks of ``search_3_positions.json``: ``id``, and ``positions`` of x, y, angle."""
+    return tuple(json.loads((HERE / "search_3_positions.json").read_text(encoding="utf-8")))
+
+
+def _case(row: dict[str, Any]) -> Case:
+    suspect = row.get("suspect_fields", {})
+    tolerance, modulo = row["tolerance"], row.get("modulo_360", [])
+    expected = {}
+    for name, value in row["expected"].items():
+        doubted = suspect.get(name, {})
+        limit = doubted.get("tolerance", tolerance.get(name))
+        expected[name] = Expected(doubted.get("likely", value), limit, name in modulo)
+    return Case(row["id"], row["kind"], row["source"], row["status"], row["note"], row.get("inputs"), expected)

@@ -1,0 +1,126 @@
+"""A real server process for tests, and what tests ask of it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import httpx
+
+ROOT = Path(__file__).parents[2]
+REAL = ("-m", "service.cli")
+SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
+START_S = 90.0  # the first start ever compiles the kernels
+PROBLEM = {
+    "kind": "motion",
+    "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 10.0, "y": 5.0, "angle": 30.0}],
+}
+
+
+def until(condition, seconds=10.0, what="the condition"):
+    """The first true value of ``condition()``."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        if value := condition():
+            return value
+        time.sleep(0.01)
+    raise AssertionError(f"{what} did not come about within {seconds} s")
+
+
+def environment(folder: Path, **settings) -> dict[str, str]:
+    clean = {key: value for key, value in os.environ.items() if not key.startswith("MECHSYNTH_")}
+    ours = {"MECHSYNTH_PORT": "0", "MECHSYNTH_DATA_DIR": str(folder / "data"), "SCRIPTED_FOLDER": str(folder)}
+    return {**clean, "PYTHONPATH": str(ROOT), **ours, **{f"MECHSYNTH_{k.upper()}": str(v) for k, v in settings.items()}}
+
+
+class RunningServer:
+    """Starts ``mechsynth serve`` in ``folder`` and waits until it is ready."""
+
+    def __init__(self, folder: Path, program=REAL, **settings):
+        self.folder = folder
+        self.log_path = folder / "log"
+        announced = folder / "announced"
+        with announced.open("wb") as out, self.log_path.open("ab") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, *program, "serve"],
+                stdout=out,
+                stderr=log,
+                env=environment(folder, **settings),
+                cwd=folder,
+            )
+        try:
+            self.url = until(lambda: self._url(announced), START_S, "the announcement").strip()
+        except BaseException:
+            self.kill()
+            raise
+        self.client = httpx.Client(base_url=self.url, timeout=60.0)
+        assert self.client.get("/readyz").status_code == 200
+
+    def _url(self, announced):
+        assert self.process.poll() is None, self.log()
+        words = announced.read_text().split()
+        return words[-1] if words else ""
+
+    def log(self) -> str:
+        return self.log_path.read_text()
+
+    def post(self, seed=None, wait=None, problem=PROBLEM, **fields):
+        headers = {} if wait is None else {"Prefer": f"wait={wait}"}
+        stated = problem if seed is None else {**problem, "seed": seed}
+        answer = self.client.post("/v1/jobs", json={"problem": stated, **fields}, headers=headers)
+        assert answer.status_code in (200, 202), answer.text
+        return answer.json()
+
+    def job(self, job_id):
+        answer = self.client.get(f"/v1/jobs/{job_id}")
+        assert answer.status_code == 200, answer.text
+        return answer.json()
+
+    def reaches(self, job_id, status, seconds=20.0):
+        """The job once it has the status."""
+
+        def there():
+            job = self.job(job_id)
+            return job if job["status"] == status else None
+
+        return until(there, seconds, f"job {status}")
+
+    def workers(self):
+        return workers_of(self.process.pid)
+
+    def stop(self):
+        """Ask the server to end; gives its exit status."""
+        self.client.close()
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(10)
+
+    def kill(self):
+        if hasattr(self, "client"):
+            self.client.close()
+        self.process.kill()
+        self.process.wait(10)
+
+
+def workers_of(server_pid):
+    """Process ids of the living workers of a server."""
+    return [pid for pid, parent, command in _processes() if parent == server_pid and "spawn_main" in command]
+
+
+def alive(pid):
+    """Whether the process exists and is not just waiting to be collected."""
+    return any(pid == other for other, _, _ in _processes())
+
+
+def _processes():
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdecimal():
+            continue
+        try:
+            state, parent = (entry / "stat").read_text().rpartition(")")[2].split()[:2]
+            command = (entry / "cmdline").read_text()
+        except OSError:  # it ended just now
+            continue
+        if state not in "ZX":
+            yield int(entry.name), int(parent), command

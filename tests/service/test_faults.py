@@ -1,0 +1,218 @@
+"""What happens to jobs when things die, hang, or eat memory: real servers, real signals."""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from tests.service.running import SCRIPTED, RunningServer, alive, environment, until
+from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT, NATIVE, STEPS
+
+TIMEOUT_S = 4.0
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    running = RunningServer(
+        tmp_path_factory.mktemp("faults"), SCRIPTED, workers=1, job_timeout_s=TIMEOUT_S, job_memory_mb=200
+    )
+    yield running
+    assert running.stop() == 0
+
+
+@pytest.fixture
+def restarting(tmp_path):
+    """Starts servers in one folder, so on one store; ends what is left of them."""
+    started = []
+
+    def start():
+        started.append(RunningServer(tmp_path, SCRIPTED, workers=1))
+        return started[-1]
+
+    yield start
+    for running in started:
+        running.kill()
+
+
+def stored(folder, job_id, column):
+    raw = sqlite3.connect(folder / "data" / "mechsynth.sqlite3")
+    try:
+        return raw.execute(f"SELECT {column} FROM jobs WHERE id = ?", (job_id,)).fetchone()[0]
+    finally:
+        raw.close()
+
+
+def test_a_job_in_native_code_is_cancelled_within_two_seconds(server):
+    job = server.post(NATIVE)
+    server.reaches(job["id"], "running")
+    (worker,) = server.workers()
+    began = time.monotonic()
+    answer = server.client.delete(f"/v1/jobs/{job['id']}")
+    assert answer.status_code == 202
+    until(lambda: not alive(worker), 2.0, "the end of the computation")
+    cancelled = server.reaches(job["id"], "cancelled", 2.0)
+    assert time.monotonic() - began < 2.0
+    assert cancelled["result"] is None
+    assert cancelled["finished_at"] is not None
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+    assert server.job(job["id"]) == cancelled
+    assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 204
+    assert server.client.get(f"/v1/jobs/{job['id']}").status_code == 404
+
+
+def test_a_job_whose_worker_is_suspended_is_cancelled_within_two_seconds(server):
+    job = server.post(NATIVE)
+    server.reaches(job["id"], "running")
+    (worker,) = server.workers()
+    os.kill(worker, signal.SIGSTOP)
+    assert server.client.delete(f"/v1/jobs/{job['id']}").json()["status"] == "cancelled"
+    until(lambda: not alive(worker), 2.0, "the end of the computation")
+
+
+def test_a_queued_job_is_cancelled_and_never_runs(server):
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    first = server.post(GATED)
+    server.reaches(first["id"], "running")
+    second = server.post(INSTANT)
+    assert second["status"] == "queued"
+    assert server.client.delete(f"/v1/jobs/{second['id']}").json()["status"] == "cancelled"
+    gate.touch()
+    server.reaches(first["id"], "succeeded")
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+    assert server.job(second["id"])["status"] == "cancelled"
+    assert server.job(second["id"])["started_at"] is None
+
+
+def test_a_job_whose_worker_dies_is_tried_again(server):
+    job = server.post(DIES_ONCE, wait=20)
+    assert job["status"] == "succeeded"
+    assert stored(server.folder, job["id"], "crashes") == 1
+    assert stored(server.folder, job["id"], "attempt") == 2
+
+
+def test_a_worker_that_dies_idle_harms_nobody(server):
+    server.post(INSTANT, wait=20)
+    (worker,) = server.workers()
+    os.kill(worker, signal.SIGKILL)
+    until(lambda: not alive(worker), 2.0)
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_job_that_takes_too_long_fails(server):
+    job = server.post(NATIVE, wait=20)
+    assert job["status"] == "failed"
+    assert job["error"]["type"] == "/problems/timeout"
+    assert job["error"]["instance"] == f"/v1/jobs/{job['id']}"
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_job_that_takes_too_much_memory_fails(server):
+    job = server.post(GREEDY, wait=20)
+    assert (job["status"], job["error"]["type"]) == ("failed", "/problems/out-of-memory")
+    assert stored(server.folder, job["id"], "attempt") == 1
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_defect_of_the_solver_fails_the_job_and_is_not_shown(server):
+    job = server.post(BROKEN, wait=20)
+    assert (job["status"], job["error"]["type"]) == ("failed", "/problems/internal-error")
+    assert "secret" not in str(job)
+    assert "secret" in server.log(), "the log is where the defect must be found"
+
+
+def test_progress_is_seen_while_the_job_runs(server):
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    job = server.post(STEPS)
+    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, 5.0)
+    writes, seconds = stored(server.folder, job["id"], "revision"), 1.0
+    time.sleep(seconds)  # a rate is measured over a time
+    assert stored(server.folder, job["id"], "revision") - writes <= 6
+    gate.touch()
+    assert server.reaches(job["id"], "succeeded")["progress"]["fraction"] == 1.0
+
+
+def test_cancelling_at_any_moment_leaves_one_end(server):
+    """Jobs that end by themselves while they are being cancelled: each ends once, as one or the other."""
+    for pause in (0.0, 0.001, 0.002, 0.003, 0.005, 0.008):
+        job = server.post(INSTANT)
+        time.sleep(pause)  # the moment is what is varied
+        answer = server.client.delete(f"/v1/jobs/{job['id']}")
+        assert answer.status_code in (202, 204)
+        if answer.status_code == 204:
+            assert server.client.get(f"/v1/jobs/{job['id']}").status_code == 404
+        else:
+            assert answer.json()["status"] in ("cancelled", "succeeded")
+            assert server.job(job["id"]) == answer.json()
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path):
+    server = restarting()
+    running, queued = server.post(GATED), server.post(INSTANT)
+    server.reaches(running["id"], "running")
+    (worker,) = server.workers()
+    os.kill(worker, signal.SIGSTOP)  # not even a suspended worker may stay behind
+    server.kill()
+    until(lambda: not alive(worker), 2.0, "the end of the worker")
+    assert stored(tmp_path, running["id"], "status") == "running"
+
+    (tmp_path / "open").touch()
+    server = restarting()
+    assert server.reaches(running["id"], "succeeded")["id"] == running["id"]
+    server.reaches(queued["id"], "succeeded")
+    assert stored(tmp_path, running["id"], "attempt") == 2
+    assert server.stop() == 0
+
+
+def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
+    server = restarting()
+    job = server.post(NATIVE)
+    server.reaches(job["id"], "running")
+    (worker,) = server.workers()
+    began = time.monotonic()
+    assert server.stop() == 0
+    assert time.monotonic() - began < 3.0
+    assert not alive(worker)
+    assert stored(tmp_path, job["id"], "status") == "queued"
+    assert stored(tmp_path, job["id"], "crashes") == 0
+
+
+def test_a_stopping_server_answers_those_who_wait(restarting):
+    server = restarting()
+    answers = []
+    waiting = threading.Thread(target=lambda: answers.append(server.post(NATIVE, wait=30)))
+    waiting.start()
+    until(lambda: server.client.get("/v1/jobs?status=running").json()["jobs"])
+    server.process.send_signal(signal.SIGINT)
+    waiting.join(5.0)
+    assert [job["status"] for job in answers] == ["running"]
+    assert server.process.wait(5.0) == 0
+
+
+def test_a_service_whose_workers_cannot_start_is_not_ready(tmp_path):
+    (tmp_path / "cannot-start").touch()
+    with subprocess.Popen(
+        [sys.executable, *SCRIPTED, "serve"],
+        env=environment(tmp_path, port=0),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            for line in process.stderr:
+                if "worker could not be started" in line:
+                    break
+            else:
+                raise AssertionError("the server ended")
+        finally:
+            process.terminate()
+            out, _ = process.communicate(timeout=10)
+    assert "ready" not in out, "announced although no worker can start"
+    assert process.returncode == 0

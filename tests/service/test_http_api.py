@@ -1,0 +1,123 @@
+"""Everything else of the HTTP contract: errors, documents, health."""
+
+import json
+import re
+import socket
+
+import pytest
+
+from service.api.prefer import wait_seconds
+from synthesis.problems import PROBLEM_KINDS
+
+
+def test_health(client):
+    for path in ("/healthz", "/readyz"):
+        answer = client.get(path)
+        assert (answer.status_code, answer.json()) == (200, {"status": "ok"})
+
+
+@pytest.mark.parametrize(
+    "path", ["/nope", "/v1", "/v1/jobs/", "/v1/jobs/a/b/c", "/docs/assets/nope.js", "/%ff", "/%00"]
+)
+def test_unknown_paths(client, path):
+    answer = client.get(path)
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["instance"] == path
+    assert set(answer.json()) == {"type", "title", "status", "detail", "instance"}
+
+
+def test_other_methods_are_told_which_there_are(client):
+    answer = client.put("/v1/jobs", json={})
+    assert answer.status_code == 405
+    assert answer.headers["allow"] == "GET, POST"
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert client.request("PROPFIND", "/v1/jobs").status_code == 405
+
+
+def test_a_query_is_not_repeated_in_an_error(client):
+    assert "token" not in client.get("/nope?token=1").text
+
+
+def test_headers_with_odd_bytes(server):
+    host, port = server.url.removeprefix("http://").split(":")
+    with socket.create_connection((host, int(port)), timeout=10) as raw:
+        raw.sendall(
+            b"POST /v1/jobs HTTP/1.1\r\nHost: \xff\r\nPrefer: \xe9\x80wait\r\nContent-Type: \xff/\xfe\r\n"
+            b"Content-Length: 2\r\nConnection: close\r\n\r\n{}"
+        )
+        answer = b"".join(iter(lambda: raw.recv(65536), b""))
+    assert re.match(rb"HTTP/1.1 4\d\d ", answer)
+
+
+def test_every_kind_is_listed_with_an_example_that_runs(client):
+    kinds = client.get("/v1/problems").json()["problems"]
+    assert [kind["kind"] for kind in kinds] == list(PROBLEM_KINDS)
+    for kind in kinds:
+        assert set(kind) == {"kind", "title", "description", "schema", "example"}
+        assert kind["schema"]["type"] == "object"
+        assert kind["title"]
+        job = client.post("/v1/jobs", json={"problem": kind["example"]}, headers={"Prefer": "wait=30"})
+        assert job.json()["status"] == "succeeded"
+        assert job.json()["result"]["designs"]
+
+
+def test_the_reference_needs_no_other_host(client):
+    page = client.get("/docs").text
+    links = re.findall(r'(?:src|href)="([^"]+)"', page)
+    assert links
+    for link in links:
+        assert link.startswith("/docs/assets/")
+        assert client.get(link).status_code == 200
+    document = client.get(re.search(r"url: '([^']+)'", page)[1])
+    assert document.json() == client.get("/openapi.json").json()
+    assert client.get("/").headers["location"] == "/docs"
+    assert client.get("/redoc").status_code == 404
+
+
+@pytest.fixture(scope="module")
+def openapi(server):
+    return server.client.get("/openapi.json").json()
+
+
+def operations(openapi):
+    return [(path, method, op) for path, methods in openapi["paths"].items() for method, op in methods.items()]
+
+
+def test_the_openapi_document_is_complete(openapi):
+    assert openapi["openapi"].startswith("3.1")
+    ids = [op["operationId"] for _, _, op in operations(openapi)]
+    assert sorted(ids) == [
+        "create_job", "delete_job", "draw_design", "get_job", "healthz", "list_jobs", "list_problems", "readyz",
+    ]  # fmt: skip
+    schemas = openapi["components"]["schemas"]
+    assert not {"HTTPValidationError", "ValidationError"} & set(schemas)
+    assert all(schema.get("title") for schema in schemas.values())
+    references = set(re.findall(r'"#/components/schemas/([^"]+)"', json.dumps(openapi)))
+    assert references <= set(schemas)
+    assert {"Job", "JobRequest", "JobList", "ProblemDetails", "Result"} <= references
+    for _, _, operation in operations(openapi):
+        assert operation["tags"]
+        assert operation["summary"]
+        for status, response in operation["responses"].items():
+            if int(status) >= 400:
+                assert list(response["content"]) == ["application/problem+json"]
+
+
+def test_the_examples_of_the_openapi_document_run(client, openapi):
+    body = openapi["paths"]["/v1/jobs"]["post"]["requestBody"]["content"]["application/json"]
+    assert set(body["examples"]) == set(PROBLEM_KINDS)
+    for example in body["examples"].values():
+        answer = client.post("/v1/jobs", json=example["value"], headers={"Prefer": "wait=30"})
+        assert answer.json()["status"] == "succeeded"
+
+
+def test_a_wait_has_a_longest():
+    assert wait_seconds(["wait=99999"], longest=30) == 30
+    assert wait_seconds(["wait=999999999999"], longest=30) == 0
+    assert wait_seconds([], longest=30) == 0
+
+
+def test_no_request_here_was_met_with_a_defect(server):
+    """Runs at the end of its module: the log of the session's server holds no traceback."""
+    assert "Traceback" not in server.log()

@@ -1,0 +1,182 @@
+import sqlite3
+import threading
+
+import pytest
+from sqlalchemy import select, update
+
+from service.jobs.database import connect, upgrade
+from service.jobs.schema import jobs, metadata
+from service.jobs.states import FINISHED, MOVES, Status
+from service.jobs.store import MAX_CRASHES, JobStore
+
+ACTIONS = {
+    "claim": lambda store, job, attempt: store.claim(job) is not None,
+    "succeed": lambda store, job, attempt: store.succeed(job, attempt, "{}"),
+    "fail": lambda store, job, attempt: store.fail(job, attempt, "{}"),
+    "requeue": lambda store, job, attempt: store.requeue(job),
+    "give_up": lambda store, job, attempt: store.give_up(job, "{}"),
+    "cancel": lambda store, job, attempt: store.cancel(job),
+}
+
+
+@pytest.fixture
+def engine(tmp_path):
+    engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=True)
+    upgrade(engine)
+    yield engine
+    engine.dispose()
+
+
+@pytest.fixture
+def store(engine):
+    return JobStore(engine)
+
+
+@pytest.fixture
+def job(store):
+    return store.create(kind="motion", label=None, problem='{"kind":"motion"}')
+
+
+def put(engine, job_id, status, attempt=1):
+    with engine.begin() as connection:
+        connection.execute(update(jobs).where(jobs.c.id == job_id).values(status=status, attempt=attempt))
+
+
+def test_every_move_has_an_action():
+    assert set(ACTIONS) == set(MOVES)
+
+
+@pytest.mark.parametrize("status", list(Status))
+@pytest.mark.parametrize("name", list(MOVES))
+def test_a_move_happens_from_its_sources_only(engine, store, job, name, status):
+    put(engine, job.id, status)
+    before = store.get(job.id)
+    moved = ACTIONS[name](store, job.id, 1)
+    after = store.get(job.id)
+    assert moved == (status in MOVES[name].sources)
+    if moved:
+        assert after.status == MOVES[name].target
+        assert after.revision == before.revision + 1
+        assert (after.finished_at is not None) == (after.status in FINISHED)
+    else:
+        assert after == before
+
+
+@pytest.mark.parametrize("name", ["succeed", "fail"])
+def test_an_older_attempt_is_refused(store, job, name):
+    first = store.claim(job.id)
+    store.requeue(job.id)
+    second = store.claim(job.id)
+    assert (first.attempt, second.attempt) == (1, 2)
+    before = store.get(job.id)
+    assert not ACTIONS[name](store, job.id, first.attempt)
+    assert not store.progress(job.id, first.attempt, 0.9, "stale")
+    assert store.get(job.id) == before
+    assert ACTIONS[name](store, job.id, second.attempt)
+
+
+def test_one_of_many_concurrent_claims_wins(engine, store, job):
+    start = threading.Barrier(8)
+    claims = []
+
+    def claim():
+        start.wait()
+        claims.append(store.claim(job.id))
+
+    threads = [threading.Thread(target=claim) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(claims) == 8
+    assert [c.attempt for c in claims if c is not None] == [1]
+
+
+def test_a_job_whose_worker_keeps_dying_is_given_up(store, job):
+    for crash in range(MAX_CRASHES):
+        store.claim(job.id)
+        assert store.crashed(job.id) == Status.QUEUED
+        assert store.get(job.id).crashes == crash + 1
+    store.claim(job.id)
+    assert store.crashed(job.id) == Status.FAILED
+    given_up = store.get(job.id)
+    assert "/problems/worker-died" in given_up.error
+    assert given_up.finished_at is not None
+    assert store.crashed(job.id) is None
+
+
+def test_the_death_of_the_worker_of_a_cancelled_job_changes_nothing(store, job):
+    store.claim(job.id)
+    store.cancel(job.id)
+    before = store.get(job.id)
+    assert store.crashed(job.id) is None
+    assert not store.requeue(job.id)
+    assert store.get(job.id) == before
+
+
+def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
+    claim = store.claim(job.id)
+    assert not store.delete(job.id), "a running job must not be removed"
+    store.cancel(job.id)
+    assert store.delete(job.id)
+    assert not store.succeed(job.id, claim.attempt, "{}")
+    assert store.get(job.id) is None
+
+
+def test_unfinished_jobs_are_queued_again_oldest_first(store):
+    ids = [store.create(kind="motion", label=None, problem="{}").id for _ in range(4)]
+    store.claim(ids[0])
+    store.claim(ids[2])
+    store.succeed(ids[2], 1, "{}")
+    assert store.requeue_unfinished() == [ids[0], ids[1], ids[3]]
+    assert store.get(ids[0]).status == Status.QUEUED
+    assert store.get(ids[0]).started_at is None
+    assert store.get(ids[2]).status == Status.SUCCEEDED
+
+
+def test_progress_is_kept_within_bounds(store, job):
+    claim = store.claim(job.id)
+    assert store.progress(job.id, claim.attempt, 7.0, "x" * 1000)
+    assert store.get(job.id).progress_fraction == 1.0
+    assert len(store.get(job.id).progress_message) == 200
+
+
+def test_pages_are_newest_first_and_filtered(store):
+    ids = [store.create(kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
+    store.claim(ids[0])
+    assert [j.id for j in store.page(limit=10)] == ids[::-1]
+    assert [j.id for j in store.page(limit=1, before=ids[2])] == [ids[1]]
+    assert [j.id for j in store.page(limit=10, kind="motion")] == [ids[2], ids[0]]
+    assert [j.id for j in store.page(limit=10, status=Status.RUNNING)] == [ids[0]]
+
+
+def test_the_server_is_durable_and_the_workers_are_not(tmp_path):
+    for durable, level in ((True, 2), (False, 1)):
+        engine = connect(f"sqlite:///{tmp_path / 'x.sqlite3'}", durable=durable)
+        with engine.connect() as connection:
+            assert connection.exec_driver_sql("PRAGMA synchronous").scalar() == level
+            assert connection.exec_driver_sql("PRAGMA journal_mode").scalar() == "wal"
+            assert connection.exec_driver_sql("PRAGMA busy_timeout").scalar() == 10_000
+        engine.dispose()
+
+
+def test_the_migrations_make_the_tables_of_the_schema(tmp_path):
+    made = []
+    for name, make in (("migrated", upgrade), ("declared", metadata.create_all)):
+        path = tmp_path / name
+        engine = connect(f"sqlite:///{path}", durable=False)
+        make(engine)
+        engine.dispose()
+        raw = sqlite3.connect(path)
+        columns = raw.execute("SELECT name, type, \"notnull\", pk FROM pragma_table_info('jobs')").fetchall()
+        indexes = raw.execute("SELECT name, sql FROM sqlite_master WHERE type='index' AND sql IS NOT NULL").fetchall()
+        raw.close()
+        made.append((columns, sorted(indexes)))
+    assert made[0] == made[1]
+    assert made[0][0]
+
+
+def test_upgrading_twice_keeps_the_jobs(engine, store, job):
+    upgrade(engine)
+    with engine.connect() as connection:
+        assert connection.execute(select(jobs.c.id)).scalars().all() == [job.id]

@@ -1,0 +1,217 @@
+"""Searches over free choices: what comes back is usable, distinct, and true by a route of the tests' own."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synthesis.designs import Result
+from synthesis.dispatch import solve
+from synthesis.problems import parse_problem
+from tests.cases import search_tasks
+from tests.oracles.continuation import drive
+from tests.synthesis.planted import plant
+
+ORDINARY = [
+    {"x": 0.0, "y": 0.0, "angle": 0.0},
+    {"x": 40.0, "y": 15.0, "angle": -25.0},
+    {"x": 75.0, "y": 5.0, "angle": -60.0},
+]
+
+
+def run(**statement: Any) -> Result:
+    return solve(parse_problem({"kind": "motion", **statement}), lambda fraction, message: None)
+
+
+def confirm(result: Result, positions: list[dict[str, float]], least: float) -> None:
+    """Every returned design, followed step by step from its dimensions, does what its verification says."""
+    mechanisms = [design.mechanism.model_dump() for design in result.designs]
+    for design, found in zip(result.designs, drive(mechanisms, positions), strict=True):
+        assert design.verification.passed
+        assert found.residual < 1e-9
+        assert found.same_circuit
+        assert found.same_branch
+        assert found.in_order
+        assert math.degrees(found.least_transmission) >= least - 1e-6
+
+
+@pytest.mark.parametrize("task", search_tasks(), ids=lambda task: task["id"])
+def test_positions_alone_give_five_distinct_usable_linkages(task: dict[str, Any]) -> None:
+    result = run(positions=task["positions"])
+    assert len(result.designs) >= 5
+    confirm(result, task["positions"], 30.0)
+    points = np.array([[p["x"], p["y"]] for p in task["positions"]])
+    size = max(np.hypot(*(p - q)) for p in points for q in points)
+    joints = [np.array([d.mechanism.skeleton.joints[name] for name in ("O2", "A", "B", "O4")]) for d in result.designs]
+    for k, one in enumerate(joints):
+        for other in joints[:k]:
+            assert np.hypot(*(one - other).T).max() > 0.05 * size
+    assert [d.metrics.quality for d in result.designs] == sorted(
+        (d.metrics.quality for d in result.designs), reverse=True
+    )
+
+
+@pytest.mark.parametrize(
+    ("constraints", "holds"),
+    [
+        ({"min_transmission_angle": 60.0}, lambda d: d.metrics.min_transmission_angle >= 60.0),
+        ({"grashof": "crank_rocker"}, lambda d: d.metrics.barker == "GCRR"),
+        ({"grashof": "double_crank"}, lambda d: d.metrics.barker == "GCCC"),
+        ({"grashof": "double_rocker"}, lambda d: d.metrics.barker == "GRCR"),
+        ({"grashof": "non_grashof"}, lambda d: d.metrics.barker.startswith("RRR")),
+        ({"full_rotation": True}, lambda d: d.metrics.barker in ("GCRR", "GCCC")),
+        ({"max_link_ratio": 2.0}, lambda d: d.metrics.link_ratio <= 2.0),
+        (
+            {"link_length": {"min": 20.0, "max": 70.0}},
+            lambda d: (
+                min(d.mechanism.links.model_dump().values()) >= 20.0
+                and max(d.mechanism.links.model_dump().values()) <= 70.0
+            ),
+        ),
+        (
+            {"fixed_pivot_region": {"x": [0.0, 90.0], "y": [-90.0, -40.0]}},
+            lambda d: all(
+                0.0 <= x <= 90.0 and -90.0 <= y <= -40.0
+                for x, y in (d.mechanism.fixed_pivots.input, d.mechanism.fixed_pivots.output)
+            ),
+        ),
+        (
+            {"moving_pivot_region": {"x": [-25.0, 25.0], "y": [-40.0, 0.0]}},
+            lambda d: all(
+                -25.0 <= x <= 25.0 and -40.0 <= y <= 0.0
+                for x, y in (d.mechanism.skeleton.joints[name] for name in "AB")
+            ),
+        ),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+)
+def test_constraints_hold(constraints: dict[str, Any], holds: Any) -> None:
+    result = run(positions=ORDINARY, constraints=constraints)
+    assert len(result.designs) == 10
+    assert all(holds(design) for design in result.designs)
+    confirm(result, ORDINARY, constraints.get("min_transmission_angle", 30.0))
+
+
+@pytest.mark.parametrize("rank_by", ["size", "transmission_angle"])
+def test_ranking_as_asked(rank_by: str) -> None:
+    result = run(positions=ORDINARY, rank_by=rank_by)
+    values = [d.metrics.size if rank_by == "size" else -d.metrics.min_transmission_angle for d in result.designs]
+    assert values == sorted(values)
+
+
+def test_two_positions_alone() -> None:
+    result = run(positions=ORDINARY[:2])
+    assert len(result.designs) == 10
+    confirm(result, ORDINARY[:2], 30.0)
+
+
+def test_one_side_given_the_other_searched() -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(10):
+        planted = plant(rng, 3, 10.0)
+        result = run(positions=planted.positions, input_side=planted.input_side.choices("fixed"))
+        assert result.designs
+        confirm(result, planted.positions, 0.0)
+        for design in result.designs:
+            assert complex(*design.mechanism.fixed_pivots.input) == pytest.approx(
+                planted.input_side.fixed_pivot, abs=1e-9
+            )
+
+
+def test_the_same_seed_gives_the_same_answer_and_another_seed_another() -> None:
+    one, again, other = run(positions=ORDINARY), run(positions=ORDINARY), run(positions=ORDINARY, seed=1)
+    assert one == again
+    assert one.designs != other.designs
+    assert other.search.seed == 1
+
+
+def test_counts_add_up() -> None:
+    search = run(positions=ORDINARY).search
+    assert search.candidates == search.accepted + sum(search.rejected.values())
+    assert search.candidates >= 1_000_000
+    assert not search.complete
+
+
+@pytest.mark.parametrize("scale", [1e-8, 1e-3, 1e3, 1e7])
+def test_scaled_task_gives_the_scaled_answer(scale: float) -> None:
+    scaled = [{"x": p["x"] * scale, "y": p["y"] * scale, "angle": p["angle"]} for p in ORDINARY]
+    one, other = run(positions=ORDINARY, max_designs=3), run(positions=scaled, max_designs=3)
+    for a, b in zip(one.designs, other.designs, strict=True):
+        assert b.metrics.min_transmission_angle == pytest.approx(a.metrics.min_transmission_angle, abs=1e-6)
+        for name, length in a.mechanism.links.model_dump().items():
+            assert b.mechanism.links.model_dump()[name] == pytest.approx(length * scale, rel=1e-9)
+
+
+def test_a_limit_no_linkage_meets_is_an_honest_none() -> None:
+    result = run(positions=ORDINARY, constraints={"min_transmission_angle": 89.9})
+    assert result.designs == []
+    assert not result.search.complete
+    assert "A linkage may exist" in result.summary
+
+
+def test_poor_but_sound_linkages_are_offered_when_nothing_better_exists() -> None:
+    """The body turns half a turn each time: transmission angles stay small, and the summary says so."""
+    hard = [
+        {"x": 0.0, "y": 0.0, "angle": 0.0},
+        {"x": 10.0, "y": 0.0, "angle": 179.999},
+        {"x": 20.0, "y": 5.0, "angle": 359.9},
+    ]
+    result = run(positions=hard)
+    assert result.designs
+    assert max(d.metrics.min_transmission_angle for d in result.designs) < 30.0
+    assert "None that was found reaches 30°" in result.summary
+    confirm(result, hard, 0.0)
+
+
+class TestNoDesign:
+    def test_translation_along_a_line(self) -> None:
+        positions = [{"x": k, "y": 2.0 * k, "angle": 30.0} for k in (0.0, 1.0, 3.0)]
+        for side in ({}, {"moving_pivot": [5.0, 1.0]}):
+            result = run(positions=positions, input_side=side)
+            assert result.designs == []
+            assert result.search.complete
+            assert "slider" in result.summary
+
+    def test_rotation_about_one_point(self) -> None:
+        turned = [np.exp(1j * math.radians(a)) * (3.0 + 1.0j) for a in (0.0, 20.0, 50.0)]
+        positions = [{"x": z.real, "y": z.imag, "angle": a} for z, a in zip(turned, (0.0, 20.0, 50.0), strict=True)]
+        result = run(positions=positions)
+        assert result.designs == []
+        assert result.search.complete
+        assert "rotation about one point" in result.summary
+
+    def test_moving_pivot_with_collinear_images(self) -> None:
+        """P goes along a line while the body turns: no pin joint can stand at P, elsewhere it can."""
+        positions = [{"x": x, "y": 0.0, "angle": a} for x, a in ((0.0, 0.0), (1.0, 20.0), (3.0, 50.0))]
+        result = run(positions=positions, input_side={"moving_pivot": [0.0, 0.0]})
+        assert result.designs == []
+        assert result.search.complete
+        assert "slider" in result.summary
+        assert run(positions=positions).designs
+
+    def test_fixed_pivot_at_the_pole(self) -> None:
+        positions = [{"x": 1.0, "y": 0.0, "angle": 0.0}, {"x": 0.0, "y": 1.0, "angle": 90.0}]
+        result = run(positions=positions, input_side={"fixed_pivot": [0.0, 0.0]})
+        assert result.designs == []
+        assert "pole" in result.summary
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_random_tasks_by_independent_continuation(seed: int) -> None:
+    """Some hundred random tasks, none of whose designs shows a defect when it is followed step by step."""
+    rng = np.random.default_rng(seed)
+    followed = 0
+    for _ in range(25):
+        n = int(rng.integers(2, 4))
+        positions = [
+            {"x": x, "y": y, "angle": a}
+            for x, y, a in zip(*rng.uniform(-50.0, 50.0, (2, n)), rng.uniform(-90.0, 90.0, n), strict=True)
+        ]
+        result = run(positions=positions, max_designs=20, constraints={"min_transmission_angle": 5.0})
+        confirm(result, positions, 5.0)
+        followed += len(result.designs)
+    assert followed > 300

@@ -1,0 +1,95 @@
+"""Statements: what is refused, where the fault is reported, and that examples run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from synthesis.dispatch import solve
+from synthesis.problems import PROBLEM_KINDS, ContradictionError, example, parse_problem
+
+POSITIONS = [
+    {"x": 0.0, "y": 0.0, "angle": 0.0},
+    {"x": 1.0, "y": 0.0, "angle": 10.0},
+    {"x": 2.0, "y": 1.0, "angle": 30.0},
+]
+
+
+def statement(**changes: Any) -> dict[str, Any]:
+    return {"kind": "motion", "positions": POSITIONS, **changes}
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"positions": POSITIONS[:1]}, ("positions",)),
+        ({"positions": []}, ("positions",)),
+        ({"positions": POSITIONS * 2}, ("positions",)),
+        ({"positions": [*POSITIONS[:2], {"x": float("nan"), "y": 0, "angle": 0}]}, ("positions", 2, "x")),
+        ({"positions": [*POSITIONS[:2], {"x": 0, "y": float("inf"), "angle": 0}]}, ("positions", 2, "y")),
+        ({"positions": [*POSITIONS[:2], {"x": 0, "y": 1e12, "angle": 0}]}, ("positions", 2, "y")),
+        ({"positions": [*POSITIONS[:2], {"x": "1", "y": 0, "angle": 0}]}, ("positions", 2, "x")),
+        ({"positions": [*POSITIONS[:2], {"x": True, "y": 0, "angle": 0}]}, ("positions", 2, "x")),
+        ({"positions": [*POSITIONS[:2], {"x": 10**400, "y": 0, "angle": 0}]}, ("positions", 2, "x")),
+        ({"positions": [*POSITIONS[:2], {"x": 0, "y": 0}]}, ("positions", 2, "angle")),
+        ({"positions": [*POSITIONS[:2], {"x": 0, "y": 0, "angle": 0, "z": 0}]}, ("positions", 2, "z")),
+        ({"typo": 1}, ("typo",)),
+        ({"kind": "emotion"}, ("kind",)),
+        ({"max_designs": 0}, ("max_designs",)),
+        ({"max_designs": 2.0}, ("max_designs",)),
+        ({"seed": -1}, ("seed",)),
+        ({"length_unit": "mile"}, ("length_unit",)),
+        ({"constraints": {"min_transmission_angle": 90.0}}, ("constraints", "min_transmission_angle")),
+        ({"constraints": {"link_length": {"min": 2.0, "max": 1.0}}}, ("constraints", "link_length")),
+        (
+            {"constraints": {"fixed_pivot_region": {"x": [1, 0], "y": [0, 1]}}},
+            ("constraints", "fixed_pivot_region", "x"),
+        ),
+        ({"constraints": {"full_rotation": "yes"}}, ("constraints", "full_rotation")),
+        ({"input_side": {"fixed_pivot": [0.0]}}, ("input_side", "fixed_pivot", 1)),
+        ({"input_side": {"coupler_vector": {"length": 0.0}}}, ("input_side", "coupler_vector", "length")),
+    ],
+)
+def test_ill_formed_statements_name_the_field(changes: dict[str, Any], where: tuple[Any, ...]) -> None:
+    with pytest.raises(ValidationError) as caught:
+        parse_problem(statement(**changes))
+    assert where in [error["loc"] for error in caught.value.errors()]
+
+
+@pytest.mark.parametrize(
+    ("changes", "path"),
+    [
+        ({"positions": [POSITIONS[0], POSITIONS[1], POSITIONS[0]]}, "/positions/2"),
+        ({"positions": [POSITIONS[0], {"x": 0.0, "y": 0.0, "angle": 360.0}]}, "/positions/1"),
+        ({"input_side": {"rotations": [10.0]}}, "/input_side/rotations"),
+        ({"output_side": {"fixed_pivot": [0, 0], "link_angle": 1.0}}, "/output_side"),
+        ({"output_side": {"moving_pivot": [0, 0], "coupler_vector": {}}}, "/output_side/coupler_vector"),
+        (
+            {"input_side": {"fixed_pivot": [1.0, 2.0]}, "output_side": {"fixed_pivot": [1.0, 2.0]}},
+            "/output_side/fixed_pivot",
+        ),
+    ],
+)
+def test_contradictions_name_the_field(changes: dict[str, Any], path: str) -> None:
+    problem = parse_problem(statement(**changes))
+    assert [found.path for found in problem.contradictions()] == [path]
+    with pytest.raises(ContradictionError, match=path):
+        solve(problem, lambda fraction, message: None)
+
+
+@pytest.mark.parametrize("kind", PROBLEM_KINDS)
+def test_examples_are_solved(kind: str) -> None:
+    problem = parse_problem(example(kind))
+    assert problem.contradictions() == []
+    progress: list[float] = []
+    result = solve(problem, lambda fraction, message: progress.append(fraction))
+    assert result.designs
+    assert progress == sorted(progress)
+    assert progress[-1] == 1.0
+
+
+def test_a_stored_problem_comes_back_equal() -> None:
+    problem = parse_problem(statement(constraints={"grashof": "crank_rocker"}, seed=3))
+    assert type(problem).model_validate_json(problem.model_dump_json()) == problem
