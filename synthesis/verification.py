@@ -73,7 +73,8 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
         return None
     if not can_assemble(fourbar.linkage):
         return None
-    driven = _drive(problem, fourbar)
+    size = task_size(problem)
+    driven = _drive(problem, fourbar, size)
     if driven is None:
         return None
     linkage = fourbar.linkage
@@ -85,7 +86,6 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
     links, point = mechanism.links, complex(linkage.coupler_point)
     lengths = links.ground, links.input, links.coupler, links.output
-    size = task_size(problem)
     reach = max(*lengths, abs(point), abs(point - links.coupler))
     ratio = max(lengths) / min(lengths)
     span = np.ptp(driven.joints.view(np.float64).reshape(-1, 2), axis=0)
@@ -111,7 +111,7 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
     )
 
 
-def _drive(problem: MotionProblem, fourbar: DrivenFourbar) -> _Driven | None:
+def _drive(problem: MotionProblem, fourbar: DrivenFourbar, size: float) -> _Driven | None:
     """Drive the linkage to where each target demands its input, in both assemblies; None if it stands nowhere."""
     linkage = fourbar.linkage
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
@@ -124,7 +124,6 @@ def _drive(problem: MotionProblem, fourbar: DrivenFourbar) -> _Driven | None:
     angles = np.angle(pins - linkage.input_pivot)
     signs = np.array([fourbar.assembly, -fourbar.assembly])
     found = positions(linkage, angles, signs)
-    size = task_size(problem)
     turned_off = np.abs(np.angle(np.exp(1j * (found.coupler_angle - coupler_angles))))
     residuals = np.where(found.valid, np.maximum(np.abs(found.p - points) / size, turned_off), np.inf)
     # The reference's own assembly stands first, and is taken at a toggle, where both meet the target.

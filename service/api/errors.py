@@ -119,6 +119,8 @@ async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     faults = [(_place(fault["loc"]), _sentence(fault)) for fault in error.errors()[:MAX_ERRORS]]
     detail = _counted(len(error.errors()))
+    if all(path.startswith("/problem/") for path, _ in faults):
+        return _answer(request, 422, "/problems/invalid-problem", "Invalid problem", detail, faults)
     return _answer(request, 422, "/problems/invalid-request", "Invalid request", detail, faults)
 
 

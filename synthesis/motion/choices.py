@@ -23,7 +23,7 @@ from synthesis.problems import Constraints, DyadChoices, Region
 NEAR_REACH, FAR_REACH = 0.05, 6.0
 """Free pivots are drawn between these distances, in task sizes; beyond them links get too short or too long."""
 
-NEWTON_STARTS = 60
+NEWTON_STARTS = 400
 """Starts for conditions that determine a dyad, but not linearly; at most a few solutions exist, each met many times."""
 
 SAME_DYAD = 1e-7
@@ -33,6 +33,9 @@ REGION_DRAWS = 12
 """Draws of a whole cloud at most, until half of it lies in the client's regions."""
 
 Degeneracy = Literal["slider", "pole", "undetermined"]
+
+_UNIQUE_START = Dyads(np.array([0.31 - 0.83j]), np.array([-0.57 + 0.43j]))
+"""Any start does where the system is linear; this one is no special point of a task."""
 
 _NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
 
@@ -140,12 +143,15 @@ def _pole(task: MotionTask, k: int) -> complex:
 
 def _determined(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
     """The dyads of conditions that leave no freedom."""
-    starts = 1 if conditions.unique else NEWTON_STARTS
-    start = Dyads(_around(0.5 * task.points.max(keepdims=True), rng, starts), _around(task.points[:1], rng, starts))
+    if conditions.unique:
+        start = _UNIQUE_START
+    else:
+        middle = task.points.mean(keepdims=True)
+        start = Dyads(_around(middle, rng, NEWTON_STARTS), _around(task.points[:1], rng, NEWTON_STARTS))
     if conditions.fixed_pivot is not None:
-        start = start._replace(fixed=np.full(starts, conditions.fixed_pivot))
+        start = start._replace(fixed=np.full(start.fixed.shape, conditions.fixed_pivot))
     if conditions.moving_pivot is not None:
-        start = start._replace(moving=np.full(starts, conditions.moving_pivot))
+        start = start._replace(moving=np.full(start.moving.shape, conditions.moving_pivot))
     dyads, found = solve_dyads(task, conditions, start)
     kept: list[int] = []
     for i in np.flatnonzero(found):

@@ -24,7 +24,7 @@ linear, in two where a pivot is given (the first step puts that pivot in its pla
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,7 +107,7 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
         be needed), or where the link or the stated direction is met with a negative length only.
     """
     batch = start.fixed.shape
-    conditions = _as_batch(_vector_as_pivot(task, conditions), batch)
+    conditions = _vector_as_pivot(task, conditions)
     fixed, moving = start.fixed.astype(np.complex128), start.moving.astype(np.complex128)
     alive = np.ones(batch, np.bool_)
     done = np.zeros(batch, np.bool_)
@@ -143,15 +143,6 @@ def _vector_as_pivot(task: MotionTask, conditions: DyadConditions) -> DyadCondit
     assert conditions.coupler_angle is not None
     pivot = task.points[0] - conditions.coupler_length * np.exp(1j * conditions.coupler_angle)
     return conditions.with_(moving_pivot=np.asarray(pivot), coupler_length=None, coupler_angle=None)
-
-
-def _as_batch(conditions: DyadConditions, batch: tuple[int, ...]) -> DyadConditions:
-    def spread(value: Any) -> Any:
-        return None if value is None else np.broadcast_to(value, batch)
-
-    names = ("fixed_pivot", "moving_pivot", "link_angle", "coupler_length", "coupler_angle")
-    spreads = {name: spread(getattr(conditions, name)) for name in names}
-    return conditions.with_(rotations=tuple(spread(b) for b in conditions.rotations), **spreads)
 
 
 def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: Complex) -> tuple[Real, Real]:
