@@ -148,7 +148,9 @@ class Search(Answer):
     """How the answer was found and how complete it is.
 
     ``complete`` is a promise: every solution of the stated problem was found, so that an empty list of designs is a
-    proof that none exists.
+    proof that none exists. ``candidates`` = ``accepted`` + all ``rejected``; ``accepted`` were driven and passed every
+    check. In a search ``outranked`` counts pairs of dyads that passed the screening but were not driven, because better
+    ones that differ from them were.
     """
 
     method: str

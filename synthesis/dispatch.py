@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from synthesis.designs import Result
-from synthesis.motion import solve_motion
+from synthesis.motion.solver import Progress, solve_motion
 from synthesis.problems import Problem, example, parse_problem
 
-Progress = Callable[[float, str], None]
-"""Called with the fraction done, 0 to 1, and a short message."""
+__all__ = ["Progress", "solve", "warm_up"]
 
 
 def solve(problem: Problem, progress: Progress) -> Result:

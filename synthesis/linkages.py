@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar
 from synthesis.designs import CouplerPoint, FixedPivots, FourbarLinks, FourbarMechanism, Link, Point, Skeleton
-from synthesis.problems import Region
 
 
 class FourbarConfiguration(NamedTuple):
@@ -32,14 +31,6 @@ def to_point(z: complex) -> Point:
 def to_complex(point: tuple[float, float]) -> complex:
     """The complex number of a pair (x, y)."""
     return complex(*point)
-
-
-def inside(region: Region | None, *points: complex) -> bool:
-    """Whether all points lie in the region (its edges included); everything lies in no region at all."""
-    if region is None:
-        return True
-    (left, right), (low, high) = region.x, region.y
-    return all(left <= z.real <= right and low <= z.imag <= high for z in points)
 
 
 def fourbar_mechanism(joints: FourbarConfiguration) -> FourbarMechanism:

@@ -1,8 +1,8 @@
 """Statements of problems: what a client asks for.
 
 These pydantic models are the API schema, the stored form and the solver's input; nothing repeats them.
-Angles are degrees and lengths are numbers in the problem's ``length_unit`` here and in
-:mod:`synthesis.designs`; :mod:`synthesis.units` turns them into radians and complex numbers at one place.
+Angles are degrees and lengths are numbers in the problem's ``length_unit`` here and in :mod:`synthesis.designs`;
+solvers and verification turn them into radians and complex numbers when they take a statement in.
 
 A statement can be well-formed and still contradict itself (two equal positions, more choices than there are
 freedoms). Each kind lists such faults by field in ``contradictions``, so that a client is told where to look.
@@ -18,11 +18,23 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 ABSURD = 1e9
 """Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
 
+LEAST_LENGTH = 1e-12
+"""Positions that differ, but by less than this many length units, are refused as absurd."""
+
+LEAST_MOTION = 1e-3
+"""A motion of P below this share of the way to stated pivots does not set the size of the task."""
+
+ON_EDGE = 1e-9
+"""Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
+
 EQUAL_POSITIONS = 1e-9
 """Positions closer than this share of the coordinates' size, and this many radians, count as equal.
 
 Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
 half its digits and no residual of 1e-9 could be shown for it."""
+
+LEAST_MOTION = 1e-3
+"""A motion of P below this share of the way to stated pivots does not set the size of the task."""
 
 Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False)]
@@ -80,16 +92,23 @@ class Region(Statement):
     x: Interval
     y: Interval
 
+    def contains(self, point: complex) -> bool:
+        """Whether a point lies in the region, its edges (to rounding) included."""
+        (left, right), (low, high) = self.x, self.y
+        slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
+        across = left - slack <= point.real <= right + slack
+        return across and low - slack <= point.imag <= high + slack
+
 
 class LengthLimits(Statement):
     """Shortest and longest link allowed, in length units."""
 
     min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False)] = 0.0
-    max: PositiveNumber = ABSURD
+    max: PositiveNumber | None = None
 
     @model_validator(mode="after")
     def _min_below_max(self) -> Self:
-        if self.min >= self.max:
+        if self.max is not None and self.min >= self.max:
             raise ValueError("min must be below max")
         return self
 
@@ -191,11 +210,47 @@ class MotionProblem(LinkageProblem):
     positions: list[Position] = Field(min_length=2, max_length=3)
     input_side: DyadChoices = DyadChoices()
     output_side: DyadChoices = DyadChoices()
-    method: Literal["auto", "exact"] = "auto"
+    method: Literal["auto", "exact"] = Field(
+        default="auto", description="How positions are met: exactly. Up to three positions can always be."
+    )
+
+    @property
+    def task_size(self) -> float:
+        """The length that tolerances and free choices are measured by, in length units.
+
+        The greatest distance between two positions of P; where P moves by less than a thousandth of the way to the
+        pivots and regions that the client stated, that way; where nothing is stated either, 1.
+        """
+        points = [position.point for position in self.positions]
+        moved = max(abs(p - q) for p in points for q in points)
+        reach = max((abs(z - points[0]) for z in self._stated_points()), default=0.0)
+        return max(moved, 0.0 if moved >= LEAST_MOTION * reach else reach) or 1.0
+
+    @property
+    def turns(self) -> list[float]:
+        """Rotation of the body from the first position to each, radians in [−π, π]."""
+        first = self.positions[0].angle
+        return [math.radians(math.remainder(position.angle - first, 360.0)) for position in self.positions]
+
+    def _stated_points(self) -> list[complex]:
+        stated = [
+            pivot for side in (self.input_side, self.output_side) for pivot in (side.fixed_pivot, side.moving_pivot)
+        ]
+        points = [complex(*pivot) for pivot in stated if pivot is not None]
+        for region in (self.constraints.fixed_pivot_region, self.constraints.moving_pivot_region):
+            if region is not None:
+                points += [complex(x, y) for x in region.x for y in region.y]
+        return points
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows: equal positions, too many or colliding choices."""
-        return [*self._equal_positions(), *self._overstated_sides(), *self._coinciding_pivots()]
+        return [
+            *self._equal_positions(),
+            *self._overstated_sides(),
+            *self._coinciding_pivots(),
+            *self._pivots_outside_regions(),
+            *self._impossible_class(),
+        ]
 
     def require_consistent(self) -> None:
         """Raise the first contradiction, if there is one."""
@@ -205,6 +260,11 @@ class MotionProblem(LinkageProblem):
 
     def _equal_positions(self) -> list[Contradiction]:
         size = max(max(abs(p.x), abs(p.y)) for p in self.positions)
+        moved = max(abs(p.point - q.point) for p in self.positions for q in self.positions)
+        if 0.0 < moved < LEAST_LENGTH:
+            return [
+                Contradiction("/positions", f"less than {LEAST_LENGTH} {self.length_unit} apart; take a smaller unit")
+            ]
         found = []
         for k, later in enumerate(self.positions):
             for j, earlier in enumerate(self.positions[:k]):
@@ -241,6 +301,23 @@ class MotionProblem(LinkageProblem):
                     )
                 )
         return found
+
+    def _pivots_outside_regions(self) -> list[Contradiction]:
+        found = []
+        for pivot in ("fixed_pivot", "moving_pivot"):
+            region = getattr(self.constraints, f"{pivot}_region")
+            for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+                point = getattr(side, pivot)
+                if region is not None and point is not None and not region.contains(complex(*point)):
+                    found.append(Contradiction(f"/{name}/{pivot}", f"lies outside constraints.{pivot}_region"))
+        return found
+
+    def _impossible_class(self) -> list[Contradiction]:
+        demanded = self.constraints
+        if demanded.full_rotation and demanded.grashof in ("double_rocker", "non_grashof"):
+            detail = f"the input of a {demanded.grashof} linkage does not turn through; drop one of the demands"
+            return [Contradiction("/constraints/full_rotation", detail)]
+        return []
 
     def _coinciding_pivots(self) -> list[Contradiction]:
         found = []

@@ -25,8 +25,7 @@ from kinematics.linkage import (
     traverse,
 )
 from synthesis.designs import Check, Design, FourbarLinks, FourbarMechanism, Metrics, Target, Verification
-from synthesis.linkages import DrivenFourbar, driven_fourbar, inside, to_complex
-from synthesis.motion.task import task_size
+from synthesis.linkages import DrivenFourbar, driven_fourbar, to_complex
 from synthesis.problems import Constraints, MotionProblem
 from synthesis.ranking import quality
 
@@ -73,7 +72,7 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
         return None
     if not can_assemble(fourbar.linkage):
         return None
-    size = task_size(problem)
+    size = problem.task_size
     driven = _drive(problem, fourbar, size)
     if driven is None:
         return None
@@ -118,7 +117,7 @@ def _drive(problem: MotionProblem, fourbar: DrivenFourbar, size: float) -> _Driv
     if not reference.valid:
         return None
     points = np.array([p.point for p in problem.positions])
-    turns = np.radians([p.angle - problem.positions[0].angle for p in problem.positions])
+    turns = np.array(problem.turns)
     coupler_angles = reference.coupler_angle + turns
     pins = points - linkage.coupler_point * np.exp(1j * coupler_angles)
     angles = np.angle(pins - linkage.input_pivot)
@@ -126,6 +125,9 @@ def _drive(problem: MotionProblem, fourbar: DrivenFourbar, size: float) -> _Driv
     found = positions(linkage, angles, signs)
     turned_off = np.abs(np.angle(np.exp(1j * (found.coupler_angle - coupler_angles))))
     residuals = np.where(found.valid, np.maximum(np.abs(found.p - points) / size, turned_off), np.inf)
+    # The first target is met by the reference configuration itself, or not at all.
+    residuals[0, 0] = max(residuals[0, 0], abs(complex(reference.p) - points[0]) / size)
+    residuals[1, 0] = np.inf
     # The reference's own assembly stands first, and is taken at a toggle, where both meet the target.
     best = residuals.argmin(axis=0), np.arange(len(points))
     if not np.all(np.isfinite(residuals[best])):
@@ -208,16 +210,22 @@ def _constraint_checks(constraints: Constraints, links: FourbarLinks, driven: _D
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     if constraints.link_length is not None:
         lengths = links.ground, links.input, links.coupler, links.output
-        checks.append(_at_least("shortest_link", min(lengths), constraints.link_length.min))
-        checks.append(_at_most("longest_link", max(lengths), constraints.link_length.max))
+        if constraints.link_length.min > 0.0:
+            checks.append(_at_least("shortest_link", min(lengths), constraints.link_length.min))
+        if constraints.link_length.max is not None:
+            checks.append(_at_most("longest_link", max(lengths), constraints.link_length.max))
     if constraints.max_link_ratio is not None:
         checks.append(_at_most("link_ratio", metrics.link_ratio, constraints.max_link_ratio))
     if constraints.fixed_pivot_region is not None:
         pivots = complex(driven.joints[3, 0]), complex(driven.joints[4, 0])
-        checks.append(Check(name="fixed_pivot_region", passed=inside(constraints.fixed_pivot_region, *pivots)))
+        checks.append(
+            Check(name="fixed_pivot_region", passed=all(map(constraints.fixed_pivot_region.contains, pivots)))
+        )
     if constraints.moving_pivot_region is not None:
         pins = complex(driven.joints[0, 0]), complex(driven.joints[1, 0])
-        checks.append(Check(name="moving_pivot_region", passed=inside(constraints.moving_pivot_region, *pins)))
+        checks.append(
+            Check(name="moving_pivot_region", passed=all(map(constraints.moving_pivot_region.contains, pins)))
+        )
     return checks
 
 

@@ -1,5 +1,1 @@
-"""Motion generation: carry a body through given positions."""
-
-from synthesis.motion.solver import solve_motion
-
-__all__ = ["solve_motion"]
+"""Motion generation: carry a body through given positions. The door is :func:`synthesis.motion.solver.solve_motion`."""

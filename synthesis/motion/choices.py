@@ -10,13 +10,15 @@ A region that the client gives is filled evenly instead, and dyads with a pivot 
 
 from __future__ import annotations
 
+import cmath
 import math
-from typing import Literal, NamedTuple
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.motion.dyads import DyadConditions, Dyads, solve_dyads
+from synthesis.motion.dyads import FAR, DyadConditions, Dyads, directions_hold, linear_family, solve_dyads
 from synthesis.motion.task import Complex, MotionTask, Real
 from synthesis.problems import Constraints, DyadChoices, Region
 
@@ -26,16 +28,20 @@ NEAR_REACH, FAR_REACH = 0.05, 6.0
 NEWTON_STARTS = 400
 """Starts for conditions that determine a dyad, but not linearly; at most a few solutions exist, each met many times."""
 
+NEWTON_REACH = 300.0
+"""Distance of the farthest starts, in task sizes: what a client states may stand far away."""
+
+NEWTON_CLOUD = 4000
+"""Dyads of a cloud at most where each takes Newton's method: some tenths of a second."""
+
 SAME_DYAD = 1e-7
 """Solutions from different starts closer than this, in task sizes, are one."""
 
-REGION_DRAWS = 12
+REGION_DRAWS = 6
 """Draws of a whole cloud at most, until half of it lies in the client's regions."""
 
-Degeneracy = Literal["slider", "pole", "undetermined"]
-
-_UNIQUE_START = Dyads(np.array([0.31 - 0.83j]), np.array([-0.57 + 0.43j]))
-"""Any start does where the system is linear; this one is no special point of a task."""
+SAME_PLACE = 1e-12
+"""Angles (radians) and lengths (task sizes) that differ by less are equal: rounding of the positions, no motion."""
 
 _NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
 
@@ -47,17 +53,18 @@ class Cloud(NamedTuple):
     ----------
     dyads : Dyads
         Task coordinates, shape (count,).
+    sampled : bool
+        The choices leave some freedom, and these dyads are drawn from what it allows.
     complete : bool
-        These are all the dyads that satisfy the client's choices.
-    degeneracy : str or None
-        Why there is none: ``slider`` (a pivot would lie at infinity), ``pole`` (the fixed pivot is the pole of the
-        motion, so that the link would turn with the body as one piece) or ``undetermined`` (the conditions do not
-        determine a dyad).
+        These are all the dyads that satisfy the client's choices; where there are none, that is proved.
+    reason : str
+        Why there are none, in a sentence about "the side".
     """
 
     dyads: Dyads
+    sampled: bool
     complete: bool
-    degeneracy: Degeneracy | None = None
+    reason: str = ""
 
 
 def stated_conditions(task: MotionTask, choices: DyadChoices) -> DyadConditions:
@@ -71,9 +78,13 @@ def stated_conditions(task: MotionTask, choices: DyadChoices) -> DyadConditions:
 
     vector = choices.coupler_vector
     length = None if vector is None or vector.length is None else np.asarray(vector.length / task.size)
+    moving = pivot(choices.moving_pivot)
+    if vector is not None and vector.length is not None and vector.angle is not None:
+        moving = np.asarray(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
+        vector = length = None
     return DyadConditions(
         fixed_pivot=pivot(choices.fixed_pivot),
-        moving_pivot=pivot(choices.moving_pivot),
+        moving_pivot=moving,
         rotations=tuple(angle(b) for b in choices.rotations or [None] * (len(task.points) - 1)),
         link_angle=angle(choices.link_angle),
         coupler_length=length,
@@ -85,13 +96,16 @@ def side_dyads(
     task: MotionTask, choices: DyadChoices, constraints: Constraints, rng: np.random.Generator, count: int
 ) -> Cloud:
     """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open."""
+    reason = why_no_dyads(task)
+    if reason:
+        return Cloud(_NO_DYADS, False, True, reason)
     conditions = stated_conditions(task, choices)
+    if conditions.linear and (conditions.count() == 5 - len(task.points) or _pivot(conditions) is not None):
+        return _of_family(task, conditions, constraints, rng, count)
     if conditions.count() == 5 - len(task.points):
-        return _determined(task, conditions, rng)
-    if not can_have_dyads(task):
-        return Cloud(_NO_DYADS, True, "slider")
-    if conditions.fixed_pivot is not None and np.ptp(task.inverted_images(conditions.fixed_pivot)) <= SAME_DYAD:
-        return Cloud(_NO_DYADS, False, "pole")
+        return _isolated(task, conditions, rng)
+    if _pivot(conditions) is not None or conditions.count() > 0:
+        count = min(count, NEWTON_CLOUD)
     fixed, moving = [], []
     for _ in range(REGION_DRAWS):
         start = _sampled_pivots(task, constraints, rng, count)
@@ -103,36 +117,41 @@ def side_dyads(
             moving.append(dyads.moving[found])
         if sum(map(len, fixed)) >= count // 2:
             break
-    return Cloud(Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count]), False)
+    cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])
+    return Cloud(cloud, True, False, "No dyad was met that satisfies the choices and regions of the side.")
 
 
-def _within(task: MotionTask, region: Region | None, points: Complex) -> NDArray[np.bool_] | np.bool_:
+def _within(task: MotionTask, region: Region | None, points: Complex) -> NDArray[np.bool_]:
     """Which points, in task coordinates, lie in a region of the problem's coordinates."""
     if region is None:
-        return np.True_
-    z = task.origin + points * task.size
-    (left, right), (low, high) = region.x, region.y
-    return np.asarray((left <= z.real) & (z.real <= right) & (low <= z.imag) & (z.imag <= high))
+        return np.ones(points.shape, np.bool_)
+    return np.array([region.contains(z) for z in task.origin + points * task.size], np.bool_)
 
 
-def can_have_dyads(task: MotionTask) -> bool:
-    """Whether any pin-jointed dyad of positive length exists for the positions.
+def why_no_dyads(task: MotionTask) -> str:
+    """Why no pin-jointed dyad of positive length exists for the positions, in a sentence; empty where some do.
 
     There is none for a translation along one straight line through three or more positions (every point of the body
     moves on a line), nor for a rotation about one point, which every dyad would have for its fixed pivot.
     """
     if len(task.points) < 3:
-        return True
-    probes = np.array([0.37 + 0.91j, -1.13 + 0.29j, 0.71 - 1.57j])
-    images = task.images(probes)
-    if np.allclose(task.turns, 1.0, rtol=0.0, atol=1e-12):
-        sides = images[:, 1:] - images[:, :1]
-        cross = (np.conj(sides[:, :1]) * sides[:, 1:]).imag
-        return bool(np.any(np.abs(cross) > 1e-12))
+        return ""
+    if np.abs(task.turns - 1.0).max() <= SAME_PLACE:
+        sides = task.points[1:] - task.points[0]
+        if np.abs((np.conj(sides[0]) * sides).imag).max() > SAME_PLACE:
+            return ""
+        return (
+            "The positions are a translation along a straight line: every point of the body moves on a line, "
+            "so only a slider can guide it and no pin-jointed fourbar exists."
+        )
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _pole(task, turning)
-    radii = np.abs(images - pole)
-    return not np.allclose(radii, radii[:, :1], rtol=1e-12, atol=1e-12)
+    if np.abs(task.images(np.asarray(pole)) - pole).max() > SAME_PLACE * (1.0 + abs(pole)):
+        return ""
+    return (
+        "The positions are a rotation about one point: a pin joint there carries the body, "
+        "and every dyad would have it for its fixed pivot, so no fourbar exists."
+    )
 
 
 def _pole(task: MotionTask, k: int) -> complex:
@@ -141,45 +160,64 @@ def _pole(task: MotionTask, k: int) -> complex:
     return complex((task.points[k] - turn * task.points[0]) / (1.0 - turn))
 
 
-def _determined(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
-    """The dyads of conditions that leave no freedom."""
-    if conditions.unique:
-        start = _UNIQUE_START
-    else:
-        middle = task.points.mean(keepdims=True)
-        start = Dyads(_around(middle, rng, NEWTON_STARTS), _around(task.points[:1], rng, NEWTON_STARTS))
-    if conditions.fixed_pivot is not None:
-        start = start._replace(fixed=np.full(start.fixed.shape, conditions.fixed_pivot))
-    if conditions.moving_pivot is not None:
-        start = start._replace(moving=np.full(start.moving.shape, conditions.moving_pivot))
+def _pivot(conditions: DyadConditions) -> Complex | None:
+    """The pivot that is stated, if one is."""
+    return conditions.moving_pivot if conditions.fixed_pivot is None else conditions.fixed_pivot
+
+
+def _of_family(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """The dyads of linear conditions: one, none, or a cloud where a freedom is left or a pivot is a pole."""
+    family = linear_family(task, conditions)
+    if family is None:
+        return Cloud(_NO_DYADS, False, True, _why_contradictory(task, conditions))
+    free = len(family.directions)
+    if not free:
+        reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
+        if reach >= FAR:
+            text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; a slider stands for that."
+            return Cloud(_NO_DYADS, False, False, text)
+        return _forwards(task, conditions, family.dyad, sampled=False)
+    distance = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(FAR_REACH), (count, free)))
+    moved = (distance * rng.choice([-1.0, 1.0], (count, free))) @ family.directions
+    fixed = family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1])
+    moving = family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
+    good = _within(task, constraints.fixed_pivot_region, fixed) & _within(task, constraints.moving_pivot_region, moving)
+    return _forwards(task, conditions, Dyads(fixed[good], moving[good]), sampled=True)
+
+
+def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool) -> Cloud:
+    """Those dyads that meet stated directions forwards."""
+    good = directions_hold(task, conditions, dyads)
+    text = "The choices of the side are met by a link or coupler vector of negative length only."
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, not sampled, text)
+
+
+def _why_contradictory(task: MotionTask, conditions: DyadConditions) -> str:
+    """Why linear conditions have no solution."""
+    if conditions.fixed_pivot is None and conditions.moving_pivot is None:
+        return "The rotations of the side belong to no link of finite length."
+    return (
+        "The stated pivot of the side has its images on one straight line: "
+        "a slider, not a pin-jointed link, would guide it. No design exists with these choices."
+    )
+
+
+def _isolated(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
+    """The dyads of conditions that leave no freedom and are not linear: found from many starts, each once."""
+    middle = task.points.mean(keepdims=True)
+    start = Dyads(
+        _around(middle, rng, NEWTON_STARTS, NEWTON_REACH), _around(task.points[:1], rng, NEWTON_STARTS, NEWTON_REACH)
+    )
     dyads, found = solve_dyads(task, conditions, start)
     kept: list[int] = []
     for i in np.flatnonzero(found):
         gaps = [abs(dyads.fixed[i] - dyads.fixed[j]) + abs(dyads.moving[i] - dyads.moving[j]) for j in kept]
         if min(gaps, default=math.inf) > SAME_DYAD:
             kept.append(int(i))
-    if kept:
-        return Cloud(Dyads(dyads.fixed[kept], dyads.moving[kept]), conditions.unique)
-    return Cloud(_NO_DYADS, conditions.unique, "slider" if _needs_slider(task, conditions) else "undetermined")
-
-
-def _needs_slider(task: MotionTask, conditions: DyadConditions) -> bool:
-    """Whether the stated pivot's images lie on a line, so that a slider would take the link's place."""
-    if conditions.moving_pivot_known:
-        pivot = conditions.moving_pivot
-        if pivot is None:
-            assert conditions.coupler_length is not None
-            assert conditions.coupler_angle is not None
-            pivot = task.points[0] - conditions.coupler_length * np.exp(1j * conditions.coupler_angle)
-        images = task.images(np.asarray(pivot))
-    elif conditions.fixed_pivot is not None:
-        images = task.inverted_images(conditions.fixed_pivot)
-    else:
-        return False
-    sides = images[1:] - images[0]
-    return bool(
-        len(sides) > 1 and np.all(np.abs((np.conj(sides[0]) * sides[1:]).imag) <= 1e-9 * np.abs(sides).max() ** 2)
-    )
+    text = "No dyad was found that meets the choices of the side."
+    return Cloud(Dyads(dyads.fixed[kept], dyads.moving[kept]), False, False, text)
 
 
 def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.Generator, count: int) -> Dyads:
@@ -193,8 +231,8 @@ def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.G
     )
 
 
-def _around(centre: Complex, rng: np.random.Generator, count: int) -> Complex:
-    radius = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(FAR_REACH), count))
+def _around(centre: Complex, rng: np.random.Generator, count: int, reach: float = FAR_REACH) -> Complex:
+    radius = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(reach), count))
     return np.asarray(centre + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, count)))
 
 
@@ -214,8 +252,7 @@ def _pinned(
     """
     missing = 5 - len(task.points) - conditions.count()
     stated_vector = (conditions.coupler_length, conditions.coupler_angle).count(None) < 2
-    pivots_open = conditions.fixed_pivot is None and conditions.moving_pivot is None and not stated_vector
-    if missing >= 2 and pivots_open and conditions.link_angle is None:
+    if missing >= 2 and _pivot(conditions) is None and not stated_vector and conditions.link_angle is None:
         regions = constraints.moving_pivot_region, constraints.fixed_pivot_region
         moving_share = 0.5 if (regions[0] is None) == (regions[1] is None) else float(regions[0] is not None)
         half = int(len(pivots.fixed) * moving_share)
@@ -223,10 +260,13 @@ def _pinned(
         by_fixed = Dyads(pivots.fixed[half:], pivots.moving[half:])
         return [
             (
-                _with_numbers(task, conditions.with_(moving_pivot=by_moving.moving), by_moving, missing - 2, rng),
+                _with_numbers(task, replace(conditions, moving_pivot=by_moving.moving), by_moving, missing - 2, rng),
                 by_moving,
             ),
-            (_with_numbers(task, conditions.with_(fixed_pivot=by_fixed.fixed), by_fixed, missing - 2, rng), by_fixed),
+            (
+                _with_numbers(task, replace(conditions, fixed_pivot=by_fixed.fixed), by_fixed, missing - 2, rng),
+                by_fixed,
+            ),
         ]
     return [(_with_numbers(task, conditions, pivots, missing, rng), pivots)]
 
@@ -238,14 +278,14 @@ def _with_numbers(
     vector = task.points[0] - pivots.moving
     if missing and conditions.fixed_pivot is None:
         if conditions.coupler_length is None and conditions.coupler_angle is not None:
-            conditions, missing = conditions.with_(coupler_length=np.abs(vector)), missing - 1
+            conditions, missing = replace(conditions, coupler_length=np.abs(vector)), missing - 1
         elif conditions.coupler_angle is None and conditions.coupler_length is not None:
-            conditions, missing = conditions.with_(coupler_angle=np.angle(vector)), missing - 1
+            conditions, missing = replace(conditions, coupler_angle=np.angle(vector)), missing - 1
     rotations = list(conditions.rotations)
     for k, rotation in enumerate(rotations):
         if missing and rotation is None:
             rotations[k] = rng.uniform(-np.pi, np.pi, len(vector))
             missing -= 1
     if missing:
-        conditions = conditions.with_(coupler_angle=np.angle(vector))
-    return conditions.with_(rotations=tuple(rotations))
+        conditions = replace(conditions, coupler_angle=np.angle(vector))
+    return replace(conditions, rotations=tuple(rotations))

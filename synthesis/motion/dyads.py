@@ -23,8 +23,8 @@ linear, in two where a pivot is given (the first step puts that pivot in its pla
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,12 @@ CONVERGED = 1e-14
 roundings of the terms in it."""
 
 SINGULAR = 1e-12
-"""Determinant, relative to the product of the row norms, below which a system counts as singular."""
+"""Determinant, relative to the product of the row norms, below which a Newton step is not taken: it would be longer
+than the farthest pivot allowed."""
+
+DEPENDENT = 1e-9
+"""Singular value, relative to the largest, below which a linear condition counts as a repetition of the others; and the
+misfit below which it then counts as met. Half of the digits of the data stand behind either."""
 
 FAR = 1e5
 """A pivot farther than this many task sizes away stands for a slider: its residual could not be held to 1e-9."""
@@ -56,10 +61,6 @@ class DyadConditions:
     coupler_length: Real | None = None
     coupler_angle: Real | None = None
 
-    def with_(self, **changes: object) -> DyadConditions:
-        """These conditions with some of them changed."""
-        return replace(self, **changes)  # type: ignore[arg-type]
-
     def count(self) -> int:
         """How many numbers are fixed."""
         scalars = (self.link_angle, self.coupler_length, self.coupler_angle, *self.rotations)
@@ -67,16 +68,10 @@ class DyadConditions:
         return 2 * sum(p is not None for p in pivots) + sum(s is not None for s in scalars)
 
     @property
-    def moving_pivot_known(self) -> bool:
-        """Whether the conditions state the moving pivot, by itself or as a whole coupler vector."""
-        return self.moving_pivot is not None or (self.coupler_length is not None and self.coupler_angle is not None)
-
-    @property
-    def unique(self) -> bool:
-        """Whether at most one dyad satisfies them (or a whole family where the system is singular)."""
-        if self.coupler_length is not None and not self.moving_pivot_known:
-            return False
-        return self.fixed_pivot is not None or self.moving_pivot_known or None not in self.rotations
+    def linear(self) -> bool:
+        """Whether what is left to find is a linear system: a pivot or all rotations are given, and no bare length z."""
+        pivot = self.fixed_pivot is not None or self.moving_pivot is not None
+        return self.coupler_length is None and (pivot or None not in self.rotations)
 
 
 class Dyads(NamedTuple):
@@ -96,7 +91,7 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
     conditions : DyadConditions
         Exactly 5 − n numbers; arrays of shape (batch,) or scalars.
     start : Dyads
-        Shape (batch,); any start does where the conditions are ``unique``.
+        Shape (batch,).
 
     Returns
     -------
@@ -106,49 +101,86 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
         False where the system is singular or has no real solution near, where a pivot lies at infinity (a slider would
         be needed), or where the link or the stated direction is met with a negative length only.
     """
-    batch = start.fixed.shape
-    conditions = _vector_as_pivot(task, conditions)
     fixed, moving = start.fixed.astype(np.complex128), start.moving.astype(np.complex128)
-    alive = np.ones(batch, np.bool_)
-    done = np.zeros(batch, np.bool_)
+    done = np.zeros(fixed.shape, np.bool_)
+    active = np.arange(len(fixed))
     for _ in range(NEWTON_STEPS):
-        values, jacobian = _rows(task, conditions, fixed, moving)
-        size = 1.0 + np.abs(fixed) + np.abs(moving)
-        alive &= size < 10.0 * FAR
-        done |= alive & (np.abs(values).max(axis=-1) <= CONVERGED * size * size)
-        going = alive & ~done
-        if not going.any():
-            break
+        o, a = fixed[active], moving[active]
+        values, jacobian = _rows(task, _taken(conditions, active), o, a)
+        size = 1.0 + np.abs(o) + np.abs(a)
+        arrived = np.abs(values).max(axis=-1) <= CONVERGED * size * size
+        done[active[arrived]] = True
         norms = np.sqrt((jacobian * jacobian).sum(axis=-1))
         norms[norms == 0.0] = 1.0
         jacobian = jacobian / norms[..., None]
-        regular = np.abs(np.linalg.det(jacobian)) > SINGULAR
-        alive &= regular | done
-        going &= regular
-        jacobian[~going] = np.eye(4)
-        step = np.linalg.solve(jacobian, np.where(going[:, None], -values / norms, 0.0)[..., None])[..., 0]
-        fixed = fixed + (step[:, 0] + 1j * step[:, 1])
-        moving = moving + (step[:, 2] + 1j * step[:, 3])
+        going = ~arrived & (size < 10.0 * FAR) & (np.abs(np.linalg.det(jacobian)) > SINGULAR)
+        active = active[going]
+        if not len(active):
+            break
+        step = np.linalg.solve(jacobian[going], -(values / norms)[going][..., None])[..., 0]
+        fixed[active] += step[:, 0] + 1j * step[:, 1]
+        moving[active] += step[:, 2] + 1j * step[:, 3]
     dyads = Dyads(fixed, moving)
-    return dyads, done & alive & _directions_hold(task, conditions, dyads) & (np.abs(fixed) < FAR) & (
-        np.abs(moving) < FAR
+    near = (np.abs(fixed) < FAR) & (np.abs(moving) < FAR)
+    return dyads, done & near & directions_hold(task, conditions, dyads)
+
+
+def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadConditions:
+    """The conditions of some dyads of the batch."""
+
+    def taken(value: Any) -> Any:
+        return value if value is None or np.ndim(value) == 0 else value[rows]
+
+    return DyadConditions(
+        taken(conditions.fixed_pivot),
+        taken(conditions.moving_pivot),
+        tuple(taken(rotation) for rotation in conditions.rotations),
+        taken(conditions.link_angle),
+        taken(conditions.coupler_length),
+        taken(conditions.coupler_angle),
     )
 
 
-def _vector_as_pivot(task: MotionTask, conditions: DyadConditions) -> DyadConditions:
-    """A whole coupler vector stated as the moving pivot, which is linear."""
-    if conditions.moving_pivot is not None or not conditions.moving_pivot_known:
-        return conditions
-    assert conditions.coupler_length is not None
-    assert conditions.coupler_angle is not None
-    pivot = task.points[0] - conditions.coupler_length * np.exp(1j * conditions.coupler_angle)
-    return conditions.with_(moving_pivot=np.asarray(pivot), coupler_length=None, coupler_angle=None)
+class Family(NamedTuple):
+    """The solutions of linear conditions: a dyad, and the directions in which it may be moved; none if it is unique.
+
+    ``directions`` are rows (Re O, Im O, Re A, Im A) of unit length.
+    """
+
+    dyad: Dyads
+    directions: Real
+
+
+def linear_family(task: MotionTask, conditions: DyadConditions) -> Family | None:
+    """All dyads of conditions that are :attr:`DyadConditions.linear`; None where the conditions contradict each other.
+
+    Where a pivot is a pole of the motion, or conditions repeat one another, there is a whole family of dyads.
+    """
+    fixed = np.atleast_1d(np.asarray(0j if conditions.fixed_pivot is None else conditions.fixed_pivot, np.complex128))
+    moving = np.atleast_1d(
+        np.asarray(0j if conditions.moving_pivot is None else conditions.moving_pivot, np.complex128)
+    )
+    # A pivot that is given stays where it is; the conditions are linear in the coordinates that are left.
+    first, last = (2, 4) if conditions.fixed_pivot is not None else (0, 2 if conditions.moving_pivot is not None else 4)
+    values, jacobian = _rows(task, conditions, fixed, moving)
+    value, matrix = values[0], jacobian[0][:, first:last]
+    u, s, vh = np.linalg.svd(matrix, full_matrices=True)
+    rank = int(np.sum(s > DEPENDENT * max(float(s[0]), DEPENDENT)))
+    step = np.zeros(4)
+    step[first:last] = -(vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ value)
+    size = 1.0 + float(np.abs(step).max() + np.abs(fixed[0]) + np.abs(moving[0]))
+    if np.abs(value + matrix @ step[first:last]).max() > DEPENDENT * size * size:
+        return None
+    directions = np.zeros((last - first - rank, 4))
+    directions[:, first:last] = vh[rank:]
+    return Family(Dyads(fixed + (step[0] + 1j * step[1]), moving + (step[2] + 1j * step[3])), directions)
 
 
 def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: Complex) -> tuple[Real, Real]:
-    """Residuals (batch, 4) and their Jacobian (batch, 4, 4) with respect to (Re O, Im O, Re A, Im A)."""
-    values = np.empty((*fixed.shape, 4))
-    gradients = np.zeros((*fixed.shape, 4, 2), np.complex128)
+    """Residuals (batch, rows) and their Jacobian (batch, rows, 4) with respect to (Re O, Im O, Re A, Im A)."""
+    count = len(conditions.rotations) + conditions.count()
+    values = np.empty((*fixed.shape, count))
+    gradients = np.zeros((*fixed.shape, count, 2), np.complex128)
     row = 0
 
     def add(value: Real, by_fixed: Complex | complex, by_moving: Complex | complex) -> None:
@@ -189,10 +221,10 @@ def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: 
     if conditions.coupler_length is not None:
         vector = moving - task.points[0]
         add(np.abs(vector) ** 2 - conditions.coupler_length**2, 0.0, 2.0 * vector)
-    return values, gradients.view(np.float64).reshape(*fixed.shape, 4, 4)
+    return values, gradients.view(np.float64).reshape(*fixed.shape, count, 4)
 
 
-def _directions_hold(task: MotionTask, conditions: DyadConditions, dyads: Dyads) -> NDArray[np.bool_]:
+def directions_hold(task: MotionTask, conditions: DyadConditions, dyads: Dyads) -> NDArray[np.bool_]:
     """Whether stated directions are met forwards, not backwards."""
     good = np.ones(dyads.fixed.shape, np.bool_)
     if conditions.link_angle is not None:

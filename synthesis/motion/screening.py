@@ -56,6 +56,9 @@ REASONS = (
     TRANSMISSION_ANGLE,
 ) = range(len(REASONS))
 
+FOLDED = 1.0 - 1e-9
+"""|cos γ| from which coupler and output count as in line: a toggle or change point, to the rounding of long links."""
+
 SHORTEST_LINK = 1e-4
 """A link shorter than this share of the longest is no link: the linkage is degenerate."""
 
@@ -69,6 +72,14 @@ _GRASHOF_DEMAND = {
 }
 
 
+BY_QUALITY, BY_SIZE, BY_TRANSMISSION = range(3)
+_RANKING = {"quality": BY_QUALITY, "accuracy": BY_QUALITY, "size": BY_SIZE, "transmission_angle": BY_TRANSMISSION}
+"""What the score goes by. Exact designs are all alike in accuracy."""
+
+PAST_TOGGLE = 1e-3
+"""Sine that stands for the transmission angle of a motion past a toggle in a score, so that it counts for little."""
+
+
 class Demands(NamedTuple):
     """The client's constraints as the kernel takes them; lengths in task units."""
 
@@ -80,10 +91,14 @@ class Demands(NamedTuple):
     shortest: float
     longest: float
     link_ratio: float
+    rank_by: int
 
 
 class Screening(NamedTuple):
-    """Verdicts of all pairs, index into :data:`REASONS`, and scores (0 unless sound), shape (inputs, outputs)."""
+    """Verdicts of all pairs, index into :data:`REASONS`, and scores, shape (inputs, outputs).
+
+    Scores are positive for sound pairs, higher is better, and 0 for all others.
+    """
 
     verdict: NDArray[np.int8]
     score: NDArray[np.float32]
@@ -94,7 +109,9 @@ class Screening(NamedTuple):
         return {name: int(n) for name, n in zip(REASONS, counts, strict=True) if n and name != "sound"}
 
 
-def demands(constraints: Constraints, task: MotionTask, least_transmission_angle: float) -> Demands:
+def demands(
+    constraints: Constraints, task: MotionTask, least_transmission_angle: float, rank_by: str = "quality"
+) -> Demands:
     """Constraints in task units; the least transmission angle, degrees, is given apart."""
     limits = constraints.link_length
     return Demands(
@@ -104,8 +121,9 @@ def demands(constraints: Constraints, task: MotionTask, least_transmission_angle
         same_branch=constraints.same_branch,
         in_order=constraints.in_order,
         shortest=0.0 if limits is None else limits.min / task.size,
-        longest=math.inf if limits is None else limits.max / task.size,
+        longest=math.inf if limits is None or limits.max is None else limits.max / task.size,
         link_ratio=math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio,
+        rank_by=_RANKING[rank_by],
     )
 
 
@@ -128,6 +146,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: Demands) -> 
         np.ascontiguousarray(inputs.fixed),
         np.ascontiguousarray(task.images(outputs.moving)),
         np.ascontiguousarray(outputs.fixed),
+        task.points,
         wanted,
         verdict,
         score,
@@ -141,6 +160,7 @@ def _screen(
     o2s: NDArray[np.complex128],
     b_images: NDArray[np.complex128],
     o4s: NDArray[np.complex128],
+    points: NDArray[np.complex128],
     wanted: Demands,
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
@@ -151,7 +171,7 @@ def _screen(
         o2 = o2s[i]
         in_order = _turns(a_images[i], o2, turned)
         for j in range(len(o4s)):
-            verdict[i, j], score[i, j] = _judge(a_images[i], o2, b_images[j], o4s[j], turned, in_order, wanted)
+            verdict[i, j], score[i, j] = _judge(a_images[i], o2, b_images[j], o4s[j], turned, in_order, points, wanted)
 
 
 @njit(cache=True, nogil=True)
@@ -181,6 +201,7 @@ def _judge(
     o4: complex,
     turned: NDArray[np.float64],
     in_order: tuple[bool, bool],
+    points: NDArray[np.complex128],
     wanted: Demands,
 ) -> tuple[int, float]:
     n = len(a_k)
@@ -234,22 +255,41 @@ def _judge(
         for way in (1 - shorter, shorter):  # the shorter way that is free of toggles has the last word
             if in_order[way]:
                 worst = _worst_cosine(a, b, c, d, delta, delta + turned[way, n - 1])
-                if worst < 1.0:
+                if worst < FOLDED:
                     best = worst
-        if best >= 1.0:
+        if best >= FOLDED:
             out_of_order = _out_of_order(a, b, c, d, delta, turned[0])
-            if out_of_order < 1.0:
+            if out_of_order < FOLDED:
                 if wanted.in_order:
                     return ORDER_DEFECT, 0.0
                 best = out_of_order
-    if best >= 1.0:
+    if best >= FOLDED:
         if wanted.same_branch:
             return BRANCH_DEFECT, 0.0
         best = 1.0
     if best > wanted.least_transmission_cosine:
         return TRANSMISSION_ANGLE, 0.0
+    sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE)
+    if wanted.rank_by == BY_TRANSMISSION:
+        return SOUND, sine
+    if wanted.rank_by == BY_SIZE:
+        return SOUND, 1.0 / _size(a_k, o2, b_k, o4, points)
     reach = max(longest, max(abs(a_k[0]), abs(b_k[0])))
-    return SOUND, quality(math.sqrt(1.0 - best * best), reach, longest / shortest)
+    return SOUND, quality(sine, reach, longest / shortest)
+
+
+@njit(cache=True, nogil=True)
+def _size(
+    a_k: NDArray[np.complex128], o2: complex, b_k: NDArray[np.complex128], o4: complex, points: NDArray[np.complex128]
+) -> float:
+    """Diagonal of the box around all joints and the body's point at all targets."""
+    left, right = min(o2.real, o4.real), max(o2.real, o4.real)
+    low, high = min(o2.imag, o4.imag), max(o2.imag, o4.imag)
+    for k in range(len(a_k)):
+        for z in (a_k[k], b_k[k], points[k]):
+            left, right = min(left, z.real), max(right, z.real)
+            low, high = min(low, z.imag), max(high, z.imag)
+    return math.hypot(right - left, high - low)
 
 
 @njit(cache=True, nogil=True)
@@ -264,7 +304,7 @@ def _out_of_order(a: float, b: float, c: float, d: float, delta: float, turned: 
         after = around[k + 1] if k + 1 < len(around) else around[0] + 2.0 * math.pi
         gap = after - around[k]
         worst = _worst_cosine(a, b, c, d, delta + after, delta + around[k] + 2.0 * math.pi)
-        if worst < 1.0 and gap > longest:
+        if worst < FOLDED and gap > longest:
             best, longest = worst, gap
     return best
 

@@ -1,32 +1,33 @@
 """Motion generation: dyads for both sides, all pairs screened, the best distinct ones verified.
 
-Where the client's choices determine both dyads the answer is complete. Where some are open, both sides become clouds
-of dyads (:mod:`choices`), every pair is screened (:mod:`screening`), and the best that differ from one another are
-verified until enough have passed.
+Where the client's choices determine both dyads there is one linkage, or a few, and each is verified. Where some freedom
+is left, that side is a cloud of dyads (:mod:`synthesis.motion.choices`), every pair is screened
+(:mod:`synthesis.motion.screening`), and the best that differ from one another are verified until enough have passed.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from synthesis.designs import Design, Result, Search
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.motion.choices import Cloud, can_have_dyads, side_dyads
+from synthesis.motion.choices import Cloud, side_dyads
 from synthesis.motion.dyads import Dyads
 from synthesis.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import MotionProblem
+from synthesis.problems import Constraints, DyadChoices, MotionProblem
 from synthesis.ranking import distinct, ranked
 from synthesis.verification import verify
 
 Progress = Callable[[float, str], None]
+"""Called with the fraction done, 0 to 1, and a short message."""
 
 USABLE_TRANSMISSION_ANGLE = 30.0
-"""Degrees. Where choices are open and the client sets no limit, linkages below this are offered only if none reaches
-it; practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
+"""Degrees. Where the client sets no limit, a search offers linkages below this only if it met none that reaches it;
+practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
 
 CLOUD_PAIR = 1200
 """Dyads a side when both sides are open: 1.4 million pairs."""
@@ -37,9 +38,14 @@ CLOUD_SINGLE = 40_000
 SHORTLIST = 4000
 """Best-scored pairs from which distinct ones are chosen."""
 
-APART = 0.25
-"""Distinct designs move some joint by at least this share of the task's size; halved until enough are found, four times
-at most."""
+APART = 0.25 * 0.5 ** np.arange(6)
+"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
+
+ATTEMPTS = 5
+"""Pairs verified at most, for each design wanted: verification seldom refuses what screening has passed."""
+
+LEAST_ATTEMPTS = 100
+"""Pairs tried at least before a search gives up."""
 
 _REASONS = {
     "reaches_targets": "residual",
@@ -51,6 +57,9 @@ _REASONS = {
 }
 """Why a design was rejected, by the check it failed; other checks go by their own name."""
 
+_NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
+"""Reasons that say what could not be shown, not what cannot be; a search with one of them proves nothing."""
+
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> Result:
     """Solve a motion-generation problem of two or three positions."""
@@ -58,193 +67,167 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> Result:
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding dyads")
     sides = problem.input_side, problem.output_side
-    free = 5 - len(task.points)
-    open_sides = [side.count() < free for side in sides]
-    count = CLOUD_PAIR if all(open_sides) else CLOUD_SINGLE
-    inputs, outputs = (side_dyads(task, side, problem.constraints, rng, count) for side in sides)
-    search = _determined_pairs if not any(open_sides) else _searched_pairs
-    if not len(inputs.dyads.fixed) or not len(outputs.dyads.fixed):
-        return _none_exists(problem, task, inputs, outputs)
-    return search(problem, task, inputs, outputs, progress)
+    clouds = [side_dyads(task, side, problem.constraints, rng, CLOUD_PAIR) for side in sides]
+    for k in (0, 1):
+        if clouds[k].sampled and not clouds[1 - k].sampled:
+            clouds[k] = side_dyads(task, sides[k], problem.constraints, rng, CLOUD_SINGLE)
+    pairs = _Pairs(problem, task, *clouds)
+    for name, cloud in zip(("input", "output"), clouds, strict=True):
+        if not len(cloud.dyads.fixed):
+            return pairs.none(cloud, name)
+    return pairs.searched(progress) if pairs.sampled else pairs.determined(progress)
 
 
-def _determined_pairs(
-    problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud, progress: Progress
-) -> Result:
-    """Verify every pair of a few determined dyads."""
-    rejected: Counter[str] = Counter()
-    designs = []
-    pairs = [(i, j) for i in range(len(inputs.dyads.fixed)) for j in range(len(outputs.dyads.fixed))]
-    for i, j in pairs:
-        design = _verified(problem, task, inputs.dyads, outputs.dyads, i, j)
+class _Pairs:
+    """The pairs of input and output dyads of one problem, and what becomes of them."""
+
+    def __init__(self, problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud) -> None:
+        self.problem, self.task = problem, task
+        self.inputs, self.outputs = inputs.dyads, outputs.dyads
+        self.sampled = inputs.sampled or outputs.sampled
+        self.complete = inputs.complete and outputs.complete
+        self.passed: list[Design] = []
+        self.failed: list[Design] = []
+        self.rejected: Counter[str] = Counter()
+
+    def determined(self, progress: Progress) -> Result:
+        """Verify every pair of a few determined dyads."""
+        for i in range(len(self.inputs.fixed)):
+            for j in range(len(self.outputs.fixed)):
+                self._verify(i, j)
+        progress(1.0, "verified")
+        count = len(self.passed) + sum(self.rejected.values())
+        complete = self.complete and not _NUMERICAL & self.rejected.keys()
+        return self._result("exact", complete, count, self._summary_of_determined(count, complete))
+
+    def searched(self, progress: Progress) -> Result:
+        """Screen all pairs and verify the best distinct ones."""
+        count = len(self.inputs.fixed) * len(self.outputs.fixed)
+        progress(0.1, f"screening {count} pairs of dyads")
+        limit = self.problem.constraints.min_transmission_angle
+        screening = self._screened(self.problem.constraints, USABLE_TRANSMISSION_ANGLE if limit is None else limit)
+        if limit is None and not screening.score.any():
+            screening = self._screened(self.problem.constraints, 0.0)
+        sound = int(np.count_nonzero(screening.score))
+        progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
+        self.rejected.update(screening.rejected())
+        tried = 0
+        for i, j in self._best(screening):
+            tried += 1
+            self._verify(i, j)
+            if len(self.passed) == self.problem.max_designs:
+                break
+        if sound > tried:
+            self.rejected["outranked"] = sound - tried
+        if self.problem.include_failed and len(self.passed) < self.problem.max_designs:
+            self._add_failed()
+        progress(1.0, "verified")
+        return self._result("dyad_search", False, count, self._summary_of_search(count, sound))
+
+    def none(self, cloud: Cloud, side: str) -> Result:
+        """The answer when one side has no dyad at all, with the reason."""
+        method = "dyad_search" if self.sampled else "exact"
+        return self._result(method, cloud.complete, 0, cloud.reason.replace("the side", f"the {side} side"))
+
+    def _verify(self, i: int, j: int) -> None:
+        """Drive the linkage of an input and an output dyad, and put it where it belongs."""
+        o2, a = self._pivots(self.problem.input_side, self.inputs, i)
+        o4, b = self._pivots(self.problem.output_side, self.outputs, j)
+        lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
+        if min(lengths) <= SHORTEST_LINK * max(lengths):
+            self.rejected["degenerate"] += 1
+            return
+        design = verify(self.problem, fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin)))
         if design is None:
-            rejected["degenerate"] += 1
+            self.rejected["cannot_be_driven"] += 1
         elif design.verification.passed:
-            designs.append(design)
+            self.passed.append(design)
         else:
-            rejected[_reason(design)] += 1
-            if problem.include_failed:
-                designs.append(design)
-    progress(1.0, "verified")
-    accepted = sum(design.verification.passed for design in designs)
-    complete = inputs.complete and outputs.complete
-    return Result(
-        designs=ranked(designs, problem.rank_by)[: problem.max_designs],
-        search=Search(
-            method="exact",
-            complete=complete,
-            candidates=len(pairs),
-            accepted=accepted,
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=_summary_of_determined(problem, len(pairs), accepted, rejected, complete),
-    )
+            self.failed.append(design)
+            name = next(check.name for check in design.verification.checks if not check.passed)
+            self.rejected[_REASONS.get(name, name)] += 1
 
+    def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
+        """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
+        stated = side.fixed_pivot, side.moving_pivot
+        found = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
+        fixed, moving = (f if s is None else complex(*s) for s, f in zip(stated, found, strict=True))
+        return fixed, moving
 
-def _searched_pairs(
-    problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud, progress: Progress
-) -> Result:
-    """Screen all pairs of two clouds and verify the best distinct ones."""
-    limit = problem.constraints.min_transmission_angle
-    progress(0.1, f"screening {len(inputs.dyads.fixed) * len(outputs.dyads.fixed)} pairs of dyads")
-    wanted = demands(problem.constraints, task, USABLE_TRANSMISSION_ANGLE if limit is None else limit)
-    screening = screen(task, inputs.dyads, outputs.dyads, wanted)
-    if limit is None and not screening.score.any():
-        wanted = demands(problem.constraints, task, 0.0)
-        screening = screen(task, inputs.dyads, outputs.dyads, wanted)
-    rejected = Counter(screening.rejected())
-    sound = int(np.count_nonzero(screening.score))
-    progress(0.8, f"verifying the best of {sound} sound pairs")
-    designs: list[Design] = []
-    passed = 0
-    for i, j in _best_pairs(task, inputs.dyads, outputs.dyads, screening, 5 * problem.max_designs):
-        design = _verified(problem, task, inputs.dyads, outputs.dyads, i, j)
-        if design is None or not design.verification.passed:
-            rejected["degenerate" if design is None else _reason(design)] += 1
-            sound -= 1
-            if design is not None and problem.include_failed:
-                designs.append(design)
-            continue
-        designs.append(design)
-        passed += 1
-        if passed == problem.max_designs:
-            break
-    progress(1.0, "verified")
-    designs = ranked(designs, problem.rank_by)[: problem.max_designs]
-    return Result(
-        designs=designs,
-        search=Search(
-            method="dyad_search",
-            complete=False,
-            candidates=int(screening.verdict.size),
-            accepted=sound,
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=_summary_of_search(designs, screening, sound),
-    )
+    def _screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
+        wanted = demands(constraints, self.task, least_transmission_angle, self.problem.rank_by)
+        return screen(self.task, self.inputs, self.outputs, wanted)
 
-
-def _best_pairs(
-    task: MotionTask, inputs: Dyads, outputs: Dyads, screening: Screening, count: int
-) -> Iterator[tuple[int, int]]:
-    """The best-scored pairs that differ from one another, best first."""
-    score = screening.score.ravel()
-    shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
-    shortlist = shortlist[score[shortlist] > 0.0]
-    shortlist = shortlist[np.lexsort((shortlist, -score[shortlist]))]
-    i, j = np.unravel_index(shortlist, screening.score.shape)
-    joints = np.stack([inputs.fixed[i], inputs.moving[i], outputs.moving[j], outputs.fixed[j]], axis=1)
-    apart = APART
-    chosen = distinct(joints, count, apart)
-    while len(chosen) < min(count, len(joints)) and apart > APART / 20.0:
-        apart /= 2.0
-        chosen = distinct(joints, count, apart)
-    return iter([(int(i[k]), int(j[k])) for k in chosen])
-
-
-def _verified(problem: MotionProblem, task: MotionTask, inputs: Dyads, outputs: Dyads, i: int, j: int) -> Design | None:
-    """The linkage of two dyads, driven and measured; None where it has no links to speak of or cannot be driven."""
-    o2, a = task.to_problem(complex(inputs.fixed[i])), task.to_problem(complex(inputs.moving[i]))
-    o4, b = task.to_problem(complex(outputs.fixed[j])), task.to_problem(complex(outputs.moving[j]))
-    lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
-    if min(lengths) <= SHORTEST_LINK * max(lengths):
-        return None
-    return verify(problem, fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, task.origin)))
-
-
-def _reason(design: Design) -> str:
-    """Name of the first failed check, as a reason for rejection."""
-    name = next(check.name for check in design.verification.checks if not check.passed)
-    return _REASONS.get(name, name)
-
-
-def _none_exists(problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud) -> Result:
-    """The answer when one side has no dyad at all, with the reason."""
-    if not can_have_dyads(task):
-        if np.allclose(task.turns, 1.0, rtol=0.0, atol=1e-12):
-            reason = (
-                "The positions are a translation along a straight line: every point of the body moves on a line, "
-                "so only a slider can guide it and no pin-jointed fourbar exists."
-            )
-        else:
-            reason = (
-                "The positions are a rotation about one point: a pin joint there carries the body, "
-                "and every dyad would have it for its fixed pivot, so no fourbar exists."
-            )
-        complete = True
-    else:
-        side, cloud = ("input", inputs) if not len(inputs.dyads.fixed) else ("output", outputs)
-        complete = cloud.complete and cloud.degeneracy == "slider"
-        reason = {
-            "slider": f"The {side} side's pivot has its images on one straight line: "
-            "a slider, not a pin-jointed link, would guide it. No design exists with these choices.",
-            "undetermined": f"No dyad was found for the choices of the {side} side: they are met by no link of "
-            "positive length, or they do not determine one.",
-            "pole": f"The fixed pivot of the {side} side is the pole about which the body turns: the link "
-            "would turn with the body as one piece. Choose another pivot.",
-            None: f"No dyad was found for the choices of the {side} side.",
-        }[cloud.degeneracy]
-    return Result(
-        designs=[],
-        search=Search(method="exact", complete=complete, candidates=0, accepted=0, rejected={}, seed=problem.seed),
-        summary=reason,
-    )
-
-
-def _summary_of_determined(
-    problem: MotionProblem, candidates: int, accepted: int, rejected: Counter[str], complete: bool
-) -> str:
-    n = len(problem.positions)
-    noun = "linkage" if candidates == 1 else "linkages"
-    text = f"{accepted} of {candidates} {noun} with the stated choices carries the body through all {n} positions."
-    if accepted != 1:
-        text = text.replace("carries", "carry")
-    if rejected:
-        text += " Rejected: " + _listed(rejected) + "."
-    if not accepted and complete:
-        text += " These are all, so no design exists."
-    return text
-
-
-def _summary_of_search(designs: list[Design], screening: Screening, sound: int) -> str:
-    pairs = screening.verdict.size
-    passed = [design for design in designs if design.verification.passed]
-    if not passed:
-        return (
-            f"None of {pairs} pairs of dyads that were tried makes a linkage that satisfies all demands "
-            f"(rejected: {_listed(screening.rejected())}). A linkage may exist that the search did not meet."
+    def _best(self, screening: Screening) -> list[tuple[int, int]]:
+        """The best-scored pairs that differ from one another, best first."""
+        count = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
+        score = screening.score.ravel()
+        shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
+        shortlist = shortlist[score[shortlist] > 0.0]
+        shortlist = shortlist[np.lexsort((shortlist, -score[shortlist]))]
+        i, j = np.unravel_index(shortlist, screening.score.shape)
+        joints = np.stack(
+            [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]], axis=1
         )
-    best = max(design.metrics.min_transmission_angle for design in passed)
-    text = (
-        f"{sound} of {pairs} pairs of dyads make a sound linkage; the best {len(passed)} distinct ones are returned, "
-        f"with a least transmission angle of up to {best:.1f}°."
-    )
-    if best < USABLE_TRANSMISSION_ANGLE:
-        text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLE:.0f}°."
-    return text
+        chosen: list[int] = []
+        for apart in APART:
+            chosen = distinct(joints, count, float(apart))
+            if len(chosen) >= min(count, len(joints)):
+                break
+        return [(int(i[k]), int(j[k])) for k in chosen]
+
+    def _add_failed(self) -> None:
+        """Add the best linkages that move as the task demands but break a limit of the client's."""
+        demanded = self.problem.constraints
+        motion_alone = Constraints(same_branch=demanded.same_branch, in_order=demanded.in_order)
+        kept, self.rejected = self.rejected, Counter()
+        for i, j in self._best(self._screened(motion_alone, 0.0))[: self.problem.max_designs]:
+            passed = len(self.passed)
+            self._verify(i, j)
+            del self.passed[passed:]  # what passes was met by the search already
+        self.rejected = kept
+
+    def _result(self, method: str, complete: bool, candidates: int, summary: str) -> Result:
+        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
+        return Result(
+            designs=ranked(shown, self.problem.rank_by)[: self.problem.max_designs],
+            search=Search(
+                method=method,
+                complete=complete,
+                candidates=candidates,
+                accepted=len(self.passed),
+                rejected=dict(self.rejected),
+                seed=self.problem.seed,
+            ),
+            summary=summary,
+        )
+
+    def _summary_of_determined(self, count: int, complete: bool) -> str:
+        verb = "carries" if len(self.passed) == 1 else "carry"
+        noun = "linkage" if count == 1 else "linkages"
+        text = f"{len(self.passed)} of {count} {noun} with the stated choices {verb} the body through all positions."
+        if self.rejected:
+            text += f" Rejected: {_listed(self.rejected)}."
+        if not self.passed:
+            text += " These are all, so no design exists." if complete else " That does not prove that none exists."
+        return text
+
+    def _summary_of_search(self, count: int, sound: int) -> str:
+        if not self.passed:
+            reasons = {name: n for name, n in self.rejected.items() if name != "outranked"}
+            return (
+                f"None of the {count} pairs of dyads that were tried makes a linkage that satisfies all demands "
+                f"(rejected: {_listed(reasons)}). A linkage may exist that the search did not meet."
+            )
+        best = max(design.metrics.min_transmission_angle for design in self.passed)
+        text = (
+            f"{sound} of {count} pairs of dyads passed the screening; the best {len(self.passed)} distinct ones were "
+            f"driven and verified, with a least transmission angle of up to {best:.1f}°."
+        )
+        if best < USABLE_TRANSMISSION_ANGLE:
+            text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLE:.0f}°."
+        return text
 
 
-def _listed(counts: Counter[str] | dict[str, int]) -> str:
+def _listed(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items())

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.problems import DyadChoices, MotionProblem
+from synthesis.problems import MotionProblem
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -54,24 +54,9 @@ class MotionTask(NamedTuple):
         return self.origin + z * self.size
 
 
-def task_size(problem: MotionProblem) -> float:
-    """Greatest distance between two positions of P; where P stands still, that to a pivot the client gave, or 1."""
-    points = np.array([p.point for p in problem.positions])
-    size = float(np.abs(points[:, None] - points).max())
-    if size > 0.0:
-        return size
-    stated = [z for side in (problem.input_side, problem.output_side) for z in _stated_points(side)]
-    reach = max((abs(z - points[0]) for z in stated), default=0.0)
-    return float(reach) or 1.0
-
-
-def _stated_points(side: DyadChoices) -> list[complex]:
-    return [complex(*point) for point in (side.fixed_pivot, side.moving_pivot) if point is not None]
-
-
 def motion_task(problem: MotionProblem) -> MotionTask:
     """The problem's positions in task coordinates."""
     points = np.array([p.point for p in problem.positions])
-    angles = np.radians(np.array([p.angle for p in problem.positions]))
-    size = task_size(problem)
-    return MotionTask((points - points[0]) / size, np.exp(1j * (angles - angles[0])), complex(points[0]), size)
+    size = problem.task_size
+    turns = np.exp(1j * np.array(problem.turns))
+    return MotionTask((points - points[0]) / size, turns, complex(points[0]), size)

@@ -34,12 +34,13 @@ def random_task(rng: np.random.Generator, n: int) -> MotionTask:
     return task_of([0j, *(points[1:] - points[0])], [0.0, *angles[1:]])
 
 
-@pytest.mark.parametrize("case", cases("motion_3pos_constants"))
+@pytest.mark.parametrize("case", [p for p in cases("motion_3pos_constants") if "constants" in p.id])
 def test_constants_of_the_determinant_form(case: Case) -> None:
-    """Norton 5.25 and 5.30: W and Z from the printed constants A..N equal the dyad from the same rotations."""
+    """Norton 5.25 and 5.30: W and Z from the printed constants A..N equal the dyad from the same rotations.
+
+    The constants carry four decimals; the system's condition makes 5e-3 of that.
+    """
     assert case.inputs is not None
-    if "A" not in case.expected:
-        return
     x = {name: expected.value for name, expected in case.expected.items()}
     matrix = [
         [x["A"], -x["B"], x["C"], -x["D"]],
@@ -149,7 +150,8 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
     rng = np.random.default_rng(4)
     n = 2 if names in TWO else 3
     for trial in range(25):
-        scale, offset = 10.0 ** rng.uniform(-5.0, 5.0), 0j
+        scale = 10.0 ** rng.uniform(-5.0, 5.0)
+        offset = scale * complex(*rng.uniform(-100.0, 100.0, 2))
         planted = plant(rng, n, scale, offset)
         side = planted.input_side if trial % 2 else planted.output_side
         choices = DyadChoices.model_validate(side.choices(*names))
@@ -159,7 +161,7 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
         gaps = np.abs(cloud.dyads.fixed - task.to_task(side.fixed_pivot))
         gaps += np.abs(cloud.dyads.moving - task.to_task(side.moving_pivot))
         assert gaps.min(initial=math.inf) < 1e-7, (trial, names)
-        if stated_conditions(task, choices).unique:
+        if stated_conditions(task, choices).linear:
             assert cloud.complete
             assert len(gaps) == 1
 

@@ -95,11 +95,19 @@ def test_constraints_hold(constraints: dict[str, Any], holds: Any) -> None:
     confirm(result, ORDINARY, constraints.get("min_transmission_angle", 30.0))
 
 
-@pytest.mark.parametrize("rank_by", ["size", "transmission_angle"])
+@pytest.mark.parametrize("rank_by", ["quality", "size", "transmission_angle"])
 def test_ranking_as_asked(rank_by: str) -> None:
-    result = run(positions=ORDINARY, rank_by=rank_by)
-    values = [d.metrics.size if rank_by == "size" else -d.metrics.min_transmission_angle for d in result.designs]
-    assert values == sorted(values)
+    """The order is as asked, and asking for more does not change the first: the search itself goes by it."""
+
+    def values(count: int) -> list[float]:
+        metrics = [design.metrics for design in run(positions=ORDINARY, rank_by=rank_by, max_designs=count).designs]
+        keys = {"quality": [-m.quality for m in metrics], "size": [m.size for m in metrics]}
+        return keys.get(rank_by, [-m.min_transmission_angle for m in metrics])
+
+    few, many = values(3), values(40)
+    assert few == sorted(few)
+    assert many == sorted(many)
+    assert few[0] == many[0]
 
 
 def test_two_positions_alone() -> None:
@@ -192,11 +200,73 @@ class TestNoDesign:
         assert "slider" in result.summary
         assert run(positions=positions).designs
 
-    def test_fixed_pivot_at_the_pole(self) -> None:
+
+class TestPoles:
+    """A pivot at a displacement pole leaves a whole family of dyads, where a general pivot leaves one."""
+
+    def test_fixed_pivot_at_the_pole_of_two_positions(self) -> None:
         positions = [{"x": 1.0, "y": 0.0, "angle": 0.0}, {"x": 0.0, "y": 1.0, "angle": 90.0}]
         result = run(positions=positions, input_side={"fixed_pivot": [0.0, 0.0]})
-        assert result.designs == []
-        assert "pole" in result.summary
+        assert len(result.designs) == 10
+        confirm(result, positions, 30.0)
+
+    @pytest.mark.parametrize("pair", [(0, 1), (0, 2), (1, 2)])
+    @pytest.mark.parametrize("choice", ["fixed_pivot", "moving_pivot"])
+    def test_pivot_at_a_pole_of_three_positions(self, pair: tuple[int, int], choice: str) -> None:
+        z = [complex(p["x"], p["y"]) for p in ORDINARY]
+        u = [np.exp(1j * math.radians(p["angle"])) for p in ORDINARY]
+        j, k = pair
+        turn = u[k] / u[j]
+        pole = (z[k] - turn * z[j]) / (1.0 - turn)
+        if choice == "moving_pivot":  # where that point of the body is in the first position
+            pole = z[0] + (pole - z[j]) * u[0] / u[j]
+        # A moving pivot that returns to its place cannot be driven from there to the next target; it can be the output.
+        side = "input_side" if choice == "fixed_pivot" else "output_side"
+        result = run(positions=ORDINARY, **{side: {choice: [pole.real, pole.imag]}})
+        assert not result.search.complete
+        assert result.designs
+        confirm(result, ORDINARY, 0.0)
+
+    def test_fixed_pivot_below_a_displacement_along_one_axis(self) -> None:
+        for end in ({"x": 10.0, "y": 0.0, "angle": 0.0}, {"x": 0.0, "y": 10.0, "angle": 0.0}):
+            positions = [{"x": 0.0, "y": 0.0, "angle": 0.0}, end]
+            assert len(run(positions=positions, input_side={"fixed_pivot": [-3.0, -4.0]}).designs) == 10
+
+
+def test_no_empty_answer_is_complete_where_a_linkage_exists() -> None:
+    """Planted linkages stated by their own numbers, edges of regions and limits at their own values included."""
+    rng = np.random.default_rng(12)
+    ways = [("fixed",), ("moving",), ("b2", "b3"), ("theta", "phi"), ("z", "phi")]
+    for trial in range(60):
+        planted = plant(rng, 3, 10.0 ** rng.uniform(-3.0, 3.0), complex(*rng.uniform(-9.0, 9.0, 2)))
+        one, other = planted.input_side, planted.output_side
+        pivots = [one.fixed_pivot, other.fixed_pivot]
+        edges = [sorted(z.real for z in pivots), sorted(z.imag for z in pivots)]
+        result = run(
+            positions=planted.positions,
+            input_side=one.choices(*ways[trial % 5]),
+            output_side=other.choices(*ways[trial % 3]),
+            constraints={"fixed_pivot_region": {"x": edges[0], "y": edges[1]}},
+        )
+        assert result.designs or not result.search.complete, result.summary
+
+
+def test_failed_designs_are_shown_on_demand() -> None:
+    result = run(positions=ORDINARY, constraints={"min_transmission_angle": 89.9}, include_failed=True)
+    assert len(result.designs) == 10
+    assert result.search.accepted == 0
+    for design in result.designs:
+        assert {c.name for c in design.verification.checks if not c.passed} == {"transmission_angle"}
+
+
+def test_motions_past_a_toggle_on_demand() -> None:
+    """Without the demand for one branch, and no limit on the transmission angle, such linkages are counted as sound."""
+    free = {"same_branch": False, "in_order": False, "min_transmission_angle": 0.0}
+    strict = {"min_transmission_angle": 0.0}
+    one, other = run(positions=ORDINARY, constraints=free), run(positions=ORDINARY, constraints=strict)
+    assert one.search.rejected["outranked"] > other.search.rejected["outranked"]
+    for result in (one, other):
+        assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 
 @pytest.mark.slow

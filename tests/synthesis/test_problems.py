@@ -67,6 +67,15 @@ def test_ill_formed_statements_name_the_field(changes: dict[str, Any], where: tu
         ({"output_side": {"fixed_pivot": [0, 0], "link_angle": 1.0}}, "/output_side"),
         ({"output_side": {"moving_pivot": [0, 0], "coupler_vector": {}}}, "/output_side/coupler_vector"),
         (
+            {
+                "output_side": {"fixed_pivot": [0.0, 5.0]},
+                "constraints": {"fixed_pivot_region": {"x": [0, 1], "y": [0, 1]}},
+            },
+            "/output_side/fixed_pivot",
+        ),
+        ({"constraints": {"full_rotation": True, "grashof": "non_grashof"}}, "/constraints/full_rotation"),
+        ({"positions": [POSITIONS[0], {"x": 1e-15, "y": 0.0, "angle": 9.0}]}, "/positions"),
+        (
             {"input_side": {"fixed_pivot": [1.0, 2.0]}, "output_side": {"fixed_pivot": [1.0, 2.0]}},
             "/output_side/fixed_pivot",
         ),

@@ -175,8 +175,8 @@ def test_broken_limits_fail_their_check_and_are_returned_on_demand(constraints: 
     planted = plant(np.random.default_rng(8), 3)
     statement = {
         "constraints": constraints,
-        "input_side": planted.input_side.choices("fixed"),
-        "output_side": planted.output_side.choices("moving"),
+        "input_side": planted.input_side.choices("b2", "b3"),
+        "output_side": planted.output_side.choices("b2", "b3"),
     }
     quiet = solve(problem_of(planted, **statement), lambda fraction, message: None)
     assert quiet.designs == []

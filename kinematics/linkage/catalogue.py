@@ -1,0 +1,286 @@
+"""The mechanisms of the books as descriptions: joints, links, slides and gears of a :class:`Mechanism`.
+
+Each function takes the dimensions that the field knows a mechanism by and gives its skeleton at one input angle, from
+which :func:`kinematics.linkage.drive.drive` does the rest; no mechanism has a solver of its own. Joints: O2, O4, O5, O6
+fixed pivots, A, B, C, D moving pivots, P the coupler point. Angles are radians, absolute.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
+from kinematics.linkage.mechanism import GearPair, Mechanism, Slide
+
+Complex = NDArray[np.complex128]
+
+
+def fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Mechanism:
+    """The pin-jointed fourbar at an input angle, as a mechanism; shape that of the designs.
+
+    Raises
+    ------
+    DimensionError
+        Where it cannot be assembled at that angle.
+    """
+    angle = np.asarray(input_angle, np.float64)
+    at = positions(linkage, angle[..., None], assembly)
+    if not at.valid.all():
+        raise DimensionError("input_angle", "one at which the fourbar can be assembled", float(angle.flat[0]))
+    return Mechanism(
+        {
+            "O2": linkage.input_pivot,
+            "O4": linkage.output_pivot,
+            "A": at.a[..., 0],
+            "B": at.b[..., 0],
+            "P": at.p[..., 0],
+        },
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")},
+        "input",
+    )
+
+
+def slider_crank(
+    pivot: complex,
+    slide_point: complex,
+    slide_angle: float,
+    crank: float,
+    coupler: float,
+    crank_angle: float,
+    assembly: int = OPEN,
+    coupler_point: complex = 0.0,
+    driven_by: str = "crank",
+) -> Mechanism:
+    """The slider-crank, offset or in line (Norton, Sec. 4.5).
+
+    ``open`` is the slider's position farther along the slide's direction. ``coupler_point`` is P in the coupler's
+    frame, origin at A, real axis towards B. ``driven_by`` is ``crank`` or ``slider``.
+    """
+    direction = np.exp(1j * slide_angle)
+    pin_a = pivot + crank * np.exp(1j * crank_angle)
+    local = (pin_a - slide_point) * np.conj(direction)
+    under = coupler**2 - local.imag**2
+    if under < 0.0:
+        raise DimensionError("crank_angle", "one at which the slider-crank can be assembled", crank_angle)
+    pin_b = slide_point + direction * (local.real + assembly * np.sqrt(under))
+    return Mechanism(
+        {"O2": pivot, "A": pin_a, "B": pin_b, "P": pin_a + coupler_point * (pin_b - pin_a) / coupler},
+        {"ground": ("O2",), "crank": ("O2", "A"), "coupler": ("A", "B", "P")},
+        "crank" if driven_by == "crank" else "B",
+        slides=(Slide("B", "ground", np.asarray(slide_point), np.asarray(slide_angle)),),
+    )
+
+
+def inverted_slider_crank(
+    o2: complex, o4: complex, crank: float, output: float, line_angle: float, crank_angle: float, assembly: int = OPEN
+) -> Mechanism:
+    """The inverted slider-crank (Norton, Sec. 4.7): pin A of the crank slides on a line fixed in the output link.
+
+    The line passes through B, the end of the output link of length c from O4, at ``line_angle`` (Norton's γ, the angle
+    of link 3 minus that of link 4) from the line O4 → B. With c = 0 the line passes through O4 itself. ``open`` and
+    ``crossed`` are Norton's: B − A along the line is c sin(γ)-wise positive for open, negative for crossed.
+    """
+    pin_a = o2 + crank * np.exp(1j * crank_angle)
+    reach = pin_a - o4
+    # The line's distance from O4 is c sin γ: the output stands where a line at that distance passes through A.
+    ratio = output * np.sin(line_angle) / abs(reach)
+    if abs(ratio) > 1.0:
+        raise DimensionError("crank_angle", "one at which the inverted slider-crank can be assembled", crank_angle)
+    # In the output's frame A lies on the line at t along it from B: |c + t e^{iγ}| = |reach|.
+    along = -output * np.cos(line_angle) + assembly * np.sqrt(abs(reach) ** 2 - (output * np.sin(line_angle)) ** 2)
+    local = output + along * np.exp(1j * line_angle)
+    turned = reach / local
+    turned = turned / abs(turned)
+    joints = {"O2": o2, "O4": o4, "A": pin_a}
+    if output > 0.0:
+        joints["B"] = o4 + output * turned
+        second = "B"
+    else:
+        joints["B"] = o4 + np.exp(1j * line_angle) * turned * abs(reach)
+        second = "B"
+    angle = float(np.angle(turned * np.exp(1j * line_angle)))
+    point = o4 + output * turned
+    return Mechanism(
+        joints,
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "output": ("O4", second)},
+        "input",
+        slides=(Slide("A", "output", np.asarray(point), np.asarray(angle)),),
+    )
+
+
+def quick_return(
+    o2: complex,
+    o4: complex,
+    crank: float,
+    rocker: float,
+    coupler: float,
+    slide_point: complex,
+    slide_angle: float,
+    crank_angle: float,
+    ram: int = OPEN,
+    rocker_side: int = OPEN,
+) -> Mechanism:
+    """Crank-shaper (crank shorter than the ground) and Whitworth (crank longer): both invert the slider-crank.
+
+    The crank pin A slides in the link that turns about O4, through O4 itself; its end C, ``rocker`` from O4 (on A's
+    side for ``open``), drives the ram D through the coupler; the ram slides on the given line.
+    """
+    pin_a = o2 + crank * np.exp(1j * crank_angle)
+    reach = pin_a - o4
+    if abs(reach) == 0.0:
+        raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
+    pin_c = o4 + rocker_side * rocker * reach / abs(reach)
+    direction = np.exp(1j * slide_angle)
+    local = (pin_c - slide_point) * np.conj(direction)
+    under = coupler**2 - local.imag**2
+    if under < 0.0:
+        raise DimensionError("coupler", "long enough to reach the ram's slide", coupler)
+    pin_d = slide_point + direction * (local.real + ram * np.sqrt(under))
+    return Mechanism(
+        {"O2": o2, "O4": o4, "A": pin_a, "C": pin_c, "D": pin_d},
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "rocker": ("O4", "C"), "coupler": ("C", "D")},
+        "input",
+        slides=(
+            Slide("A", "rocker", np.asarray(o4), np.asarray(np.angle(reach))),
+            Slide("D", "ground", np.asarray(slide_point), np.asarray(slide_angle)),
+        ),
+    )
+
+
+def geared_fivebar(
+    o2: complex,
+    o5: complex,
+    input: float,
+    coupler_1: float,
+    coupler_2: float,
+    output: float,
+    gear_ratio: float,
+    phase: float,
+    input_angle: float,
+    assembly: int = OPEN,
+    coupler_point: complex = 0.0,
+) -> Mechanism:
+    """The geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
+
+    ``open``: C, where the couplers meet, lies to the left of the directed line from A to B. ``coupler_point`` is P on
+    coupler 1 in its frame, origin at A, real axis towards C.
+    """
+    ground = float(np.angle(o5 - o2))
+    pin_a = o2 + input * np.exp(1j * input_angle)
+    pin_b = o5 + output * np.exp(1j * (ground + gear_ratio * (input_angle - ground) + phase))
+    base = pin_b - pin_a
+    f = abs(base)
+    product = (coupler_1 + coupler_2 + f) * (coupler_1 + coupler_2 - f)
+    product *= (f + (coupler_1 - coupler_2)) * (f - (coupler_1 - coupler_2))
+    if product < 0.0 or f == 0.0:
+        raise DimensionError("input_angle", "one at which the geared fivebar can be assembled", input_angle)
+    along = (f * f + (coupler_1 - coupler_2) * (coupler_1 + coupler_2)) / (2.0 * f)
+    pin_c = pin_a + base / f * (along + 1j * assembly * np.sqrt(product) / (2.0 * f))
+    return Mechanism(
+        {
+            "O2": o2,
+            "O5": o5,
+            "A": pin_a,
+            "B": pin_b,
+            "C": pin_c,
+            "P": pin_a + coupler_point * (pin_c - pin_a) / coupler_1,
+        },
+        {
+            "ground": ("O2", "O5"),
+            "input": ("O2", "A"),
+            "coupler_1": ("A", "C", "P"),
+            "coupler_2": ("B", "C"),
+            "output": ("O5", "B"),
+        },
+        "input",
+        gears=(GearPair("input", "output", gear_ratio),),
+    )
+
+
+def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float, input_angle: float) -> Mechanism:
+    """Peaucellier's eightbar: P runs on a straight line exactly when the crank equals the distance O2 O4.
+
+    ``arm`` is the length of the two links from O4 to the rhombus A B P C of the given ``side``; arm > side.
+    """
+    pin_a = o2 + crank * np.exp(1j * input_angle)
+    reach = pin_a - o4
+    f = abs(reach)
+    half = (f * f + (arm - side) * (arm + side)) / (2.0 * f) if f > 0.0 else np.inf
+    if not abs(half) < arm:
+        raise DimensionError("input_angle", "one at which the arms reach the rhombus", input_angle)
+    unit, height = reach / f, np.sqrt((arm - half) * (arm + half))
+    pin_b, pin_c = o4 + unit * (half + 1j * height), o4 + unit * (half - 1j * height)
+    return Mechanism(
+        {"O2": o2, "O4": o4, "A": pin_a, "B": pin_b, "C": pin_c, "P": pin_b + pin_c - pin_a},
+        {
+            "ground": ("O2", "O4"),
+            "input": ("O2", "A"),
+            "arm_1": ("O4", "B"),
+            "arm_2": ("O4", "C"),
+            "side_1": ("A", "B"),
+            "side_2": ("A", "C"),
+            "side_3": ("B", "P"),
+            "side_4": ("C", "P"),
+        },
+        "input",
+    )
+
+
+SIXBAR_LINKS: dict[str, dict[str, tuple[str, ...]]] = {
+    "watt_1": {
+        "ground": ("O2", "O4"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B", "C"),
+        "output": ("O4", "B", "D"),
+        "link_5": ("C", "E"),
+        "link_6": ("D", "E", "P"),
+    },
+    "watt_2": {
+        "ground": ("O2", "O4", "O6"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B", "P"),
+        "rocker": ("O4", "B", "C"),
+        "link_5": ("C", "D"),
+        "output": ("O6", "D"),
+    },
+    "stephenson_1": {
+        "ground": ("O2", "O4"),
+        "input": ("O2", "A", "C"),
+        "coupler": ("A", "B", "P"),
+        "output": ("O4", "B", "D"),
+        "link_5": ("C", "E"),
+        "link_6": ("D", "E"),
+    },
+    "stephenson_2": {
+        "ground": ("O2", "O4"),
+        "input": ("O2", "A", "C"),
+        "link_3": ("A", "B"),
+        "link_4": ("B", "D", "E", "P"),
+        "link_5": ("C", "D"),
+        "output": ("O4", "E"),
+    },
+    "stephenson_3": {
+        "ground": ("O2", "O4", "O6"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B", "C", "P"),
+        "rocker": ("O4", "B"),
+        "link_5": ("C", "D"),
+        "output": ("O6", "D"),
+    },
+}
+"""Links of the sixbars of Watt's and Stephenson's chains, with the names of their joints."""
+
+
+def sixbar(kind: str, joints: dict[str, ArrayLike], input: str = "input") -> Mechanism:
+    """A sixbar by the positions of its joints; ``kind`` is a key of :data:`SIXBAR_LINKS`, P may be left out.
+
+    ``input`` is any link that is pinned to the ground.
+    """
+    links = {name: tuple(j for j in listed if j in joints) for name, listed in SIXBAR_LINKS[kind].items()}
+    return Mechanism(joints, links, input)
+
+
+ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
+"""Assembly signs by their names."""

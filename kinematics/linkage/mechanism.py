@@ -1,0 +1,168 @@
+"""A planar mechanism by its skeleton: where its joints are in a reference configuration, and what joins them.
+
+Links are rigid and named; two links that list the same joint are pinned together there. A *slide* keeps a joint on a
+line fixed in a link. A *gear pair* makes one link turn a multiple of another. The input is a link that is pinned to the
+ground (its rotation drives), or the joint of a slide on the ground (its displacement drives).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import MechanismError
+from kinematics.linkage.fourbar import require
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+GROUND = "ground"
+"""Name of the link that does not move; every mechanism has it."""
+
+
+class TopologyError(MechanismError, ValueError):
+    """Links, slides or gears that do not make one mechanism with a mobility of one."""
+
+
+class Slide(NamedTuple):
+    """``joint`` stays on the line through ``point`` at ``angle`` fixed in ``link``; reference, radians."""
+
+    joint: str
+    link: str
+    point: Complex
+    angle: Real
+
+
+class GearPair(NamedTuple):
+    """Rotation of ``second`` = ``ratio`` × rotation of ``first``, both relative to ground."""
+
+    first: str
+    second: str
+    ratio: float
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Designs of one topology.
+
+    Parameters
+    ----------
+    joints : mapping of str to complex
+        Joints in the reference configuration; arrays that broadcast to the shape S of the designs.
+    links : mapping of str to tuple of str
+        Joints on each link. The angle of a link is that of the line from its first joint to its second.
+    slides, gears : tuples
+        See :class:`Slide` and :class:`GearPair`.
+    input : str
+        Name of a link that is pinned to the ground, or of the joint of a slide on the ground.
+
+    Raises
+    ------
+    TopologyError
+        For names that do not exist, a link without joints, or a mobility other than one.
+    DimensionError
+        For coordinates that are not finite.
+    """
+
+    joints: dict[str, Complex]
+    links: dict[str, tuple[str, ...]]
+    input: str
+    slides: tuple[Slide, ...] = ()
+    gears: tuple[GearPair, ...] = ()
+    shape: tuple[int, ...] = field(init=False)
+
+    def __init__(
+        self,
+        joints: dict[str, ArrayLike],
+        links: dict[str, tuple[str, ...]],
+        input: str,
+        slides: tuple[Slide, ...] = (),
+        gears: tuple[GearPair, ...] = (),
+    ) -> None:
+        points = {name: np.asarray(z, np.complex128) for name, z in joints.items()}
+        lines = tuple(s._replace(point=np.asarray(s.point, np.complex128), angle=np.asarray(s.angle)) for s in slides)
+        for name, point in points.items():
+            require(name, "finite", point, np.isfinite(point))
+        shapes = [point.shape for point in points.values()] + [line.point.shape for line in lines]
+        shape = np.broadcast_shapes(*shapes)
+        own = {name: np.broadcast_to(point, shape) for name, point in points.items()}
+        for name, value in (
+            ("joints", own),
+            ("links", {name: tuple(listed) for name, listed in links.items()}),
+            ("input", input),
+            ("slides", lines),
+            ("gears", tuple(gears)),
+            ("shape", shape),
+        ):
+            object.__setattr__(self, name, value)
+        self._check_names()
+        if self.mobility != 1:
+            raise TopologyError(f"expected a mobility of 1, got {self.mobility}; look for a link or joint too many")
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
+
+        A joint on k links counts as k − 1 pins. Peaucellier's and other overconstrained mechanisms move although a
+        link more would count as one freedom less.
+        """
+        pins = sum(self._links_at(joint) - 1 for joint in self.joints if self._links_at(joint))
+        return 3 * (len(self.links) - 1) - 2 * pins - len(self.slides) - len(self.gears)
+
+    def _links_at(self, joint: str) -> int:
+        return sum(joint in listed for listed in self.links.values())
+
+    def _check_names(self) -> None:
+        if GROUND not in self.links:
+            raise TopologyError(f"expected a link named {GROUND!r}")
+        for name, listed in self.links.items():
+            unknown = [joint for joint in listed if joint not in self.joints]
+            if unknown:
+                raise TopologyError(f"link {name!r} lists the joint {unknown[0]!r}, which has no position")
+            if len(set(listed)) != len(listed):
+                raise TopologyError(f"link {name!r} lists a joint twice")
+            if name != GROUND and len(listed) < 2:
+                raise TopologyError(f"link {name!r} needs two joints or more")
+        for slide in self.slides:
+            if slide.joint not in self.joints or slide.link not in self.links:
+                raise TopologyError(f"a slide joins {slide.joint!r} and {slide.link!r}, one of which does not exist")
+        for gear in self.gears:
+            if gear.first not in self.links or gear.second not in self.links:
+                raise TopologyError(
+                    f"a gear pair joins {gear.first!r} and {gear.second!r}, one of which does not exist"
+                )
+        drives = [slide.joint for slide in self.slides if slide.link == GROUND]
+        pinned = [
+            name for name, listed in self.links.items() if set(listed) & set(self.links[GROUND]) and name != GROUND
+        ]
+        if self.input not in (*drives, *pinned):
+            raise TopologyError(f"the input {self.input!r} is neither a link pinned to the ground nor a slide on it")
+
+    @property
+    def driven_by_slide(self) -> bool:
+        """Whether the input is the displacement of a slide."""
+        return self.input not in self.links
+
+    @property
+    def input_pivot(self) -> str:
+        """The ground joint about which the input link turns."""
+        return next(joint for joint in self.links[self.input] if joint in self.links[GROUND])
+
+    @property
+    def reference_input(self) -> Real:
+        """Input in the reference: angle of the input link, radians, or position along the slide; shape S."""
+        if self.driven_by_slide:
+            slide = next(s for s in self.slides if s.joint == self.input and s.link == GROUND)
+            offset = self.joints[self.input] - slide.point
+            return np.asarray((offset * np.exp(-1j * slide.angle)).real)
+        return self.link_angle(self.input)
+
+    def link_angle(self, link: str) -> Real:
+        """Angle of a link (first joint to second; the input link from its pivot) in the reference; radians, shape S."""
+        first, second = self.links[link][:2]
+        if link == self.input and second == self.input_pivot:
+            first, second = second, first
+        return np.asarray(np.angle(self.joints[second] - self.joints[first]))
