@@ -32,6 +32,7 @@ quick: $(STAMP)
 	$(BIN)/pytest -m "not slow" -q
 
 bench: $(STAMP)
+	$(BIN)/python -m benchmarks.analysis
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.service
 

@@ -7,7 +7,6 @@ The answer is plain lists, made for speed; :class:`Analysis` documents it. Where
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from kinematics.linkage import Fourbar, barker_type
-from kinematics.linkage.branches import Branch
 from kinematics.linkage.classification import BARKER
 from kinematics.linkage.drive import MechanismMotion, drive
 from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
@@ -365,23 +363,15 @@ def _global(mechanism: Mechanism) -> dict[str, Any]:
         )
     limits: dict[str, list[float] | None] = {}
     if here is not None:
-        for name in _grounded(mechanism):
-            span = limit_positions(mechanism, here, _angle_of_link(name), turns=True)
+        links = _grounded(mechanism)
+        slides = [s.joint for s in mechanism.slides if s.link == GROUND and s.joint != mechanism.input]
+        angles, travels = limit_positions(mechanism, here, links, slides)
+        for name, span in zip(links, angles, strict=True):
             limits[name] = None if span is None else [math.degrees(x) for x in span]
-        for slide in mechanism.slides:
-            if slide.link == GROUND and slide.joint != mechanism.input:
-                limits[slide.joint] = _travel_limits(mechanism, here, slide.joint)
+        for name, span in zip(slides, travels, strict=True):
+            limits[name] = None if span is None else list(span)
     return {
         "toggles": [scale(x) for x in toggles(mechanism, found)],
         "circuits": [{"branches": listed} for listed in circuits.values()],
         "limits": limits,
     }
-
-
-def _angle_of_link(name: str) -> Callable[[MechanismMotion], Real]:
-    return lambda motion: motion.angles[name]
-
-
-def _travel_limits(mechanism: Mechanism, here: Branch, joint: str) -> list[float] | None:
-    span = limit_positions(mechanism, here, lambda motion: motion.slides[joint], turns=False)
-    return None if span is None else list(span)

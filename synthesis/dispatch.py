@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kinematics import linkage
 from synthesis.designs import Result
 from synthesis.motion.solver import Progress, solve_motion
 from synthesis.problems import Problem, example, parse_problem
@@ -29,5 +30,6 @@ def solve(problem: Problem, progress: Progress) -> Result:
 
 
 def warm_up() -> None:
-    """Compile the kernels, or load them from their cache, by solving a small example of each kind."""
+    """Compile the kernels, or load them from their cache: the analysis core's, then by an example of each kind."""
+    linkage.warm_up()
     solve(parse_problem(example("motion")), lambda fraction, message: None)

@@ -155,7 +155,7 @@ class SliderCrankLengths(Statement):
 
 
 class GivenSliderCrank(Statement):
-    """A slider-crank; ``offset`` is the signed distance of the pivot from the line and follows from the slide."""
+    """A slider-crank; ``offset``, the distance of the pivot from the slide's line, follows from the slide."""
 
     type: Literal["slider_crank"]
     fixed_pivot: Point
@@ -172,7 +172,9 @@ class GivenSliderCrank(Statement):
         """The mechanism at its reference crank angle, or at one where it can be assembled."""
         pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
         line = complex(*self.slide.point)
-        _agree("/offset", self.offset, ((pivot - line) * cmath.exp(-1j * angle)).imag, signed=True)
+        # Books differ in the sign of an offset; the slide says on which side of the pivot it passes.
+        offset = None if self.offset is None else abs(self.offset)
+        _agree("/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot")
         return _assembled(
             lambda at: catalogue.slider_crank(
                 pivot,
@@ -387,10 +389,9 @@ GivenMechanism = Annotated[
 """Any stated mechanism; the field ``type`` tells which."""
 
 
-def _agree(path: str, stated: float | None, found: float, *, signed: bool = False) -> None:
+def _agree(path: str, stated: float | None, found: float, what: str = "the fixed pivots") -> None:
     """Refuse a redundant dimension that contradicts the others."""
     if stated is not None and abs(stated - found) > AGREES * max(abs(found), abs(stated)):
-        what = "the slide and the pivot" if signed else "the fixed pivots"
         raise MechanismError(path, f"{what} give {found:.9g}; leave the field out or correct it")
 
 

@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 from kinematics.linkage.closures import decompose
 from kinematics.linkage.drive import assembly_signs, drive
 from kinematics.linkage.mechanism import Mechanism, TopologyError
+from kinematics.linkage.roots import find_roots
 
 Real = NDArray[np.float64]
 
-GRID = 1440
+GRID = 720
 """Grid points a turn of the input."""
 
 NEAR_ZERO = 0.05
@@ -36,6 +37,9 @@ TOUCHES = 1e-12
 
 SAME_END = 1e-7
 """Ends of branches closer than this, radians, are one toggle: two computations of one root."""
+
+ROUNDING = 1e-14
+"""Margins below this are zero: a few roundings of the lengths, less than what driving allows a folded closure."""
 
 TURNS_AT_MOST = 60
 """Turns of the input until a geared mechanism repeats, at most; a ratio that needs more is taken as not repeating."""
@@ -83,8 +87,12 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     choices = list(itertools.product((1, -1), repeat=len(closing)))
     period = cycle(mechanism)
 
-    def margins(theta: Real, rows: NDArray[np.int64]) -> tuple[Real, Real, NDArray[np.int64]]:
-        """Least margin, its rate and the closure that has it, shape (n,), each input with its own row of assemblies."""
+    if not closing:
+        return [Branch(0, 0.0, period, True, (), "", "")]
+
+    def margins(theta: Real, choice: NDArray[np.int64]) -> tuple[Real, Real, NDArray[np.int64]]:
+        """Least margin, its rate and the closure that has it, shape (n,), each input with its own choice of signs."""
+        rows = np.array(choices, np.int64)[choice]
         signs = [np.ones(len(theta), np.int64)] * len(decomposition.steps)
         for n, k in enumerate(position):
             signs[k] = rows[:, n]
@@ -96,96 +104,85 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
         here = which, np.arange(len(theta))
         return value[here], found[1][here], which
 
-    if not closing:
-        return [Branch(0, 0.0, period, True, (), "", "")]
-    grid = np.linspace(0.0, period, int(GRID * period / (2.0 * np.pi)), endpoint=False)
-    every = np.repeat(np.array(choices, np.int64), len(grid), axis=0)
-    values = margins(np.tile(grid, len(choices)), every)[:2]
-    found: list[Branch] = []
-    for n, choice in enumerate(choices):
-        row = np.array([choice], np.int64)
-
-        def least(theta: Real, row: NDArray[np.int64] = row) -> tuple[Real, Real]:
-            return margins(theta, np.repeat(row, len(theta), axis=0))[:2]
-
-        part = slice(n * len(grid), (n + 1) * len(grid))
-        for low, high, full in _intervals(least, grid, values[0][part], values[1][part], period):
-            names = ("", "")
-            if not full:
-                ends = margins(np.array([low, high]), np.repeat(row, 2, axis=0))[2]
-                names = (closing[ends[0]], closing[ends[1]])
-            found.append(Branch(0, low, high, full, choice, *names))
+    intervals = _positive_intervals(lambda theta, row: margins(theta, row)[:2], len(choices), period)
+    listed = [(row, *interval) for row, some in enumerate(intervals) for interval in some]
+    rows = np.array([row for row, *_ in listed for _ in (0, 1)], np.int64)
+    ends = np.array([end for _, low, high, _ in listed for end in (low, high)])
+    folded = margins(ends, rows)[2] if listed else np.empty(0, np.int64)
+    found = [
+        Branch(
+            0,
+            low,
+            high,
+            full,
+            choices[row],
+            *(("", "") if full else (closing[folded[2 * n]], closing[folded[2 * n + 1]])),
+        )
+        for n, (row, low, high, full) in enumerate(listed)
+    ]
     return _by_circuits(found, closing, period, _holding_reference(mechanism, found, position, period))
 
 
-Margin = Callable[[Real], tuple[Real, Real]]
-"""A function of the input with its rate."""
+Margins = Callable[[Real, NDArray[np.int64]], tuple[Real, Real]]
+"""A function of the input and of the row (choice of assemblies), with its rate by the input."""
 
 
-def _intervals(least: Margin, grid: Real, value: Real, rate: Real, period: float) -> list[tuple[float, float, bool]]:
-    """Where a periodic function is positive: intervals with ``low`` in [0, period), and whether one is the whole."""
-    theta, value = _with_extremes(least, grid, value, rate, period)
-    inside = value > TOUCHES
-    if inside.all():
-        return [(0.0, period, True)]
-    if not inside.any():
-        return []
-    start = int(np.flatnonzero(~inside)[0])
-    theta, value, inside = np.roll(theta, -start), np.roll(value, -start), np.roll(inside, -start)
-    theta = np.append(np.where(theta < theta[0], theta + period, theta), theta[0] + period)
-    value = np.append(value, value[0])
-    edges = np.flatnonzero(np.diff(np.append(inside, False).astype(int)))
-    # An edge at a change point is known already: the searched extreme itself.
-    outer = np.where(inside[edges], edges + 1, edges)
-    touching = np.abs(value[outer]) <= TOUCHES
-    roots = theta[outer].copy()
-    open_edges = edges[~touching]
-    if len(open_edges):
-        roots[~touching] = _root(least, theta[open_edges], theta[open_edges + 1], ~inside[open_edges])
-    pairs = roots.reshape(-1, 2)
-    return [(float(np.mod(low, period)), float(np.mod(low, period) + high - low), False) for low, high in pairs]
+def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[tuple[float, float, bool]]]:
+    """Where periodic functions are positive, by rows: (low, high, whether it is a whole period), 0 ≤ low < period."""
+    count = int(GRID * period / (2.0 * np.pi))
+    grid = np.linspace(0.0, period, count, endpoint=False)
+    value = least(np.tile(grid, rows), np.repeat(np.arange(rows), count))[0].reshape(rows, count)
+    extra_row, extra_theta, extra_value = _extremes_near_zero(least, grid, value, period)
+    brackets: list[tuple[int, float, float]] = []  # row, and the inputs on either side of an end
+    plans: list[tuple[Real, Real, NDArray[np.int64]] | bool] = []
+    for row in range(rows):
+        theta = np.concatenate([grid, extra_theta[extra_row == row]])
+        order = np.argsort(theta, kind="stable")
+        theta, here = theta[order], np.concatenate([value[row], extra_value[extra_row == row]])[order]
+        inside = here > TOUCHES
+        if inside.all() or not inside.any():
+            plans.append(bool(inside.all()))
+            continue
+        start = int(np.flatnonzero(~inside)[0])
+        theta, here, inside = np.roll(theta, -start), np.roll(here, -start), np.roll(inside, -start)
+        theta = np.append(np.where(theta < theta[0], theta + period, theta), theta[0] + period)
+        here = np.append(here, here[0])
+        edges = np.flatnonzero(np.diff(np.append(inside, False).astype(int)))
+        plans.append((theta, here, edges))
+        brackets += [(row, float(theta[edge]), float(theta[edge + 1])) for edge in edges]
+    if not brackets:
+        return [[(0.0, period, True)] if plan is True else [] for plan in plans]
+    which = np.array([row for row, _, _ in brackets])
+    low, high = np.array([b[1] for b in brackets]), np.array([b[2] for b in brackets])
+    # The end is where the margin is still positive; at a change point it is the searched extreme itself.
+    roots = find_roots(lambda theta: _lifted(least(theta, which)[0]), low, high)[0]
+    pairs = iter(roots.reshape(-1, 2))
+    found: list[list[tuple[float, float, bool]]] = []
+    for plan in plans:
+        if isinstance(plan, bool):
+            found.append([(0.0, period, True)] if plan else [])
+            continue
+        spans = [next(pairs) for _ in range(len(plan[2]) // 2)]
+        found.append([(float(np.mod(a, period)), float(np.mod(a, period) + b - a), False) for a, b in spans])
+    return found
 
 
-def _with_extremes(least: Margin, grid: Real, value: Real, rate: Real, period: float) -> tuple[Real, Real]:
-    """Grid and values, with the minima above zero and maxima below it that come near zero searched and added."""
-    before, after = np.roll(value, 1), np.roll(value, -1)
+def _lifted(margin: Real) -> Real:
+    """Margins with those that are zero to rounding counted as zero."""
+    return np.asarray(np.where(np.abs(margin) <= ROUNDING, 0.0, margin))
+
+
+def _extremes_near_zero(least: Margins, grid: Real, value: Real, period: float) -> tuple[NDArray[np.int64], Real, Real]:
+    """Row, input and value of minima above zero and maxima below it that come near zero, found between grid points."""
+    before, after = np.roll(value, 1, axis=1), np.roll(value, -1, axis=1)
     dips = (value > 0.0) & (value <= before) & (value <= after) & (value < NEAR_ZERO)
     bumps = (value <= 0.0) & (value >= before) & (value >= after) & (value > -NEAR_ZERO)
-    at = np.flatnonzero(dips | bumps)
-    if not len(at):
-        return grid, value
+    row, at = np.nonzero(dips | bumps)
+    if not len(row):
+        return row, np.empty(0), np.empty(0)
     step = period / len(grid)
-
-    def slope(theta: Real) -> tuple[Real, Real]:
-        return least(theta)[1], np.full(len(theta), np.nan)
-
-    found = _root(slope, grid[at] - step, grid[at] + step, dips[at])
-    theta = np.concatenate([grid, np.mod(found, period)])
-    order = np.argsort(theta, kind="stable")
-    return theta[order], np.concatenate([value, least(found)[0]])[order]
-
-
-def _root(function: Margin, low: Real, high: Real, rising: NDArray[np.bool_]) -> Real:
-    """Roots between low and high, where a function changes sign once: Newton's step if it stays inside, else halving.
-
-    Of the last bracket the end is returned where the function is not negative.
-    """
-    low, high = low.copy(), high.copy()
-    at = (low + high) / 2.0
-    for _ in range(60):
-        value, rate = function(at)
-        positive = value >= 0.0
-        to_high = positive == rising
-        low, high = np.where(to_high, low, at), np.where(to_high, at, high)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            newton = at - value / rate
-        # A little beyond the root, so that the bracket closes from both sides.
-        newton = newton + 1e-15 * np.where(to_high, -1.0, 1.0)
-        inside = (newton > low) & (newton < high)
-        at = np.where(inside, newton, (low + high) / 2.0)
-        if np.all(high - low <= 4e-16 * np.maximum(1.0, np.abs(high))):
-            break
-    return np.where(rising, high, low)
+    theta = np.mod(find_roots(lambda theta: least(theta, row)[1], grid[at] - step, grid[at] + step)[0], period)
+    return row, theta, least(theta, row)[0]
 
 
 def _holding_reference(mechanism: Mechanism, found: list[Branch], position: list[int], period: float) -> int:
@@ -247,13 +244,3 @@ def meet_at(one: Branch, other: Branch, *, high: bool, period: float) -> bool:
 
 def _same(one: float, other: float, period: float) -> bool:
     return bool(abs(np.mod(one - other + period / 2.0, period) - period / 2.0) < SAME_END)
-
-
-def roots_of_rate(jet: Margin, grid: Real, rate: Real) -> Real:
-    """Where the rate of a quantity, known on a grid, changes sign; ``jet`` gives the rate and its own rate."""
-    with np.errstate(invalid="ignore"):
-        change = np.flatnonzero((rate[:-1] > 0.0) != (rate[1:] > 0.0))
-    change = change[np.isfinite(rate[change]) & np.isfinite(rate[change + 1])]
-    if not len(change):
-        return np.empty(0)
-    return _root(jet, grid[change], grid[change + 1], rate[change + 1] > 0.0)

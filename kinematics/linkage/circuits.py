@@ -24,13 +24,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.linkage.classification import CHANGE_POINT, can_assemble, grashof_class
+from kinematics.linkage import circuit_kernels as kernels
+from kinematics.linkage.batch import over_designs
+from kinematics.linkage.circuit_kernels import FULL_TURN
+from kinematics.linkage.classification import can_assemble, grashof_class
 from kinematics.linkage.fourbar import Fourbar, Mask, Real, one_shape
-
-FULL_TURN = 2.0 * np.pi
-
-AT_TOGGLE = 1e-12
-"""An end of a motion this near to a toggle, in radians, is on it: what rounding leaves of an angle after some turns."""
 
 
 class InputLimits(NamedTuple):
@@ -47,23 +45,11 @@ def input_limits(linkage: Fourbar) -> InputLimits:
 
     NaN for a linkage that cannot be assembled. A change point counts as a toggle at |δ| = 0 or π.
     """
-    a, b, c, d = linkage.input, linkage.coupler, linkage.output, linkage.ground
-    slack = CHANGE_POINT * (a + b + c + d)
-
-    def toggle(t: Real) -> tuple[Real, Mask]:
-        """Angle where f = t, and whether f reaches t at all: |d − a| ≤ t ≤ d + a."""
-        below, above = t - np.abs(d - a), (d + a) - t
-        numerator = np.where(below > slack, below, 0.0) * (t + np.abs(d - a))
-        denominator = np.where(above > slack, above, 0.0) * ((d + a) + t)
-        angle = 2.0 * np.arctan2(np.sqrt(numerator), np.sqrt(denominator))
-        return angle, (below >= -slack) & (above >= -slack)
-
-    folded_angle, folded = toggle(np.abs(b - c))
-    extended_angle, extended = toggle(b + c)
-    sound = can_assemble(linkage)
-    lower = np.where(sound, np.where(folded, folded_angle, 0.0), np.nan)
-    upper = np.where(sound, np.where(extended, extended_angle, np.pi), np.nan)
-    return InputLimits(lower, upper, folded & sound, extended & sound)
+    pivots, lengths = linkage.blocks[0].reshape(3, -1), linkage.blocks[1].reshape(3, -1)
+    ends, toggles = np.empty(lengths[:2].shape), np.empty(lengths[:2].shape, np.bool_)
+    kernels.limits(pivots, lengths, ends, toggles)
+    ends, toggles = ends.reshape(2, *linkage.input.shape), toggles.reshape(2, *linkage.input.shape)
+    return InputLimits(ends[0, ...], ends[1, ...], toggles[0, ...], toggles[1, ...])
 
 
 def toggle_angles(linkage: Fourbar) -> Real:
@@ -112,17 +98,13 @@ def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:
     ShapeError
         For angles that do not broadcast with the designs.
     """
-    one_shape(designs=linkage.input.shape, start=np.shape(start), end=np.shape(end))
-    limits = input_limits(linkage)
-    low, high = np.minimum(start, end), np.maximum(start, end)
-    low, high = low - linkage.ground_angle, high - linkage.ground_angle
-    free = can_assemble(linkage)
-    for toggle, exists in ((limits.lower, limits.folded_toggle), (limits.upper, limits.extended_toggle)):
-        for sign in (1.0, -1.0):
-            turns = np.ceil((low - AT_TOGGLE - sign * toggle) / FULL_TURN)
-            free = free & ~(exists & (sign * toggle + turns * FULL_TURN <= high + AT_TOGGLE))
-    middle = np.abs(np.angle(np.exp(0.5j * (low + high))))
-    return np.asarray(free & (limits.lower <= middle) & (middle <= limits.upper))
+    shape = linkage.input.shape
+    start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
+    if not (start.ndim == end.ndim == 0):
+        shape = one_shape(designs=shape, start=start.shape, end=end.shape)
+    free = np.empty(shape, np.bool_)
+    kernels.stays(*over_designs(linkage.blocks, shape, start, end), free.reshape(-1))
+    return free
 
 
 def same_circuit(

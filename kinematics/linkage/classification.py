@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.errors import DimensionError
+from kinematics.linkage import circuit_kernels as kernels
+from kinematics.linkage.batch import over_designs
+from kinematics.linkage.circuit_kernels import CHANGE_POINT
 from kinematics.linkage.fourbar import Fourbar, Mask, Real, require
-
-CHANGE_POINT = 1e-9
-"""|S + L − P − Q| below this share of the perimeter counts as the special case: the transmission angle at such a
-change point is then below about 1e-4 rad, where no direction of motion can be relied on."""
 
 
 class BarkerClass(NamedTuple):
@@ -84,16 +83,9 @@ def barker_type(linkage: Fourbar) -> NDArray[np.int64]:
 
     A linkage that no position assembles (one link longer than the other three together) is of no class: type 0.
     """
-    lengths = linkage.lengths
-    equal = CHANGE_POINT * lengths.sum(axis=-1)
-    kind = grashof_class(lengths)
-    shortest, longest = lengths.argmin(axis=-1), lengths.argmax(axis=-1)
-    ordered = np.sort(lengths, axis=-1)
-    pairs = (ordered[..., 1] - ordered[..., 0] <= equal) & (ordered[..., 3] - ordered[..., 2] <= equal)
-    all_equal = ordered[..., 3] - ordered[..., 0] <= equal
-    special = np.where(all_equal, 14, np.where(pairs, 13, 9 + shortest))
-    found = np.where(kind == 1, 1 + shortest, np.where(kind == 2, 5 + longest, special))
-    return np.where(can_assemble(linkage), found, 0)
+    types = np.empty(linkage.input.shape, np.int64)
+    kernels.barker_types(*over_designs(linkage.blocks, types.shape), types.reshape(-1))
+    return types
 
 
 def barker_class(linkage: Fourbar) -> BarkerClass:

@@ -235,7 +235,8 @@ class _Drive:
         turned = self.input.copy()
         turned[0] -= mechanism.reference_input[..., None]
         for design in np.ndindex(*self.shape[:-1]):
-            index = tuple(n if size > 1 else 0 for n, size in zip(design, mechanism.shape, strict=True))
+            own = design[len(design) - len(mechanism.shape) :]
+            index = tuple(n if size > 1 else 0 for n, size in zip(own, mechanism.shape, strict=True))
             loops = loop_equations(mechanism, {name: complex(z[index]) for name, z in self.frame.joints.items()})
             here = turned[(slice(None), *design)]
             angles = follow(loops, here[0])

@@ -9,7 +9,8 @@ axis from A to O4 (length f) it stands at x = (f² + b² − c²) / 2f with heig
     B = A + (O4 − A)/f · (x + i σ h),        σ = +1 open, −1 crossed
 
 which is the half-angle solution of Norton 4.10 and 4.13 without its divisions by zero. The product under the root is
-kept in factors, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is exact near the toggles.
+kept in factors, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is exact near the toggles. The
+sweeps over designs × angles are compiled (:mod:`fourbar_kernels`).
 
 Derivatives. The loop A + b e^{iθ3} = O4 + c e^{iθ4} is differentiated with respect to time; each order is a real 2×2
 linear system with the same matrix (Norton 6.18, 7.12), solved by cross products. Its determinant is
@@ -24,27 +25,53 @@ from types import EllipsisType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from kinematics.errors import DimensionError, ShapeError
+from kinematics.linkage import fourbar_kernels as kernels
+from kinematics.linkage.batch import (
+    CROSSED,
+    OPEN,
+    Complex,
+    CouplerPoints,
+    Mask,
+    Real,
+    Sweep,
+    block,
+    fields,
+    one_shape,
+    rate_rows,
+    require,
+    sweep,
+)
+from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
 
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Mask = NDArray[np.bool_]
+__all__ = [
+    "CROSSED",
+    "ON_TOGGLE",
+    "OPEN",
+    "TOGGLE_SINE",
+    "AngleAxis",
+    "Complex",
+    "CouplerMotion",
+    "CouplerPoints",
+    "Derivatives",
+    "Fourbar",
+    "Mask",
+    "Motion",
+    "Positions",
+    "Real",
+    "closes",
+    "coupler_motion",
+    "coupler_points",
+    "motion",
+    "one_shape",
+    "positions",
+    "require",
+    "with_angle_axis",
+]
 
 AngleAxis = tuple[EllipsisType] | tuple[EllipsisType, None]
 """Index that gives an array over designs its trailing axis of input angles."""
-
-OPEN, CROSSED = 1, -1
-"""Assembly signs: B to the left (open) or to the right (crossed) of the directed line from A to O4."""
-
-TOGGLE_SINE = 1e-7
-"""Derivatives count as undefined where |sin(θ4 − θ3)| is below this: near a toggle the sine goes with the root of the
-input angle's distance from it, so that rounding of that angle alone makes a sine of some 1e-8."""
-
-ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)
-"""h² may be below zero by this share of b c, which lengthens no link by more than that share: a toggle or change point
-is a configuration, and rounding must not take it away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,28 +113,43 @@ class Fourbar:
         output: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        points = {
-            "input_pivot": np.asarray(input_pivot, np.complex128),
-            "output_pivot": np.asarray(output_pivot, np.complex128),
-            "coupler_point": np.asarray(coupler_point, np.complex128),
-        }
-        lengths = {
-            "input": np.asarray(input, np.float64),
-            "coupler": np.asarray(coupler, np.float64),
-            "output": np.asarray(output, np.float64),
-        }
-        designs = one_shape(**{name: value.shape for name, value in (points | lengths).items()})
-        for name, length in lengths.items():
-            require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
-        for name, point in points.items():
-            require(name, "finite", point, np.isfinite(point))
-        with np.errstate(over="ignore"):
-            ground = np.abs(points["output_pivot"] - points["input_pivot"])
-        require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
-        for name, value in (points | lengths).items():
-            own = value.copy()
-            own.flags.writeable = False
-            object.__setattr__(self, name, np.broadcast_to(own, designs))
+        o2, o4, point = (np.asarray(z, np.complex128) for z in (input_pivot, output_pivot, coupler_point))
+        a, b, c = (np.asarray(x, np.float64) for x in (input, coupler, output))
+        if o2.shape == o4.shape == point.shape == a.shape == b.shape == c.shape:
+            designs = a.shape
+        else:
+            named = {
+                "input_pivot": o2,
+                "output_pivot": o4,
+                "coupler_point": point,
+                "input": a,
+                "coupler": b,
+                "output": c,
+            }
+            designs = one_shape(**{name: field.shape for name, field in named.items()})
+        pivots, lengths = block((o2, o4, point), designs, np.complex128), block((a, b, c), designs, np.float64)
+        if not kernels.sound_dimensions(pivots.reshape(3, -1), lengths.reshape(3, -1)):
+            _refuse(o2, o4, point, a, b, c)
+        # Read-only views of the two blocks, which are what the kernels take.
+        self.__dict__.update(
+            input_pivot=pivots[0, ...],
+            output_pivot=pivots[1, ...],
+            coupler_point=pivots[2, ...],
+            input=lengths[0, ...],
+            coupler=lengths[1, ...],
+            output=lengths[2, ...],
+            _blocks=(pivots, lengths),
+        )
+
+    @property
+    def blocks(self) -> tuple[Complex, Real]:
+        """The fields as the kernels take them: O2, O4, P; a, b, c; shape (3,) + S each."""
+        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
+        return blocks
+
+    def __reduce__(self) -> tuple[type[Fourbar], tuple[Complex | Real, ...]]:
+        given = self.input_pivot, self.output_pivot, self.input, self.coupler, self.output, self.coupler_point
+        return Fourbar, given
 
     @classmethod
     def from_lengths(
@@ -139,18 +181,15 @@ class Fourbar:
         return np.asarray(np.angle(self.output_pivot - self.input_pivot))
 
 
-def one_shape(**shapes: tuple[int, ...]) -> tuple[int, ...]:
-    """Shape that the named shapes broadcast to, or the error that names them."""
-    try:
-        return np.broadcast_shapes(*shapes.values())
-    except ValueError:
-        raise ShapeError(**shapes) from None
-
-
-def require(name: str, expected: str, value: NDArray[np.generic], good: Mask | np.bool_) -> None:
-    """Raise the error that names the field and its first bad value, unless all are good."""
-    if not np.all(good):
-        raise DimensionError(name, expected, np.asarray(value)[~np.asarray(good)].flat[0].item())
+def _refuse(o2: Complex, o4: Complex, point: Complex, a: Real, b: Real, c: Real) -> None:
+    """Raise the error that names the first unsound field."""
+    for name, length in (("input", a), ("coupler", b), ("output", c)):
+        require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+    for name, pivot in (("input_pivot", o2), ("output_pivot", o4), ("coupler_point", point)):
+        require(name, "finite", pivot, np.isfinite(pivot))
+    with np.errstate(over="ignore"):
+        ground = np.abs(o4 - o2)
+    require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
 
 
 class Positions(NamedTuple):
@@ -165,6 +204,19 @@ class Positions(NamedTuple):
     p: Complex
     coupler_angle: Real
     output_angle: Real
+
+
+class CouplerMotion(NamedTuple):
+    """Coupler points with velocity and acceleration over designs × input angles.
+
+    The position is NaN where not ``valid``, the derivatives are where not ``moves``: at toggles too.
+    """
+
+    valid: Mask
+    moves: Mask
+    p: Complex
+    velocity: Complex
+    acceleration: Complex
 
 
 class Derivatives(NamedTuple):
@@ -212,31 +264,39 @@ def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OP
     ShapeError
         For angles or assemblies that do not broadcast with the designs.
     """
-    sign = np.asarray(assembly)
-    require("assembly", "+1 (open) or −1 (crossed)", sign, np.abs(sign) == 1)
-    theta, axis = with_angle_axis(linkage, input_angle, sign.shape)
-    b, c, sigma = linkage.coupler[axis], linkage.output[axis], sign[axis]
-    crank = linkage.input[axis] * np.exp(1j * theta)
-    pin_a = linkage.input_pivot[axis] + crank
-    diagonal = (linkage.output_pivot - linkage.input_pivot)[axis] - crank
-    f = np.abs(diagonal)
-    product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
-    valid = closes(product, b, c, f) & (f > 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        along = (f * f + (b - c) * (b + c)) / (2.0 * f)
-        height = np.sqrt(np.where(valid, np.maximum(product, 0.0), np.nan)) / (2.0 * f)
-        pin_b = pin_a + diagonal / f * (along + 1j * sigma * height)
-    arm = pin_b - pin_a
-    point = pin_a + linkage.coupler_point[axis] * arm / b
-    pin_a, valid = np.broadcast_to(pin_a, point.shape), np.broadcast_to(valid, point.shape)
-    return Positions(
-        valid,
-        np.where(valid, pin_a, np.nan),
-        pin_b,
-        point,
-        np.asarray(np.angle(arm)),
-        np.asarray(np.angle(pin_b - linkage.output_pivot[axis])),
-    )
+    at = sweep(linkage.blocks, input_angle, assembly)
+    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
+    kernels.whole_positions(*at[:4], points, angles, valid)
+    points, angles = points.reshape(3, *at.shape), angles.reshape(2, *at.shape)
+    return Positions(*fields(valid.reshape(at.shape), points, angles))
+
+
+def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
+    """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
+    at = sweep(linkage.blocks, input_angle, assembly)
+    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
+    kernels.coupler_points(*at[:4], points, valid)
+    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+
+
+def coupler_motion(
+    linkage: Fourbar,
+    input_angle: ArrayLike,
+    assembly: ArrayLike = OPEN,
+    *,
+    speed: ArrayLike = 1.0,
+    acceleration: ArrayLike = 0.0,
+) -> CouplerMotion:
+    """Position, velocity and acceleration of the coupler point alone, for large sweeps.
+
+    Parameters, shapes and errors are those of :func:`motion`.
+    """
+    narrow = sweep(linkage.blocks, input_angle, assembly)
+    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, 0.0)
+    points, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat), np.bool_)
+    kernels.coupler_motion(*at[:4], rates, points, valid)
+    points, valid = points.reshape(3, *at.shape), valid.reshape(2, *at.shape)
+    return CouplerMotion(valid[0, ...], valid[1, ...], points[0, ...], points[1, ...], points[2, ...])
 
 
 def motion(
@@ -268,41 +328,39 @@ def motion(
     DimensionError, ShapeError
         As for :func:`positions`; ShapeError also for rates that do not broadcast with the positions.
     """
-    at = positions(linkage, input_angle, assembly)
-    theta, axis = with_angle_axis(linkage, input_angle)
-    b, c = linkage.coupler[axis], linkage.output[axis]
-    rates_in = {"speed": speed, "acceleration": acceleration, "jerk": jerk}
-    given = {name: np.asarray(rate, np.float64) for name, rate in rates_in.items()}
-    shape = one_shape(positions=at.b.shape, **{name: rate.shape for name, rate in given.items()})
-    w2, a2, j2 = (np.broadcast_to(rate, shape) for rate in given.values())
-    crank = linkage.input[axis] * np.exp(1j * theta)
-    coupler: Complex = at.b - at.a
-    output: Complex = at.b - linkage.output_pivot[axis]
-    arm = at.p - at.a
-    determinant = _cross(output, coupler)
-    sound = np.broadcast_to(at.valid & (np.abs(determinant) > TOGGLE_SINE * b * c), shape)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        scale = np.where(sound, 1.0 / determinant, np.nan)
+    narrow = sweep(linkage.blocks, input_angle, assembly)
+    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, jerk)
+    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
+    valid = np.empty((2, *at.flat), np.bool_)
+    kernels.whole_motion(*at[:4], rates, points, angles, valid)
+    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
+    valid = valid.reshape(2, *at.shape)
+    # Rates of more axes than the positions have do not multiply the positions.
+    if at.shape == narrow.shape:
+        position = Positions(*fields(valid[0, ...], points[0], angles[0]))
+    else:
+        position = positions(linkage, input_angle, assembly)
+    sound = valid[1, ...]
+    return Motion(position, *(Derivatives(*fields(sound, points[k], angles[k])) for k in (1, 2, 3)))
 
-        def rates(right: Complex) -> tuple[Real, Real]:
-            """Solve i·coupler·x3 − i·output·x4 = right for real x3, x4."""
-            rotated = -1j * right
-            return _cross(output, rotated) * scale, _cross(coupler, rotated) * scale
 
-        crank = np.asarray(np.where(sound, crank, np.nan), np.complex128)
-        va = 1j * w2 * crank
-        w3, w4 = rates(-va)
-        aa = (1j * a2 - w2**2) * crank
-        a3, a4 = rates(-aa + w3**2 * coupler - w4**2 * output)
-        ja = _third(w2, a2, j2) * crank
-        j3, j4 = rates(-ja - _third(w3, a3, 0.0) * coupler + _third(w4, a4, 0.0) * output)
-
-        velocity = Derivatives(sound, va, va + 1j * w3 * coupler, va + 1j * w3 * arm, w3, w4)
-        second = 1j * a3 - w3**2
-        accelerations = Derivatives(sound, aa, aa + second * coupler, aa + second * arm, a3, a4)
-        third = _third(w3, a3, j3)
-        jerks = Derivatives(sound, ja, ja + third * coupler, ja + third * arm, j3, j4)
-    return Motion(at, velocity, accelerations, jerks)
+def _rates(
+    linkage: Fourbar,
+    narrow: Sweep,
+    input_angle: ArrayLike,
+    assembly: ArrayLike,
+    speed: ArrayLike,
+    acceleration: ArrayLike,
+    jerk: ArrayLike,
+) -> tuple[Real, Sweep]:
+    """Input rates as rows, and the sweep of the shape that they and the positions make."""
+    given = np.asarray(speed, np.float64), np.asarray(acceleration, np.float64), np.asarray(jerk, np.float64)
+    if given[0].ndim == given[1].ndim == given[2].ndim == 0:
+        return rate_rows(*given, narrow.shape), narrow
+    named = dict(zip(("speed", "acceleration", "jerk"), (rate.shape for rate in given), strict=True))
+    shape = one_shape(positions=narrow.shape, **named)
+    at = narrow if shape == narrow.shape else sweep(linkage.blocks, input_angle, assembly, shape)
+    return rate_rows(*given, shape), at
 
 
 def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[int, ...] = ()) -> tuple[Real, AngleAxis]:
@@ -321,14 +379,3 @@ def closes(product: Real, b: Real, c: Real, f: Real) -> Mask:
     ``product`` is 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c).
     """
     return np.asarray(product >= -4.0 * ON_TOGGLE * f * f * b * c)
-
-
-def _cross(u: Complex, v: Complex) -> Real:
-    """Cross product u × v of vectors written as complex numbers."""
-    return u.real * v.imag - u.imag * v.real
-
-
-def _third(w: ArrayLike, alpha: ArrayLike, jerk: ArrayLike) -> Complex:
-    """Factor of e^{iθ} in its third time derivative: i(θ''' − θ'³) − 3 θ' θ''."""
-    w, alpha, jerk = np.asarray(w), np.asarray(alpha), np.asarray(jerk)
-    return np.asarray(1j * (jerk - w**3) - 3.0 * w * alpha, np.complex128)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.branches import GRID, Branch, cycle, dyadic_branches, roots_of_rate
+from kinematics.linkage.branches import GRID, Branch, cycle, dyadic_branches
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import MechanismMotion, assembly_signs, drive
+from kinematics.linkage.drive import assembly_signs, drive
 from kinematics.linkage.mechanism import Mechanism
 from kinematics.linkage.other_driver import branches_by_other_driver
+from kinematics.linkage.roots import find_roots, sign_changes
 
 Real = NDArray[np.float64]
 
@@ -39,23 +40,6 @@ def toggles(mechanism: Mechanism, found: list[Branch]) -> list[float]:
         ends = [float(np.mod(x, cycle(mechanism))) for x in ends]
     ends.sort()
     return [x for n, x in enumerate(ends) if n == 0 or x - ends[n - 1] > SAME_TOGGLE]
-
-
-def stationary(
-    mechanism: Mechanism, quantity: Callable[[MechanismMotion], Real], low: float, high: float
-) -> list[float]:
-    """Inputs between low and high, on the reference's branch, where a quantity stands still: its limit positions.
-
-    ``quantity`` takes a motion and returns a real jet, shape (n, N), e.g. a link's angle.
-    """
-    grid = np.linspace(low, high, GRID)
-    rate = quantity(drive(mechanism, grid, order=1))[1]
-
-    def jet(at: Real) -> tuple[Real, Real]:
-        found = quantity(drive(mechanism, at, order=2))
-        return found[1], found[2]
-
-    return [float(x) for x in roots_of_rate(jet, grid, rate)]
 
 
 def holding_reference(mechanism: Mechanism, found: list[Branch]) -> Branch | None:
@@ -88,9 +72,11 @@ def _reaches_just(mechanism: Mechanism, low: float, high: float) -> bool:
 
 
 def limit_positions(
-    mechanism: Mechanism, branch: Branch, quantity: Callable[[MechanismMotion], Real], *, turns: bool
-) -> tuple[float, float] | None:
-    """Least and greatest value of a quantity on the reference's branch; None for an angle that turns through.
+    mechanism: Mechanism, branch: Branch, links: Sequence[str], slides: Sequence[str]
+) -> tuple[list[tuple[float, float] | None], list[tuple[float, float] | None]]:
+    """Least and greatest angles of links, and positions of slides, on the reference's branch.
+
+    They stand at the ends of the branch, or where a rate vanishes, which is found as a root.
 
     Parameters
     ----------
@@ -98,25 +84,46 @@ def limit_positions(
         One design.
     branch : Branch
         The branch that holds its reference.
-    quantity : callable
-        Takes a motion, returns a real jet of shape (n, N).
-    turns : bool
-        Whether the quantity is an angle, known to full turns only.
+    links, slides : names
+        Links, and joints of slides as :class:`MechanismMotion` names them.
+
+    Returns
+    -------
+    of_links, of_slides : lists
+        Radians and lengths, in the order of the names; None for a link that turns through.
     """
     at = float(mechanism.reference_input)
     low = branch.low
     if not mechanism.driven_by_slide:
         low = at - float(np.mod(at - branch.low, cycle(mechanism)))
     high = low + branch.high - branch.low
+
+    def quantities(inputs: Real, order: int) -> Real:
+        """Jets of all quantities, shape (order + 1, quantities, inputs)."""
+        motion = drive(mechanism, inputs, order=order)
+        return np.stack([*(motion.angles[n] for n in links), *(motion.slides[n] for n in slides)], axis=1)
+
+    if not links and not slides:
+        return [], []
     grid = np.linspace(low, high, GRID)
-    inputs = np.unique(np.concatenate([grid, stationary(mechanism, quantity, low, high)]))
-    value = quantity(drive(mechanism, inputs, order=0))[0]
-    value = value[np.isfinite(value)]
-    if not len(value):
-        return None
-    if turns:
-        value = np.unwrap(value)
-        if branch.full and abs(value[-1] - value[0]) > np.pi:
-            return None
-        value = value - 2.0 * np.pi * np.round(value[0] / (2.0 * np.pi))
-    return float(value.min()), float(value.max())
+    rate = quantities(grid, 1)[1]
+    changes = [(row, n) for row in range(len(rate)) for n in sign_changes(rate[row])]
+    inputs = grid
+    if changes:
+        of = np.array([row for row, _ in changes]), np.arange(len(changes))
+        left = np.array([grid[n] for _, n in changes])
+        right = np.array([grid[n + 1] for _, n in changes])
+        roots = find_roots(lambda inputs: quantities(inputs, 1)[1][of], left, right)[0]
+        inputs = np.unique(np.concatenate([grid, roots]))
+    values = quantities(inputs, 0)[0]
+    known = np.isfinite(values).all(axis=0)
+    spans: list[tuple[float, float] | None] = []
+    for row, value in enumerate(values[:, known]):
+        if row < len(links):
+            value = np.unwrap(value)
+            if branch.full and abs(value[-1] - value[0]) > np.pi:
+                spans.append(None)
+                continue
+            value = value - 2.0 * np.pi * np.round(value[0] / (2.0 * np.pi))
+        spans.append((float(value.min()), float(value.max())))
+    return spans[: len(links)], spans[len(links) :]

@@ -15,10 +15,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.branches import GRID, Branch, dyadic_branches, meet_at, roots_of_rate
+from kinematics.linkage.branches import GRID, Branch, dyadic_branches, meet_at
 from kinematics.linkage.closures import decompose
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
+from kinematics.linkage.roots import find_roots, sign_changes
 
 Real = NDArray[np.float64]
 FULL_TURN = 2.0 * np.pi
@@ -58,7 +59,7 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
     """All branches of one design, circuit by circuit, the reference's first; ``signs`` and closures are left empty."""
     other = other_driver(mechanism)
     parts = dyadic_branches(other)
-    curves = [_Curve(mechanism, other, branch) for branch in parts]
+    pieces = _pieces(mechanism, other, parts)
     found: list[Branch] = []
     left = list(range(len(parts)))
     number: dict[int, int] = {}
@@ -67,39 +68,53 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
         for n, _ in loop:
             left.remove(n)
         circuit = number.setdefault(parts[loop[0][0]].circuit, len(number))
-        found += _branches_of(loop, curves, circuit, mechanism.driven_by_slide)
+        found += _branches_of(loop, pieces, circuit, mechanism.driven_by_slide)
     return sorted(found, key=lambda branch: (branch.circuit, branch.low))
 
 
-class _Curve:
-    """The true input along one branch of the other driver: its pieces between turning points, by rising other input."""
+def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list[list[Piece]]:
+    """The true input along each branch of the other driver, cut at its turning points, by rising other input."""
+    base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
+    steps = decompose(other).steps
+    closing = [n for n, step in enumerate(steps) if step.has_two_solutions]
+    table = np.ones((len(parts), len(steps)), np.int64)
+    for row, branch in enumerate(parts):
+        table[row, closing] = branch.signs
 
-    def __init__(self, mechanism: Mechanism, other: Mechanism, branch: Branch) -> None:
-        base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
-        steps = decompose(other).steps
-        chosen = iter(branch.signs)
-        signs = tuple(np.array(next(chosen) if step.has_two_solutions else 1) for step in steps)
+    def true_input(at: Real, row: NDArray[np.int64], order: int) -> Real:
+        """Jet of the true input where the other input is ``at``, on the branches ``row``; shape (n, len(at))."""
+        motion = drive(other, at[:, None], signs=tuple(table[row].T), order=order)
+        if mechanism.driven_by_slide:
+            return np.asarray(motion.slides[mechanism.input][..., 0])
+        name = {GROUND: base, base: GROUND}.get(mechanism.input, mechanism.input)
+        still = np.zeros_like(motion.input)
+        return np.asarray((motion.angles.get(name, still) - motion.angles.get(base, still))[..., 0])
 
-        def true_input(at: Real, order: int) -> Real:
-            motion = drive(other, at, signs=signs, order=order)
-            if mechanism.driven_by_slide:
-                return motion.slides[mechanism.input]
-            name = {GROUND: base, base: GROUND}.get(mechanism.input, mechanism.input)
-            still = np.zeros_like(motion.input)
-            turned = motion.angles.get(name, still) - motion.angles.get(base, still)
-            return np.asarray(turned)
-
-        # The ends are folded positions, where the rates are infinite; a hair inside they are only large.
+    # The ends are folded positions, where the rates are infinite; a hair inside they are only large.
+    grids = []
+    for branch in parts:
         hair = 0.0 if branch.full else 1e-9 * (branch.high - branch.low)
-        grid = np.linspace(branch.low + hair, branch.high - hair, GRID)
-        rate = true_input(grid, 1)[1]
-        turns = roots_of_rate(lambda at: (lambda jet: (jet[1], jet[2]))(true_input(at, 2)), grid, rate)
-        at = np.unique(np.concatenate([[branch.low], grid, turns, [branch.high]]))
-        value = true_input(at, 0)[0]
-        if not mechanism.driven_by_slide:
-            value = np.unwrap(value)
-        marks = [value[0], *(float(value[np.searchsorted(at, t)]) for t in turns), value[-1]]
-        self.pieces = [Piece(float(a), float(b)) for a, b in pairwise(marks)]
+        grids.append(np.linspace(branch.low + hair, branch.high - hair, GRID))
+    rows = np.repeat(np.arange(len(parts)), GRID)
+    rate = true_input(np.concatenate(grids), rows, 1)[1].reshape(len(parts), GRID)
+    changes = [(row, n) for row in range(len(parts)) for n in sign_changes(rate[row])]
+    turns = np.empty(0)
+    of = np.array([row for row, _ in changes], np.int64)
+    if changes:
+        low, high = (np.array([grids[row][n + k] for row, n in changes]) for k in (0, 1))
+        turns = find_roots(lambda at: true_input(at, of, 1)[1], low, high)[0]
+    points = [
+        np.unique(np.concatenate([[branch.low], grid, turns[of == row], [branch.high]]))
+        for row, (branch, grid) in enumerate(zip(parts, grids, strict=True))
+    ]
+    lengths = [len(at) for at in points]
+    values = true_input(np.concatenate(points), np.repeat(np.arange(len(parts)), lengths), 0)[0]
+    cut = []
+    for row, value in enumerate(np.split(values, np.cumsum(lengths)[:-1])):
+        smooth = value if mechanism.driven_by_slide else np.unwrap(value)
+        inner = [float(smooth[np.searchsorted(points[row], t)]) for t in np.sort(turns[of == row])]
+        cut.append([Piece(float(a), float(b)) for a, b in pairwise([smooth[0], *inner, smooth[-1]])])
+    return cut
 
 
 def _loop(parts: list[Branch], left: list[int]) -> list[tuple[int, bool]]:
@@ -120,11 +135,11 @@ def _loop(parts: list[Branch], left: list[int]) -> list[tuple[int, bool]]:
         loop.append((here, upwards))
 
 
-def _branches_of(loop: list[tuple[int, bool]], curves: list[_Curve], circuit: int, slide: bool) -> list[Branch]:
+def _branches_of(loop: list[tuple[int, bool]], cut: list[list[Piece]], circuit: int, slide: bool) -> list[Branch]:
     """Join the pieces along a closed loop where the input goes on the same way."""
     pieces: list[Piece] = []
     for n, upwards in loop:
-        own = curves[n].pieces if upwards else [Piece(p.end, p.start) for p in reversed(curves[n].pieces)]
+        own = cut[n] if upwards else [Piece(p.end, p.start) for p in reversed(cut[n])]
         for piece in own:
             shift = 0.0 if slide or not pieces else FULL_TURN * round((pieces[-1].end - piece.start) / FULL_TURN)
             pieces.append(Piece(piece.start + shift, piece.end + shift))

@@ -13,7 +13,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.linkage.fourbar import Fourbar, Mask, Real, closes, one_shape, with_angle_axis
+from kinematics.linkage import circuit_kernels as kernels
+from kinematics.linkage.batch import over_designs
+from kinematics.linkage.fourbar import Fourbar, Real, closes, one_shape, with_angle_axis
 
 
 def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:
@@ -54,20 +56,13 @@ def transmission_extremes(linkage: Fourbar, start: ArrayLike, end: ArrayLike) ->
     ShapeError
         For angles that do not broadcast with the designs.
     """
-    a, b, c, d = linkage.input, linkage.coupler, linkage.output, linkage.ground
+    shape = linkage.input.shape
     start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
-    shape = one_shape(designs=a.shape, start=start.shape, end=end.shape)
-    ends = np.stack([np.broadcast_to(start, shape), np.broadcast_to(end, shape)], axis=-1)
-    ends = np.sort(ends - linkage.ground_angle[..., None], axis=-1)
-    at_ends = np.abs(d[..., None] - a[..., None] * np.exp(1j * ends))
-    low, high = ends[..., 0], ends[..., 1]
-    shortest = np.where(_contains(low, high, 0.0), np.abs(d - a), at_ends.min(axis=-1))
-    longest = np.where(_contains(low, high, np.pi), d + a, at_ends.max(axis=-1))
-    gamma_low, gamma_high = _included(b, c, shortest), _included(b, c, longest)
-    acute_low, acute_high = _acute(gamma_low), _acute(gamma_high)
-    square = (gamma_low <= np.pi / 2) & (gamma_high >= np.pi / 2)
-    greatest = np.where(square, np.pi / 2, np.maximum(acute_low, acute_high))
-    return np.minimum(acute_low, acute_high), greatest
+    if not (start.ndim == end.ndim == 0):
+        shape = one_shape(designs=shape, start=start.shape, end=end.shape)
+    least, greatest = np.empty(shape), np.empty(shape)
+    kernels.extremes(*over_designs(linkage.blocks, shape, start, end), least.reshape(-1), greatest.reshape(-1))
+    return least, greatest
 
 
 def _included(b: Real, c: Real, f: Real) -> Real:
@@ -79,8 +74,3 @@ def _included(b: Real, c: Real, f: Real) -> Real:
 
 def _acute(gamma: Real) -> Real:
     return np.minimum(gamma, np.pi - gamma)
-
-
-def _contains(low: Real, high: Real, angle: float) -> Mask:
-    """Whether low ≤ angle + 2πm ≤ high for some integer m."""
-    return np.asarray(np.floor((high - angle) / (2 * np.pi)) >= np.ceil((low - angle) / (2 * np.pi)))

@@ -6,14 +6,15 @@ them,
     F(φ, θ) = C u + k z + c = 0,
 
 one complex row a loop, as many real equations as unknown rotations φ. A solution is followed in θ by steps that cannot
-leap to another: by the Newton–Kantorovich theorem (Ortega and Rheinboldt, Iterative Solution of Nonlinear Equations,
-12.6.2), with β = ‖J⁻¹‖∞ at the solution φ for θ and M a Lipschitz constant of J = ∂F/∂φ, which here is the largest row
-sum of |C|, there is for every θ' with
+leap to another: by the affine covariant Newton–Kantorovich theorem (Deuflhard and Heindl, SIAM J. Numer. Anal. 16
+(1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is for every θ' with
 
-    |θ' − θ| ≤ 1 / (2 β² M |k|)
+    |θ' − θ| ≤ 1 / (2 η ω),    η ≥ ‖J⁻¹ k (z' − z)‖ / |z' − z|,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖,
 
-just one solution in a ball around φ; the ball is the same for all of them, so it is the continuation of φ. Near a
-toggle β grows and the steps shrink in proportion to the distance, so the toggle is approached geometrically.
+just one solution in a ball around φ; the ball is the same for all of them, so it is the continuation of φ. With the
+rows of J⁻¹ written as complex ones, g, the largest of |ḡ k| over the rows serves as η and the largest sum of |ḡ C| over
+the links as ω. Near a toggle both grow with the inverse root of the distance, so that the steps shrink in proportion
+to it, and the toggle is approached geometrically.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-STALLED = 1e-11
-"""A certified step below this, radians, means a toggle: its distance is of the same size."""
+STALLED = 1e-13
+"""A certified step below this, radians, means a toggle: its distance is some hundred times as large, 1e-10 or less."""
 
 CONVERGED = 1e-14
 """Newton's correction, radians, at which a position counts as solved."""
@@ -168,18 +169,13 @@ def _follow(c: Complex, k: Complex, fixed: Complex, rotation: Real) -> Real:
     found = np.full((len(rotation), links), np.nan)
     phi = np.zeros(links)
     at = 0.0
-    lipschitz, reach = 0.0, 1e-300
-    for row in range(loops):
-        lipschitz = max(lipschitz, np.sum(np.abs(c[row])))
-        reach = max(reach, abs(k[row]))
     value = np.empty(2 * loops)
     inverse = np.empty((links, links))
     slope = np.empty(2 * loops)
     for target in range(len(rotation)):
         while at != rotation[target] or target == 0:
             _evaluate(c, k, fixed, phi, at, value, inverse)
-            beta = _invert(inverse)
-            certified = 0.5 / (beta * beta * lipschitz * reach)
+            certified = _certified(c, k, inverse) if np.isfinite(_invert(inverse)) else 0.0
             step = rotation[target] - at
             if abs(step) > certified:
                 if certified < STALLED:
@@ -203,6 +199,24 @@ def _follow(c: Complex, k: Complex, fixed: Complex, rotation: Real) -> Real:
                 break
         found[target] = phi
     return found
+
+
+@njit(cache=True, nogil=True)
+def _certified(c: Complex, k: Complex, inverse: Real) -> float:
+    """1 / (2 η ω): the step within which the continuation is the only solution."""
+    loops, links = c.shape
+    eta, omega = 1e-300, 1e-300
+    for row in range(links):
+        by_input, total = 0j, 0.0
+        for loop in range(loops):
+            by_input += complex(inverse[row, loop], -inverse[row, loop + loops]) * k[loop]
+        for col in range(links):
+            by_link = 0j
+            for loop in range(loops):
+                by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
+            total += abs(by_link)
+        eta, omega = max(eta, abs(by_input)), max(omega, total)
+    return 0.5 / (eta * omega)
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,132 @@
+"""Compiled verdicts on fourbars, one a design: the formulas of :mod:`circuits` and :mod:`transmission` in scalars.
+
+``pivots`` and ``lengths`` are the blocks of a :class:`Fourbar`, (3, D); ``start`` and ``end`` are absolute input
+angles, (M,). One design may be given for all M.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage.kernels import OPTIONS, Complex, Mask, Real
+
+Integers = NDArray[np.int64]
+
+CHANGE_POINT = 1e-9
+"""|S + L − P − Q| below this share of the perimeter counts as the special case: the transmission angle at such a
+change point is then below about 1e-4 rad, where no direction of motion can be relied on."""
+
+AT_TOGGLE = 1e-12
+"""An end of a motion this near to a toggle, in radians, is on it: what rounding leaves of an angle after some turns."""
+
+FULL_TURN = 2.0 * math.pi
+
+
+@njit(**OPTIONS)
+def _toggle(t: float, a: float, d: float, slack: float) -> tuple[float, bool]:
+    """|δ| where f = t, and whether f reaches t at all: |d − a| ≤ t ≤ d + a."""
+    below, above = t - abs(d - a), (d + a) - t
+    numerator = (below if below > slack else 0.0) * (t + abs(d - a))
+    denominator = (above if above > slack else 0.0) * ((d + a) + t)
+    return 2.0 * math.atan2(math.sqrt(numerator), math.sqrt(denominator)), below >= -slack and above >= -slack
+
+
+@njit(**OPTIONS)
+def _limits(a: float, b: float, c: float, d: float) -> tuple[bool, float, float, bool, bool]:
+    """Whether the linkage can be assembled, the range of |δ|, and which ends of it are toggles."""
+    slack = CHANGE_POINT * (a + b + c + d)
+    folded_angle, folded = _toggle(abs(b - c), a, d, slack)
+    extended_angle, extended = _toggle(b + c, a, d, slack)
+    if 2.0 * max(a, b, c, d) > d + a + b + c:
+        return False, math.nan, math.nan, False, False
+    return True, folded_angle if folded else 0.0, extended_angle if extended else math.pi, folded, extended
+
+
+@njit(**OPTIONS)
+def limits(pivots: Complex, lengths: Real, ends: Real, toggles: Mask) -> None:
+    """Lower and upper limit of |δ| into ``ends`` (2, D), whether they are toggles into ``toggles`` (2, D)."""
+    for i in range(pivots.shape[1]):
+        d = abs(pivots[1, i] - pivots[0, i])
+        _, ends[0, i], ends[1, i], toggles[0, i], toggles[1, i] = _limits(
+            lengths[0, i], lengths[1, i], lengths[2, i], d
+        )
+
+
+@njit(**OPTIONS)
+def stays(pivots: Complex, lengths: Real, start: Real, end: Real, free: Mask) -> None:
+    """Whether the input turns from start to end without a toggle or change point, into ``free`` (M,)."""
+    for i in range(len(free)):
+        j = i if pivots.shape[1] > 1 else 0
+        ground = pivots[1, j] - pivots[0, j]
+        good, lower, upper, folded, extended = _limits(lengths[0, j], lengths[1, j], lengths[2, j], abs(ground))
+        ground_angle = math.atan2(ground.imag, ground.real)
+        low, high = min(start[i], end[i]) - ground_angle, max(start[i], end[i]) - ground_angle
+        for toggle, exists in ((lower, folded), (upper, extended)):
+            for sign in (1.0, -1.0):
+                turns = math.ceil((low - AT_TOGGLE - sign * toggle) / FULL_TURN) if exists else 0.0
+                good = good and not (exists and sign * toggle + turns * FULL_TURN <= high + AT_TOGGLE)
+        middle = 0.5 * (low + high)
+        middle = abs(math.atan2(math.sin(middle), math.cos(middle)))
+        free[i] = good and lower <= middle <= upper
+
+
+@njit(**OPTIONS)
+def _included(b: float, c: float, f: float) -> float:
+    """Angle at B of the triangle with sides b and c and base f; 0 or π where the base is too short or too long."""
+    numerator = (f + (b - c)) * (f - (b - c))
+    denominator = (b + c + f) * (b + c - f)
+    return 2.0 * math.atan2(math.sqrt(max(numerator, 0.0)), math.sqrt(max(denominator, 0.0)))
+
+
+@njit(**OPTIONS)
+def _contains(low: float, high: float, angle: float) -> bool:
+    """Whether low ≤ angle + 2πm ≤ high for some integer m."""
+    return math.floor((high - angle) / FULL_TURN) >= math.ceil((low - angle) / FULL_TURN)
+
+
+@njit(**OPTIONS)
+def extremes(pivots: Complex, lengths: Real, start: Real, end: Real, least: Real, greatest: Real) -> None:
+    """Least and greatest transmission angle over the ranges of the input, (M,)."""
+    for i in range(len(least)):
+        j = i if pivots.shape[1] > 1 else 0
+        a, b, c, ground = lengths[0, j], lengths[1, j], lengths[2, j], pivots[1, j] - pivots[0, j]
+        d, ground_angle = abs(ground), math.atan2(ground.imag, ground.real)
+        low, high = min(start[i], end[i]) - ground_angle, max(start[i], end[i]) - ground_angle
+        f_low = math.hypot(d - a * math.cos(low), a * math.sin(low))
+        f_high = math.hypot(d - a * math.cos(high), a * math.sin(high))
+        shortest = abs(d - a) if _contains(low, high, 0.0) else min(f_low, f_high)
+        longest = d + a if _contains(low, high, math.pi) else max(f_low, f_high)
+        gamma_low, gamma_high = _included(b, c, shortest), _included(b, c, longest)
+        acute_low, acute_high = min(gamma_low, math.pi - gamma_low), min(gamma_high, math.pi - gamma_high)
+        square = gamma_low <= 0.5 * math.pi <= gamma_high
+        least[i] = min(acute_low, acute_high)
+        greatest[i] = 0.5 * math.pi if square else max(acute_low, acute_high)
+
+
+@njit(**OPTIONS)
+def barker_types(pivots: Complex, lengths: Real, types: Integers) -> None:
+    """Barker's type numbers 1 to 14, or 0 where no position assembles the linkage, into ``types`` (D,)."""
+    for i in range(len(types)):
+        d, a, b, c = abs(pivots[1, i] - pivots[0, i]), lengths[0, i], lengths[1, i], lengths[2, i]
+        least, greatest, perimeter = min(d, a, b, c), max(d, a, b, c), d + a + b + c
+        shortest = 0 if d == least else (1 if a == least else (2 if b == least else 3))
+        longest = 0 if d == greatest else (1 if a == greatest else (2 if b == greatest else 3))
+        # The two in the middle, in order.
+        low, high = min(max(d, a), max(b, c)), max(min(d, a), min(b, c))
+        p, q = min(low, high), max(low, high)
+        excess = (greatest - q) - (p - least)
+        equal = CHANGE_POINT * perimeter
+        if 2.0 * greatest > perimeter:
+            types[i] = 0
+        elif abs(excess) > equal:
+            types[i] = 1 + shortest if excess < 0.0 else 5 + longest
+        elif greatest - least <= equal:
+            types[i] = 14
+        elif p - least <= equal and greatest - q <= equal:
+            types[i] = 13
+        else:
+            types[i] = 9 + shortest

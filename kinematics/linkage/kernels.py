@@ -1,0 +1,159 @@
+"""Compiled sweeps: what the kernels of all linkages share.
+
+A kernel works out once what belongs to a design, takes the cosines and sines of a row of input angles once, and leaves
+to the inner loop over angles only sums, products, one or two roots and one or two divisions on separate rows of real
+and imaginary parts. Such a loop has no branches and no calls, so that the compiler makes vector instructions of it,
+four angles at a time on AVX2. Products and sums may be fused (``contract``), nothing else is relaxed: an invalid
+position is NaN.
+
+Arguments that kernels share, C-contiguous:
+
+``pivots``   complex (3, D), read-only: the points of a design
+``lengths``  float (3, D), read-only: the lengths of a design
+``sign``     float (D,) or (1,): assembly signs
+``theta``    float (D, N) or (1, N): input angles
+``rates``    float (3, D, N) or (3, 1, N): speed, acceleration and jerk of the input
+
+One design may be given for D to repeat it. Results are written into the last arguments. Any point of the coupler is
+A + arm (B − A) with a complex ``arm`` of its own: 0 for A, 1 for B. In what follows k is the crank A − O2, u = B − A,
+and ω, α, φ are the first three derivatives of an angle: ``w``, ``a``, ``j`` in the code, with Norton's numbers of the
+links, 2 input, 3 coupler, 4 output.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Mask = NDArray[np.bool_]
+
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+"""How every kernel is compiled: kept on disk, without the interpreter's lock, division by zero as in NumPy."""
+
+ON_TOGGLE = 16 * float(np.finfo(np.float64).eps)
+"""The square of the height over the ground of a triangle may be below zero by this share of the product of its sides,
+which lengthens no link by more than that share: a toggle or change point is a configuration, and rounding must not
+take it away."""
+
+TOGGLE_SINE = 1e-7
+"""Derivatives count as undefined where the sine of the transmission angle is below this: near a toggle it goes with
+the root of the input angle's distance from it, so that rounding of that angle alone makes a sine of some 1e-8."""
+
+TILE = 128
+"""Input angles that are worked on together: their intermediate rows stay in the first-level cache."""
+
+OCTANT = math.sqrt(2.0) - 1.0
+"""tan(π/8): up to this slope the arc tangent is taken directly, above it from the diagonal."""
+
+
+@njit(**OPTIONS)
+def direction(x: float, y: float) -> float:
+    """Angle of the vector (x, y) in (−π, π], without branches; NaN for the zero vector.
+
+    The slope is brought into 0 … tan(π/8) by symmetry, where (arctan(t)/t − 1)/t² is a polynomial in t² (interpolated
+    in Chebyshev's points, 5e-18 off). The error is below two units of the last place.
+    """
+    across, up = math.fabs(x), math.fabs(y)
+    steep = up > across
+    large, small = (up if steep else across), (across if steep else up)
+    diagonal = small > OCTANT * large
+    t = (small - large if diagonal else small) / (large + small if diagonal else large)
+    z = t * t
+    series = 0.03923165829558719 + z * -0.01917688711906226
+    series = -0.0508544973794026 + z * series
+    series = 0.0585814891280221 + z * series
+    series = -0.06664511447381948 + z * series
+    series = 0.07692183190826087 + z * series
+    series = -0.09090904578123903 + z * series
+    series = 0.11111111015256361 + z * series
+    series = -0.14285714284666542 + z * series
+    series = 0.1999999999999552 + z * series
+    series = -0.3333333333333333 + z * series
+    angle = t + t * z * series
+    angle = (0.25 * math.pi if diagonal else 0.0) + angle
+    angle = 0.5 * math.pi - angle if steep else angle
+    angle = math.pi - angle if x < 0.0 else angle
+    return -angle if y < 0.0 else angle
+
+
+@njit(**OPTIONS)
+def cosines(theta: Real, cosine: Real, sine: Real) -> None:
+    """Cosines and sines of a row of angles."""
+    for k in range(len(theta)):
+        cosine[k] = math.cos(theta[k])
+        sine[k] = math.sin(theta[k])
+
+
+@njit(**OPTIONS)
+def divided(z: complex, length: float) -> complex:
+    """z / length, for which the language's own division of complex numbers has more cases than there are."""
+    return complex(z.real / length, z.imag / length)
+
+
+@njit(**OPTIONS)
+def carried(x: Real, y: Real, ux: Real, uy: Real, arm: complex, point: Complex) -> None:
+    """x + iy + arm (ux + i uy): a point of the coupler, or its derivative, from that of A and of u = B − A.
+
+    One complex row is written in a loop: with several, the compiler cannot tell them apart and gives up its vectors.
+    """
+    for k in range(len(point)):
+        point[k] = complex(x[k] + (arm.real * ux[k] - arm.imag * uy[k]), y[k] + (arm.real * uy[k] + arm.imag * ux[k]))
+
+
+@njit(**OPTIONS)
+def velocities(kx: Real, ky: Real, ux: Real, uy: Real, w2: Real, w3: Real, arm: complex, velocity: Complex) -> None:
+    """Velocity of a coupler point, i ω2 k + i ω3 arm u."""
+    for k in range(len(velocity)):
+        x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
+        velocity[k] = complex(-w2[k] * ky[k] - w3[k] * y, w2[k] * kx[k] + w3[k] * x)
+
+
+@njit(**OPTIONS)
+def accelerations(
+    kx: Real,
+    ky: Real,
+    ux: Real,
+    uy: Real,
+    w2: Real,
+    a2: Real,
+    w3: Real,
+    a3: Real,
+    arm: complex,
+    acceleration: Complex,
+) -> None:
+    """Acceleration of a coupler point, (i α2 − ω2²) k + (i α3 − ω3²) arm u."""
+    for k in range(len(acceleration)):
+        x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
+        n2, n3 = w2[k] * w2[k], w3[k] * w3[k]
+        acceleration[k] = complex(
+            -n2 * kx[k] - a2[k] * ky[k] - n3 * x - a3[k] * y, a2[k] * kx[k] - n2 * ky[k] + a3[k] * x - n3 * y
+        )
+
+
+@njit(**OPTIONS)
+def jerks(
+    kx: Real,
+    ky: Real,
+    ux: Real,
+    uy: Real,
+    w2: Real,
+    a2: Real,
+    j2: Real,
+    w3: Real,
+    a3: Real,
+    j3: Real,
+    arm: complex,
+    jerk: Complex,
+) -> None:
+    """Jerk of a coupler point; the third derivative of e^{iθ} has the factor i (φ − ω³) − 3 ω α."""
+    for k in range(len(jerk)):
+        x, y = arm.real * ux[k] - arm.imag * uy[k], arm.real * uy[k] + arm.imag * ux[k]
+        n2, t2 = 3.0 * w2[k] * a2[k], j2[k] - w2[k] * w2[k] * w2[k]
+        n3, t3 = 3.0 * w3[k] * a3[k], j3[k] - w3[k] * w3[k] * w3[k]
+        jerk[k] = complex(-n2 * kx[k] - t2 * ky[k] - n3 * x - t3 * y, t2 * kx[k] - n2 * ky[k] + t3 * x - n3 * y)

@@ -1,0 +1,28 @@
+"""Compilation ahead of time: every kernel of the package is called once, so that no later call waits for a compiler."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics.linkage import fourbar, slider_crank
+from kinematics.linkage.circuits import input_limits, stays_on_branch
+from kinematics.linkage.classification import barker_type
+from kinematics.linkage.transmission import transmission_extremes
+
+
+def warm_up() -> None:
+    """Compile the kernels of the package, or load them from their cache."""
+    angles = np.linspace(0.0, 1.0, 3)
+    linkage = fourbar.Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0, 1j)
+    fourbar.positions(linkage, angles)
+    fourbar.coupler_points(linkage, angles)
+    fourbar.coupler_motion(linkage, angles)
+    fourbar.motion(linkage, angles)
+    input_limits(linkage)
+    stays_on_branch(linkage, 0.0, 1.0)
+    transmission_extremes(linkage, 0.0, 1.0)
+    barker_type(linkage)
+    slider = slider_crank.SliderCrank.from_lengths(1.0, 3.0, 0.5, 1j)
+    slider_crank.positions(slider, angles)
+    slider_crank.coupler_points(slider, angles)
+    slider_crank.motion(slider, angles)
