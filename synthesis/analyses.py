@@ -16,6 +16,7 @@ from pydantic import ConfigDict, Discriminator, Field, Tag
 from kinematics.linkage import Fourbar, barker_type
 from kinematics.linkage.classification import BARKER
 from kinematics.linkage.drive import MechanismMotion, drive
+from kinematics.linkage.instant_centers import instant_centers
 from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from synthesis.designs import Answer
@@ -172,6 +173,13 @@ class Travel(Answer):
     jerk: list[float | None]
 
 
+class Points(Answer):
+    """A point over the positions."""
+
+    x: list[float | None]
+    y: list[float | None]
+
+
 class Classification(Answer):
     """Grashof and Barker for a fourbar (null for others), and mobility."""
 
@@ -211,6 +219,9 @@ class Analysis(Answer):
     transmission_angles: dict[str, list[float | None]] = Field(description="At each dyad, by its link.")
     torque_ratio: dict[str, list[float | None]] = Field(
         description="Output torque over input torque without losses: the mechanical advantage of each grounded link."
+    )
+    instant_centers: dict[str, Points] = Field(
+        description="Of every two links, as `link-link`; null where they move parallel. For a single position only."
     )
     classification: Classification
     toggles: list[float]
@@ -253,6 +264,7 @@ def analysis(mechanism: Mechanism, at: Real, speed: Real, acceleration: float) -
         "transmission_angle": [math.nan] * len(at) if least is None else _listed(least),
         "transmission_angles": transmission,
         "torque_ratio": _torque_ratios(mechanism, motion),
+        "instant_centers": _instant_centers(mechanism, motion) if len(at) == 1 else {},
         "classification": _classification(mechanism),
         **_global(mechanism),
     }
@@ -302,6 +314,13 @@ def _torque_ratios(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, l
             ratio = motion.input[1] / motion.angles[name][1]
         found[name] = _listed(np.where(np.isfinite(ratio), ratio, np.nan))
     return found
+
+
+def _instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, dict[str, list[float]]]:
+    return {
+        f"{one}-{other}": {"x": _listed(center.point.real), "y": _listed(center.point.imag)}
+        for (one, other), center in instant_centers(mechanism, motion).items()
+    }
 
 
 def _grounded(mechanism: Mechanism) -> list[str]:
