@@ -3,7 +3,8 @@
     python -m benchmarks.service [--jobs 200]
 
 A real server is started on a free loopback port. The jobs are Norton's Problem 5-26, solved and verified, stated
-with ``Prefer: wait``; the time runs from the request to the parsed answer. Then the same over eight clients.
+with ``Prefer: wait``; the time runs from the request to the parsed answer. Then the same over eight clients, and
+analyses of given mechanisms in 360 steps.
 """
 
 from __future__ import annotations
@@ -30,6 +31,53 @@ PROBLEM_5_26 = {
     "output_side": {"fixed_pivot": [104.0, -155.0]},
 }
 POSITIONS_ALONE = {key: PROBLEM_5_26[key] for key in ("kind", "positions")}
+
+
+FOURBAR = {
+    "type": "fourbar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+}
+SLIDER_CRANK = {
+    "type": "slider_crank",
+    "fixed_pivot": [0.0, 0.0],
+    "links": {"crank": 1.4, "coupler": 4.0},
+    "slide": {"point": [0.0, 1.0], "angle": 0.0},
+}
+GEARED_FIVEBAR = {
+    "type": "geared_fivebar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 1.0, "coupler_1": 7.0, "coupler_2": 9.0, "output": 4.0},
+    "gear_ratio": 2.0,
+    "phase": 30.0,
+}
+STEPHENSON_2 = {
+    "type": "stephenson_2",
+    "skeleton": {
+        "joints": {
+            "O2": [0.0, 0.0], "O4": [4.0, 0.0], "A": [0.3, 1.0], "C": [0.8, 0.6],
+            "B": [1.5, 3.0], "D": [3.0, 2.2], "E": [4.2, 2.0],
+        },
+        "links": [
+            {"name": "ground", "joints": ["O2", "O4"]},
+            {"name": "input", "joints": ["O2", "A", "C"]},
+            {"name": "link_3", "joints": ["A", "B"]},
+            {"name": "link_4", "joints": ["B", "D", "E"]},
+            {"name": "link_5", "joints": ["C", "D"]},
+            {"name": "output", "joints": ["O4", "E"]},
+        ],
+        "input_link": "input",
+    },
+}  # fmt: skip
+
+
+def analysis_time(client: httpx.Client, mechanism: dict[str, object]) -> float:
+    start = time.perf_counter()
+    answer = client.post("/v1/analyses", json={"mechanism": mechanism, "motion": {"steps": 360}})
+    answer.json()
+    elapsed = time.perf_counter() - start
+    assert answer.status_code == 200
+    return elapsed
 
 
 def job_time(client: httpx.Client, problem: dict[str, object]) -> float:
@@ -72,6 +120,15 @@ def main() -> None:
             print(f"\neight clients: {2 * jobs / (time.perf_counter() - start):.0f} jobs/s")
             for client in clients:
                 client.close()
+            print(f"\n{'analysis of 360 steps through HTTP':<52}{'median ms':>10}{'p95 ms':>10}")
+            for name, mechanism in (
+                ("fourbar", FOURBAR),
+                ("slider-crank", SLIDER_CRANK),
+                ("geared fivebar, ratio 2", GEARED_FIVEBAR),
+                ("Stephenson II sixbar, class III", STEPHENSON_2),
+            ):
+                analysis_time(server.client, mechanism)
+                row(name, [analysis_time(server.client, mechanism) for _ in range(40)])
         finally:
             server.stop()
 

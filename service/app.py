@@ -11,7 +11,9 @@ import structlog
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
-from service.api import docs, errors, health, jobs, problems
+from service.analyst import Analyst
+from service.api import analyses, docs, errors, health, jobs, problems
+from service.api.head import HeadAsGet
 from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
@@ -24,7 +26,8 @@ log = structlog.get_logger(__name__)
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
 State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
-`GET /v1/problems` lists what can be asked, each with an example that runs as it is.
+`GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
+analysed at once (`POST /v1/analyses`).
 
 Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
@@ -38,6 +41,8 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
         engine = connect(settings.store_url, durable=True)
         store = JobStore(engine)
         changes = Changes(asyncio.get_running_loop())
+        app.state.analyst = Analyst()
+        app.state.analyst.start(after=executor.ready)
         try:
             executor.subscribe(changes.publish)
             executor.start()
@@ -60,17 +65,20 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
         description=_DESCRIPTION,
         version=version("mechsynth"),
         lifespan=lifespan,
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
         # Problems and designs have one schema each, whether they come or go.
         separate_input_output_schemas=False,
-        openapi_tags=[jobs.TAG, problems.TAG, health.TAG],
+        openapi_tags=[jobs.TAG, analyses.TAG, problems.TAG, health.TAG],
     )
+    app.add_middleware(HeadAsGet)
     app.state.settings = settings
     errors.install(app)
     docs.install(app)
-    for router in (jobs.router, problems.router, health.router):
+    routers = (jobs.router, analyses.router, problems.router, health.router)
+    for router in routers:
         app.include_router(router)
-    app.state.routes = [*app.routes, *jobs.router.routes, *problems.router.routes, *health.router.routes]
+    app.state.routes = [*app.routes, *(route for router in routers for route in router.routes)]
     return app

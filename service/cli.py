@@ -31,9 +31,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
         return 0
-    from synthesis.dispatch import warm_up
+    from service import analyst
+    from synthesis import dispatch
 
-    warm_up()
+    dispatch.warm_up()
+    analyst.warm_up()
     return 0
 
 

@@ -8,10 +8,12 @@ import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import IO
 
 from sqlalchemy.exc import SQLAlchemyError
 
 from service import logs
+from service.jobs.database import sqlite_file
 from service.jobs.local import LocalExecutor
 from service.settings import Settings
 
@@ -31,7 +33,7 @@ def serve(settings: Settings) -> None:
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)
     logs.configure(settings.log_level)
-    with _data_folder(settings), _listener(settings) as listener:
+    with _data_folder(settings), _store(settings), _listener(settings) as listener:
         executor = _executor(settings)
         try:
             # A worker takes as long to start as the web framework to import: side by side, the service is ready in
@@ -62,8 +64,12 @@ def _executor(settings: Settings) -> LocalExecutor:
     try:
         return LocalExecutor(settings)
     except (SQLAlchemyError, ImportError, OSError) as error:
-        # Not the URL itself, which may hold a password.
-        raise ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL") from None
+        raise _no_database(error) from None
+
+
+def _no_database(error: Exception) -> ServeError:
+    # Not the URL itself, which may hold a password.
+    return ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL")
 
 
 @contextmanager
@@ -97,10 +103,30 @@ def _data_folder(settings: Settings) -> Iterator[None]:
             f"cannot write to the data folder {settings.data_dir} ({error.strerror}); set MECHSYNTH_DATA_DIR"
         ) from None
     with lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise ServeError(
-                f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR"
-            ) from None
+        _take(lock, f"another server uses the data folder {settings.data_dir}; stop it, or set MECHSYNTH_DATA_DIR")
         yield
+
+
+@contextmanager
+def _store(settings: Settings) -> Iterator[None]:
+    """Keep other servers away from the store as well, which may lie outside of the data folder."""
+    try:
+        file = sqlite_file(settings.store_url)
+        if file is not None:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            lock = open(f"{file}.lock", "w")  # noqa: SIM115 (closed below)
+    except (SQLAlchemyError, OSError) as error:
+        raise _no_database(error) from None
+    if file is None:
+        yield
+        return
+    with lock:
+        _take(lock, "another server uses the same database; stop it, or set MECHSYNTH_DATABASE_URL")
+        yield
+
+
+def _take(lock: IO[str], taken: str) -> None:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise ServeError(taken) from None

@@ -36,7 +36,7 @@ class Settings(BaseSettings):
         int, Field(ge=64, le=1 << 20, description="Memory that a job may take beyond its idle worker's, MiB.")
     ] = 4096
     max_wait_s: Annotated[
-        int, Field(ge=0, le=600, description="Longest wait that Prefer: wait is granted, seconds.")
+        int, Field(ge=0, le=30, description="Longest wait that Prefer: wait is granted, seconds.")
     ] = 30
     log_level: Literal["debug", "info", "warning", "error"] = "info"
 

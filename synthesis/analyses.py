@@ -192,8 +192,10 @@ class Classification(Answer):
 class BranchRange(Answer):
     """A branch: the input range that it covers; ``full`` where the input turns through."""
 
-    start: float = Field(serialization_alias="from")
-    end: float = Field(serialization_alias="to")
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    start: float = Field(alias="from")
+    end: float = Field(alias="to")
     full: bool
     reference: bool = Field(description="Whether the reference configuration lies on it.")
 

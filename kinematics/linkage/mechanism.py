@@ -126,6 +126,9 @@ class Mechanism:
                 raise TopologyError(f"link {name!r} lists a joint twice")
             if name != GROUND and len(listed) < 2:
                 raise TopologyError(f"link {name!r} needs two joints or more")
+        loose = [joint for joint in self.joints if not self._links_at(joint)]
+        if loose:
+            raise TopologyError(f"the joint {loose[0]!r} is on no link")
         for slide in self.slides:
             if slide.joint not in self.joints or slide.link not in self.links:
                 raise TopologyError(f"a slide joins {slide.joint!r} and {slide.link!r}, one of which does not exist")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.branches import GRID, Branch, dyadic_branches, meet_at
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import drive
+from kinematics.linkage.drive import MechanismMotion, drive
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.roots import find_roots, sign_changes
 
@@ -87,8 +87,9 @@ def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list
         if mechanism.driven_by_slide:
             return np.asarray(motion.slides[mechanism.input][..., 0])
         name = {GROUND: base, base: GROUND}.get(mechanism.input, mechanism.input)
-        still = np.zeros_like(motion.input)
-        return np.asarray((motion.angles.get(name, still) - motion.angles.get(base, still))[..., 0])
+        turned = _rotation(other, motion, name) - _rotation(other, motion, base)
+        turned[0] += mechanism.reference_input
+        return turned
 
     # The ends are folded positions, where the rates are infinite; a hair inside they are only large.
     grids = []
@@ -111,10 +112,23 @@ def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list
     values = true_input(np.concatenate(points), np.repeat(np.arange(len(parts)), lengths), 0)[0]
     cut = []
     for row, value in enumerate(np.split(values, np.cumsum(lengths)[:-1])):
+        # A folded end may miss its assembly by rounding; the point next to it is a hair away.
+        for end, inner_end in ((0, 1), (-1, -2)):
+            if np.isnan(value[end]):
+                value[end] = value[inner_end]
         smooth = value if mechanism.driven_by_slide else np.unwrap(value)
         inner = [float(smooth[np.searchsorted(points[row], t)]) for t in np.sort(turns[of == row])]
         cut.append([Piece(float(a), float(b)) for a, b in pairwise([smooth[0], *inner, smooth[-1]])])
     return cut
+
+
+def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
+    """Jet of a link's rotation from the reference; shape (n, inputs)."""
+    if link == GROUND:
+        return np.zeros(motion.input.shape[:2])
+    rotation: Real = motion.angles[link][..., 0].copy()
+    rotation[0] -= mechanism.link_angle(link)
+    return rotation
 
 
 def _loop(parts: list[Branch], left: list[int]) -> list[tuple[int, bool]]:

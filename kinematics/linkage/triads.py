@@ -39,6 +39,10 @@ CONVERGED = 1e-14
 """Newton's correction, radians, at which a position counts as solved."""
 
 
+STEPS_A_POSITION = 1000
+"""Certified steps at most, on average, to each position: links of very different lengths need more than can be waited
+for, and what lies beyond is then given as not reached."""
+
 NEWTON_STEPS = 20
 """Steps at most; from inside the ball three or four do."""
 
@@ -172,8 +176,12 @@ def _follow(c: Complex, k: Complex, fixed: Complex, rotation: Real) -> Real:
     value = np.empty(2 * loops)
     inverse = np.empty((links, links))
     slope = np.empty(2 * loops)
+    budget = STEPS_A_POSITION * len(rotation) + 10 * STEPS_A_POSITION
     for target in range(len(rotation)):
         while at != rotation[target] or target == 0:
+            budget -= 1
+            if budget < 0:
+                return found
             _evaluate(c, k, fixed, phi, at, value, inverse)
             certified = _certified(c, k, inverse) if np.isfinite(_invert(inverse)) else 0.0
             step = rotation[target] - at

@@ -8,6 +8,7 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 from pydantic_core import from_json
+from starlette.requests import ClientDisconnect
 
 from service.api.errors import Refusal, malformed_json
 
@@ -56,10 +57,14 @@ class JsonRequest(Request):
         if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
             raise _too_large(limit)
         body = bytearray()
-        async for chunk in self.stream():
-            body += chunk
-            if len(body) > limit:
-                raise _too_large(limit)
+        try:
+            async for chunk in self.stream():
+                body += chunk
+                if len(body) > limit:
+                    raise _too_large(limit)
+        except ClientDisconnect:
+            # Nobody reads the answer; it ends the request without the log of a defect.
+            raise Refusal(400, "incomplete-body", "Incomplete body", "The connection ended before the body.") from None
         return bytes(body)
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from importlib.resources import files
+from threading import Lock
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.docs import get_swagger_ui_html
-from fastapi.responses import HTMLResponse, RedirectResponse
+from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from starlette.staticfiles import StaticFiles
 
+from service.api import analyses
 from service.api.errors import ProblemDetails
 
 _ASSETS = "/docs/assets"
@@ -18,13 +20,20 @@ _ASSETS = "/docs/assets"
 def install(app: FastAPI) -> None:
     """Serve ``/docs``, and complete ``/openapi.json``."""
     generate = app.openapi
+    lock = Lock()
 
     def openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            _complete(generate())
-        return generate()
+        with lock:
+            if app.openapi_schema is None:
+                _complete(generate())
+            return generate()
 
     app.openapi = openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
+
+    # In a thread, because the first document waits for the models of the analyses.
+    @app.get("/openapi.json", include_in_schema=False)
+    def openapi_document() -> JSONResponse:
+        return JSONResponse(app.openapi())
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> HTMLResponse:
@@ -48,6 +57,7 @@ def _complete(document: dict[str, Any]) -> None:
     # The error responses refer to these by name, because their media type is not the framework's.
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
+    analyses.complete(document)
     # The framework assumes that every parameter can be refused with its own kind of 422, which does not exist here.
     for methods in document["paths"].values():
         for operation in methods.values():

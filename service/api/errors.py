@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -21,6 +22,8 @@ MAX_ERRORS = 20
 MAX_STEP = 100
 """Longest name in a path, characters."""
 
+_MODEL = re.compile("<[a-z_]+>")
+
 
 class FieldError(BaseModel):
     """A fault at one place of the request."""
@@ -28,7 +31,8 @@ class FieldError(BaseModel):
     model_config = ConfigDict(title="Field error")
 
     path: str = Field(
-        description="JSON pointer into the request body; a query parameter is at /query/name.",
+        description="JSON pointer into the request body; a query parameter is at /query/name, "
+        "a header at /header/name.",
         examples=["/problem/positions/1/x"],
     )
     detail: str = Field(description="What is wrong there, in a sentence.")
@@ -86,6 +90,25 @@ def invalid_problem(errors: Sequence[tuple[str, str]]) -> Refusal:
     return Refusal(422, "invalid-problem", "Invalid problem", _counted(len(errors)), errors=errors)
 
 
+def invalid_mechanism(errors: Sequence[tuple[str, str]]) -> Refusal:
+    """The mechanism is well-formed, but there is none such; ``errors`` are pairs of path and detail."""
+    return Refusal(422, "invalid-mechanism", "Invalid mechanism", _counted(len(errors)), errors=errors)
+
+
+def invalid_request(errors: Sequence[tuple[str, str]]) -> Refusal:
+    """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
+    return Refusal(422, "invalid-request", "Invalid request", _counted(len(errors)), errors=errors)
+
+
+def sentence(text: str) -> str:
+    """A detail as a sentence: with a capital and a full stop.
+
+    >>> sentence("equal to position 0")
+    'Equal to position 0.'
+    """
+    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
+
+
 def responses(**described: str) -> dict[int | str, dict[str, Any]]:
     """The error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
@@ -117,11 +140,12 @@ async def _refused(request: Request, refusal: Exception) -> Response:
 
 async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    faults = [(_place(fault["loc"]), _sentence(fault)) for fault in error.errors()[:MAX_ERRORS]]
-    detail = _counted(len(error.errors()))
+    faults = [(_place(fault), _explained(fault)) for fault in error.errors()]
     if all(path.startswith("/problem/") for path, _ in faults):
-        return _answer(request, 422, "/problems/invalid-problem", "Invalid problem", detail, faults)
-    return _answer(request, 422, "/problems/invalid-request", "Invalid request", detail, faults)
+        return await _refused(request, invalid_problem(faults))
+    if all(path.startswith("/mechanism/") for path, _ in faults):
+        return await _refused(request, invalid_mechanism(faults))
+    return await _refused(request, invalid_request(faults))
 
 
 async def _http_error(request: Request, error: Exception) -> Response:
@@ -166,18 +190,26 @@ def _answer(
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 
-def _place(location: Sequence[str | int]) -> str:
+def _place(fault: Mapping[str, Any]) -> str:
+    location = tuple(fault["loc"])
     # The framework puts the part of the request first; in a body the pointer starts at the body itself.
-    return pointer(location[1:] if location[:1] == ("body",) else location)
+    if location[:1] == ("body",):
+        location = location[1:]
+    # A fault of a key of an object is at that key.
+    if location[-1:] == ("[key]",) and fault["type"] != "extra_forbidden":
+        location = location[:-1]
+    # Which of several models has read a part is no step of the body.
+    return pointer(step for step in location if not (isinstance(step, str) and _MODEL.fullmatch(step)))
 
 
-def _sentence(fault: Mapping[str, Any]) -> str:
+def _explained(fault: Mapping[str, Any]) -> str:
     if fault["type"] == "extra_forbidden":
         return "There is no such field; check its name."
     if fault["type"] == "missing":
         return "This field is required."
-    message = str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
-    return f"{message[:1].upper()}{message[1:].rstrip('.')}."
+    if fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
+        return "This must be an object."
+    return sentence(str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, "))
 
 
 def _counted(faults: int) -> str:

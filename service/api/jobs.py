@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import base64
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
-from pydantic import BaseModel, ConfigDict, Field
-from pydantic_core import to_json
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import from_json, to_json
 from starlette.concurrency import run_in_threadpool
 
-from service.api import errors
+from service.api import errors, etag
+from service.api.analyses import ANALYSIS, Core, answered
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, invalid_problem, not_found
+from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
+from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
 from service.api.schemas import KINDS, Job, JobList, JobRequest, list_item, whole_job
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
+from service.jobs.store import KeyReused
 from synthesis.designs import Result
 from synthesis.problems import PROBLEM_KINDS, example
 
@@ -43,6 +46,12 @@ Desk = Annotated[JobDesk, Depends(_desk)]
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
 
+def _known_kind(kind: str) -> str:
+    if kind not in KINDS:
+        raise ValueError(f"there is no such kind; the kinds are {', '.join(KINDS)}")
+    return kind
+
+
 class JobFilter(BaseModel):
     """Which jobs to list."""
 
@@ -51,7 +60,9 @@ class JobFilter(BaseModel):
     status: Literal["queued", "running", "succeeded", "failed", "cancelled"] | None = Field(
         default=None, description="Only jobs in this state."
     )
-    kind: str | None = Field(default=None, description="Only jobs of this kind of problem.", examples=list(KINDS))
+    kind: Annotated[str, AfterValidator(_known_kind), Field(json_schema_extra={"enum": list(KINDS)})] | None = Field(
+        default=None, description="Only jobs of this kind of problem."
+    )
     limit: int = Field(default=20, ge=1, le=100, description="Jobs on a page, at most.")
     cursor: str | None = Field(default=None, max_length=100, description="`next_cursor` of the page before.")
 
@@ -64,6 +75,7 @@ _BODY = Body(
 )
 _LOCATION = {"Location": {"description": "The path of the job.", "schema": {"type": "string"}}}
 _RETRY_AFTER = {"Retry-After": {"description": "Look again after so many seconds.", "schema": {"type": "integer"}}}
+_ETAG = {"ETag": {"description": "Changes whenever the job does.", "schema": {"type": "string"}}}
 _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited for.", "schema": {"type": "string"}}}
 
 
@@ -76,7 +88,7 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited fo
     responses={
         200: {
             "model": Job,
-            "description": "The finished job, in time for `Prefer: wait`.",
+            "description": "The finished job: in time for `Prefer: wait`, or the one of an earlier equal request.",
             "headers": {**_LOCATION, **_APPLIED},
         },
         202: {
@@ -86,6 +98,7 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited fo
         },
         **errors.responses(
             e400="The body is not JSON.",
+            e409="The `Idempotency-Key` came with another body before.",
             e413="The body is too large.",
             e415="The body is not `application/json`.",
             e422="The body does not state a problem; `errors` says where.",
@@ -102,20 +115,36 @@ async def create_job(
             description="`wait=10` waits up to so many seconds (30 at most) for the job to end.", examples=["wait=10"]
         ),
     ] = None,
+    idempotency_key: Annotated[
+        str | None,
+        Header(
+            pattern=KEY,
+            description="A name for this request, 1 to 200 visible ASCII characters. The same request sent again with "
+            "the same key is answered with the first job, as long as that is not removed.",
+            examples=["7f9c24e8"],
+        ),
+    ] = None,
 ) -> Response:
     """Accept a problem as a job. Once this is answered the job is stored, and it ends, whatever process dies."""
     contradictions = body.problem.contradictions()
     if contradictions:
-        raise invalid_problem([(f"/problem{fault.path}", _sentence(fault.detail)) for fault in contradictions])
+        raise invalid_problem([(f"/problem{fault.path}", sentence(fault.detail)) for fault in contradictions])
     # All lines of the header; the parameter is there for the documentation and holds only one of them.
     wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
-    job = await desk.accept(
-        kind=body.problem.kind, label=body.label, problem=body.problem.model_dump_json(), wait_s=wait_s
-    )
+    try:
+        job = await desk.accept(
+            kind=body.problem.kind,
+            label=body.label,
+            problem=body.problem.model_dump_json(),
+            wait_s=wait_s,
+            repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
+        )
+    except KeyReused:
+        raise key_reused() from None
     headers = {"Location": f"/v1/jobs/{job.id}"}
-    if job.status.finished:
-        return _json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"})
-    return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+    if not job.status.finished:
+        return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})
+    return _json(whole_job(job), 200, {**headers, "Preference-Applied": "wait"} if wait_s > 0 else headers)
 
 
 @router.get(
@@ -130,12 +159,13 @@ async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Respo
     page = await desk.page(
         limit=filter_.limit + 1,
         status=None if filter_.status is None else Status(filter_.status),
-        kind=_storable(filter_.kind),
+        kind=filter_.kind,
         before=None if filter_.cursor is None else _job_of_cursor(filter_.cursor),
     )
     shown = page[: filter_.limit]
     more = len(page) > filter_.limit
-    return _json({"jobs": [list_item(job) for job in shown], "next_cursor": _cursor(shown[-1].id) if more else None})
+    listed = {"jobs": [list_item(job) for job in shown], "next_cursor": _cursor(shown[-1].id) if more else None}
+    return _json(to_json(listed))
 
 
 @router.get(
@@ -143,11 +173,26 @@ async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Respo
     operation_id="get_job",
     summary="Read a job",
     response_class=Response,
-    responses={200: {"model": Job}, **errors.responses(e404=_NO_JOB)},
+    responses={
+        200: {"model": Job, "headers": _ETAG},
+        304: {"description": "The job is as the client knows it.", "headers": _ETAG},
+        **errors.responses(e404=_NO_JOB),
+    },
 )
-async def get_job(desk: Desk, job_id: str) -> Response:
+async def get_job(
+    request: Request,
+    desk: Desk,
+    job_id: str,
+    if_none_match: Annotated[
+        str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
+    ] = None,
+) -> Response:
     """The job as it stands."""
-    return _json(whole_job(await _job(desk, job_id)))
+    job = await _job(desk, job_id)
+    current = etag.tag(job.revision)
+    if etag.matches(request.headers.getlist("if-none-match"), current):
+        return Response(status_code=304, headers={"ETag": current})
+    return _json(whole_job(job), headers={"ETag": current})
 
 
 @router.delete(
@@ -185,23 +230,77 @@ async def delete_job(desk: Desk, job_id: str) -> Response:
 )
 async def draw_design(desk: Desk, job_id: str, number: str) -> Response:
     """A labelled drawing of design ``number`` of the job's result, counted from 0."""
+    job, result = await _solved(desk, job_id)
+    return Response(await run_in_threadpool(_drawn, job, result, number), media_type="image/svg+xml")
+
+
+def _drawn(job: JobRow, result: str, number: str) -> str:
+    # Drawing is for those who ask for it; the other requests do not wait for its import.
+    from service.render import drawing
+
+    designs = Result.model_validate_json(result).designs
+    n = _design_index(number, len(designs))
+    problem = PROBLEM_KINDS[job.kind].model_validate_json(job.problem)
+    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
+    return drawing(designs[n], problem, title)
+
+
+class MotionSteps(BaseModel):
+    """How finely a cycle is divided."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    steps: int = Field(default=360, ge=1, le=3600, description="Equal steps of the input, both ends included.")
+
+
+@router.get(
+    "/{job_id}/designs/{number}/motion",
+    operation_id="move_design",
+    summary="Move a design",
+    response_class=Response,
+    responses={
+        200: {"description": "The motion.", "content": {"application/json": {"schema": ANALYSIS}}},
+        **errors.responses(
+            e404="There is no such job or design.",
+            e409="The job has no result (yet).",
+            e422="A parameter is not valid; `errors` says which.",
+            e503="Other analyses have kept this one from being begun.",
+        ),
+    },
+)
+async def move_design(
+    desk: Desk, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
+) -> Response:
+    """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
+
+    A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
+    back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
+    `POST /v1/analyses`.
+    """
+    _, result = await _solved(desk, job_id)
+    return await answered(analyst, _motion, result, number, query.steps)
+
+
+def _motion(result: str, number: str, steps: int) -> bytes:
+    from service.cycle import over_the_cycle
+
+    designs = from_json(result)["designs"]
+    answer = over_the_cycle(designs[_design_index(number, len(designs))]["mechanism"], steps)
+    return to_json(answer, inf_nan_mode="null")
+
+
+async def _solved(desk: JobDesk, job_id: str) -> tuple[JobRow, str]:
     job = await _job(desk, job_id)
     if job.result is None:
         what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
         raise Refusal(409, "no-result", "No result", f"The job {what}.")
-    result = Result.model_validate_json(job.result)
-    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= len(result.designs):
-        raise not_found(f"The job has {len(result.designs)} designs, counted from 0; this is none of them.")
-    return Response(await run_in_threadpool(_drawn, job, result, int(number)), media_type="image/svg+xml")
+    return job, job.result
 
 
-def _drawn(job: JobRow, result: Result, number: int) -> str:
-    # Drawing is for those who ask for it; the other requests do not wait for its import.
-    from service.render import drawing
-
-    problem = PROBLEM_KINDS[job.kind].model_validate_json(job.problem)
-    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {number}"
-    return drawing(result.designs[number], problem, title)
+def _design_index(number: str, designs: int) -> int:
+    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
+        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+    return int(number)
 
 
 async def _job(desk: JobDesk, job_id: str) -> JobRow:
@@ -210,11 +309,6 @@ async def _job(desk: JobDesk, job_id: str) -> JobRow:
     if job is None:
         raise not_found(_NO_JOB)
     return job
-
-
-def _storable(text: str | None) -> str | None:
-    # No kind has a NUL in it, and PostgreSQL does not take one even to compare.
-    return None if text is None else text.replace("\0", "\ufffd")
 
 
 def _cursor(job_id: str) -> str:
@@ -227,14 +321,9 @@ def _job_of_cursor(cursor: str) -> str:
     except ValueError:
         job_id = ""
     if not _ULID.fullmatch(job_id):
-        fault = ("/query/cursor", "This is not a cursor that the service has given out.")
-        raise Refusal(422, "invalid-request", "Invalid request", "The request has 1 fault.", errors=[fault])
+        raise invalid_request([("/query/cursor", "This is not a cursor that the service has given out.")])
     return job_id
 
 
-def _sentence(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:].rstrip('.')}."
-
-
-def _json(content: dict[str, Any], status: int = 200, headers: dict[str, str] | None = None) -> Response:
-    return Response(to_json(content), status_code=status, headers=headers, media_type="application/json")
+def _json(content: bytes, status: int = 200, headers: dict[str, str] | None = None) -> Response:
+    return Response(content, status_code=status, headers=headers, media_type="application/json")

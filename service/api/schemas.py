@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
-from pydantic_core import from_json
+from pydantic_core import to_json
 
 from service.api.errors import ProblemDetails
 from service.jobs.schema import JobRow, JobSummary
@@ -122,11 +122,7 @@ def list_item(job: JobSummary) -> dict[str, Any]:
     }
 
 
-def whole_job(job: JobRow) -> dict[str, Any]:
-    """A job as :class:`Job`; problem, result and error go out as the JSON that the models wrote into the store."""
-    return {
-        **list_item(job),
-        "problem": from_json(job.problem),
-        "result": None if job.result is None else from_json(job.result),
-        "error": None if job.error is None else from_json(job.error),
-    }
+def whole_job(job: JobRow) -> bytes:
+    """A job as :class:`Job`, in JSON; problem, result and error go out as the models wrote them into the store."""
+    stored = f'"problem":{job.problem},"result":{job.result or "null"},"error":{job.error or "null"}'
+    return to_json(list_item(job))[:-1] + b"," + stored.encode() + b"}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 
 class Changes:
@@ -18,8 +18,9 @@ class Changes:
 
     def publish(self, job_id: str) -> None:
         """Wake the watchers of a job. Callable from any thread."""
-        # A job may end while the service stops; when the loop is gone, so are the watchers.
-        if not self._loop.is_closed():
+        # A job may end while the service stops. The loop may be closed between any question and the call, so it is
+        # not asked; when it is gone, so are the watchers.
+        with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._wake, job_id)
 
     @contextmanager

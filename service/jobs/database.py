@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, Literal
+from urllib.parse import unquote, urlsplit
 
 from sqlalchemy import Engine, create_engine, event, make_url
+from sqlalchemy.exc import ArgumentError
 
 BUSY_TIMEOUT_S = 10.0
 """How long a writer waits for another one. A write takes a millisecond, so this is never reached in good health."""
@@ -37,8 +39,30 @@ def connect(url: str, *, durable: bool) -> Engine:
     return engine
 
 
-def upgrade(engine: Engine) -> None:
-    """Bring the tables to the newest revision."""
+def sqlite_file(url: str) -> Path | None:
+    """The file of a SQLite store, links followed; None for other databases.
+
+    Raises
+    ------
+    ArgumentError
+        For what is no database URL, and for a database in memory, which the workers could not share.
+    """
+    parsed = make_url(url)
+    if parsed.get_backend_name() != "sqlite":
+        return None
+    path = parsed.database or ""
+    if path.startswith("file:"):
+        path = unquote(urlsplit(path).path)
+    if path in ("", ":memory:") or "mode=memory" in url:
+        raise ArgumentError("a database in memory cannot be shared by the server and its workers")
+    file = Path(path).resolve()
+    if file.is_dir():
+        raise ArgumentError("the database is a folder")
+    return file
+
+
+def upgrade(engine: Engine, revision: str = "head") -> None:
+    """Bring the tables to a revision, the newest by default."""
     # Alembic takes a tenth of a second to import, which only the server has to spend.
     from alembic import command
     from alembic.config import Config
@@ -47,4 +71,4 @@ def upgrade(engine: Engine) -> None:
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
     with engine.begin() as connection:
         config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+        command.upgrade(config, revision)

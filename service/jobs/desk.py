@@ -13,7 +13,7 @@ from service.jobs.changes import Changes
 from service.jobs.executor import Executor
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
-from service.jobs.store import JobStore
+from service.jobs.store import JobStore, Repeatable
 
 log = structlog.get_logger(__name__)
 
@@ -26,15 +26,34 @@ class JobDesk:
     executor: Executor
     changes: Changes
 
-    async def accept(self, *, kind: str, label: str | None, problem: str, wait_s: float) -> JobRow:
-        """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is."""
-        job = await run_in_threadpool(self.store.create, kind=kind, label=label, problem=problem)
-        log.info("job accepted", job=job.id, kind=kind)
+    async def accept(
+        self, *, kind: str, label: str | None, problem: str, wait_s: float, repeatable: Repeatable | None
+    ) -> JobRow:
+        """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is.
+
+        A request that comes again by its key gets the job that it has made the first time.
+
+        Raises
+        ------
+        KeyReused
+            When the key came with another request before.
+        """
+        job, new = await run_in_threadpool(self._stored, kind, label, problem, repeatable)
+        if new:
+            log.info("job accepted", job=job.id, kind=kind)
         with self.changes.watch(job.id) as changed:
-            self.executor.submit(job.id)
+            if new:
+                self.executor.submit(job.id)
+            elif wait_s > 0:
+                job = await self.get(job.id) or job  # it may have ended before it was watched
             if wait_s <= 0:
                 return job
             return await self._ended(job, changed, wait_s)
+
+    def _stored(self, kind: str, label: str | None, problem: str, repeatable: Repeatable | None) -> tuple[JobRow, bool]:
+        if repeatable is None:
+            return self.store.create(kind=kind, label=label, problem=problem), True
+        return self.store.create_once(kind=kind, label=label, problem=problem, repeatable=repeatable)
 
     async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 Changed = Callable[[str], None]
-"""Called with the id of a job that has changed in the store; from any thread."""
+"""Called with the id of a job that a worker is done with; from any thread."""
 
 
 class Executor(Protocol):
@@ -17,7 +17,10 @@ class Executor(Protocol):
         ...
 
     def subscribe(self, changed: Changed) -> None:
-        """Tell one subscriber from now on which jobs have changed by what the executor and its workers did."""
+        """Tell one subscriber from now on of each job that a worker is done with: it has ended, or is queued again.
+
+        Nobody is told of a claim or of progress; that stands in the store.
+        """
         ...
 
     def submit(self, job_id: str) -> None:

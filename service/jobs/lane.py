@@ -108,14 +108,37 @@ class Lane(threading.Thread):
             except Empty:
                 continue
             except WorkerLost as loss:
-                log.error("worker could not be started", lane=self.name, reason=str(loss))
-                self.settled.set()
-                self._stopping.wait(RETRY_PERIOD_S)
+                self._could_not_start(str(loss))
+                continue
+            except Exception as error:  # whatever it is, the lane must be there for the jobs that come
+                log.exception("the lane failed", lane=self.name)
+                self._could_not_start(f"{type(error).__name__} in the server")
                 continue
             if job_id is not None:
-                self._run_job(job_id)
-                self._changed(job_id)
+                self._see_to(job_id)
         self._discard_worker()
+
+    def _could_not_start(self, reason: str) -> None:
+        log.error("worker could not be started", lane=self.name, reason=reason)
+        self._discard_worker()
+        self.settled.set()
+        self._stopping.wait(RETRY_PERIOD_S)
+
+    def _see_to(self, job_id: str) -> None:
+        """Run a job and tell of it. A defect on the way fails the job; it does not end the lane."""
+        try:
+            self._run_job(job_id)
+        except Exception:
+            log.exception("the lane failed", lane=self.name, job=job_id)
+            self._discard_worker()
+            try:
+                self._stored(self._store.give_up, job_id, faults.INTERNAL_ERROR.as_json(job_id))
+            except Exception:  # then the job is taken up again at the next start of the service
+                log.exception("a job could not be failed", lane=self.name, job=job_id)
+        try:
+            self._changed(job_id)
+        except Exception:
+            log.exception("a change could not be told", lane=self.name, job=job_id)
 
     def _ensure_worker(self) -> None:
         if self._pool is not None and self._pool.active:

@@ -65,7 +65,7 @@ class LocalExecutor:
             lane.start()
 
     def subscribe(self, changed: Changed) -> None:
-        """Tell ``changed`` from now on which jobs have changed."""
+        """Tell ``changed`` from now on of each job that a worker is done with."""
         self._subscriber = changed
 
     def submit(self, job_id: str) -> None:

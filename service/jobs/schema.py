@@ -30,8 +30,11 @@ jobs = Table(
     Column("attempt", Integer, nullable=False),
     Column("crashes", Integer, nullable=False),
     Column("revision", Integer, nullable=False),
+    Column("idempotency_key", String(200)),
+    Column("request_hash", String(64)),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_kind", "kind", "id"),
+    Index("jobs_by_idempotency_key", "idempotency_key", unique=True),
 )
 
 

@@ -13,6 +13,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Engine, RowMapping, case, delete, insert, select, text, update
+from sqlalchemy.exc import IntegrityError
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
@@ -22,8 +23,9 @@ from service.jobs.states import FINISHED, MOVES, Status
 MAX_CRASHES = 3
 """A job whose worker died is tried again this many times."""
 
+_ROW = tuple(field.name for field in fields(JobRow))
 _SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
-_WHOLE = [jobs.c[field.name] for field in fields(JobRow)]
+_WHOLE = [jobs.c[name] for name in _ROW]
 _MESSAGE_LENGTH = 200
 
 
@@ -34,6 +36,22 @@ class Claim:
     attempt: int
     kind: str
     problem: str
+
+
+@dataclass(frozen=True, slots=True)
+class Repeatable:
+    """A request that may come again: the key that its client gave it, and a hash of what it says."""
+
+    key: str
+    request_hash: str
+
+
+class KeyReused(Exception):
+    """A key came with another request than the one that it was first used for; carries the id of that one's job."""
+
+    def __init__(self, job_id: str) -> None:
+        self.job_id = job_id
+        super().__init__(f"the key was used for the job {job_id}")
 
 
 class JobStore:
@@ -49,26 +67,49 @@ class JobStore:
 
     def create(self, *, kind: str, label: str | None, problem: str) -> JobRow:
         """Store a new job in the queue. When this returns, the job is on the disk."""
-        row: dict[str, Any] = {
-            "id": str(ULID()),
-            "kind": kind,
-            "label": label,
-            "status": Status.QUEUED,
-            "created_at": _now(),
-            "started_at": None,
-            "finished_at": None,
-            "progress_fraction": 0.0,
-            "progress_message": "queued",
-            "problem": problem,
-            "result": None,
-            "error": None,
-            "attempt": 0,
-            "crashes": 0,
-            "revision": 1,
+        return self._insert(_new_row(kind, label, problem))
+
+    def create_once(self, *, kind: str, label: str | None, problem: str, repeatable: Repeatable) -> tuple[JobRow, bool]:
+        """Like :meth:`create`, or find the job that the same request has made already.
+
+        Returns
+        -------
+        tuple
+            The job, and whether it is new.
+
+        Raises
+        ------
+        KeyReused
+            When another request has made a job under this key.
+        """
+        row = {
+            **_new_row(kind, label, problem),
+            "idempotency_key": repeatable.key,
+            "request_hash": repeatable.request_hash,
         }
+        while True:
+            try:
+                return self._insert(row), True
+            except IntegrityError:
+                found = self._made_by(repeatable)
+                if found is not None:
+                    return found, False
+                # The job that held the key has been removed since.
+
+    def _insert(self, row: dict[str, Any]) -> JobRow:
         with self._engine.begin() as connection:
             connection.execute(insert(jobs).values(row))
-        return JobRow(**row)
+        return JobRow(**{name: row[name] for name in _ROW})
+
+    def _made_by(self, repeatable: Repeatable) -> JobRow | None:
+        query = select(*_WHOLE, jobs.c.request_hash).where(jobs.c.idempotency_key == repeatable.key)
+        with self._engine.connect() as connection:
+            row = connection.execute(query).mappings().one_or_none()
+        if row is None:
+            return None
+        if row["request_hash"] != repeatable.request_hash:
+            raise KeyReused(row["id"])
+        return JobRow(**{name: value for name, value in _values(row).items() if name in _ROW})
 
     def get(self, job_id: str) -> JobRow | None:
         """The job, or None where there is none."""
@@ -200,6 +241,26 @@ class JobStore:
 
 
 _BACK_IN_QUEUE: Mapping[str, Any] = {"progress_fraction": 0.0, "progress_message": "queued", "started_at": None}
+
+
+def _new_row(kind: str, label: str | None, problem: str) -> dict[str, Any]:
+    return {
+        "id": str(ULID()),
+        "kind": kind,
+        "label": label,
+        "status": Status.QUEUED,
+        "created_at": _now(),
+        "started_at": None,
+        "finished_at": None,
+        "progress_fraction": 0.0,
+        "progress_message": "queued",
+        "problem": problem,
+        "result": None,
+        "error": None,
+        "attempt": 0,
+        "crashes": 0,
+        "revision": 1,
+    }
 
 
 def _values(row: RowMapping) -> dict[str, Any]:

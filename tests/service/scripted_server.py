@@ -54,7 +54,32 @@ if __name__ in ("__main__", "__mp_main__"):
     dispatch.solve = solve
     dispatch.warm_up = warm_up
 
+
+def break_lanes():
+    """Let the server's own part fail once, where nothing foresees it, when a file says so."""
+    from service.jobs import lane
+
+    call, get_context = lane.Lane._call, lane.get_context
+
+    def told(name):
+        (FOLDER / name).unlink()
+        return True
+
+    def broken_call(self, timeout_s, function, *args, job_id=None):
+        if job_id is not None and (FOLDER / "lane-fault").exists() and told("lane-fault"):
+            raise TypeError("a defect of the lane")
+        return call(self, timeout_s, function, *args, job_id=job_id)
+
+    def broken_context(method):
+        if (FOLDER / "no-process").exists() and told("no-process"):
+            raise OSError("no process is to be had")
+        return get_context(method)
+
+    lane.Lane._call, lane.get_context = broken_call, broken_context
+
+
 if __name__ == "__main__":
     from service.cli import main
 
+    break_lanes()
     sys.exit(main())

@@ -32,7 +32,7 @@ def test_help_is_quick(tmp_path):
 @pytest.mark.parametrize(
     ("name", "value"),
     [("port", "none"), ("port", "70000"), ("workers", "0"), ("log_level", "loud"), ("job_timeout_s", "-1"),
-     ("job_memory_mb", "lots"), ("max_wait_s", "nan")],
+     ("job_memory_mb", "lots"), ("max_wait_s", "nan"), ("max_wait_s", "31")],
 )  # fmt: skip
 def test_a_setting_that_cannot_be_used(tmp_path, name, value):
     done = mechsynth(tmp_path, "serve", **{name: value})
@@ -61,6 +61,14 @@ def test_a_data_folder_in_use(server, tmp_path):
     assert "another server" in done.stderr
 
 
+def test_a_database_in_use(server, tmp_path):
+    (tmp_path / "link").symlink_to(server.folder / "data" / "mechsynth.sqlite3")
+    for path in (server.folder / "data" / "mechsynth.sqlite3", tmp_path / "link"):
+        done = mechsynth(tmp_path, "serve", database_url=f"sqlite:///{path}")
+        assert done.returncode == 1
+        assert "another server uses the same database" in done.stderr
+
+
 def test_a_data_folder_that_cannot_be(tmp_path):
     (tmp_path / "file").touch()
     done = mechsynth(tmp_path, "serve", data_dir=tmp_path / "file")
@@ -68,7 +76,11 @@ def test_a_data_folder_that_cannot_be(tmp_path):
     assert "MECHSYNTH_DATA_DIR" in done.stderr
 
 
-@pytest.mark.parametrize("url", ["nonsense", "martian://x", "sqlite:////proc/nowhere/x", "sqlite:////etc"])
+@pytest.mark.parametrize(
+    "url",
+    ["nonsense", "martian://x", "sqlite:////proc/nowhere/x", "sqlite:////etc", "sqlite://", "sqlite:///:memory:",
+     "sqlite:///file:x?mode=memory&uri=true"],
+)  # fmt: skip
 def test_a_database_that_cannot_be(tmp_path, url):
     done = mechsynth(tmp_path, "serve", database_url=url)
     assert done.returncode == 1

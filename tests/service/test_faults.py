@@ -1,5 +1,6 @@
 """What happens to jobs when things die, hang, or eat memory: real servers, real signals."""
 
+import asyncio
 import os
 import signal
 import sqlite3
@@ -10,6 +11,7 @@ import time
 
 import pytest
 
+from service.jobs.changes import Changes
 from tests.service.running import SCRIPTED, RunningServer, alive, environment, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, GREEDY, INSTANT, NATIVE, STEPS
 
@@ -124,6 +126,30 @@ def test_a_defect_of_the_solver_fails_the_job_and_is_not_shown(server):
     assert (job["status"], job["error"]["type"]) == ("failed", "/problems/internal-error")
     assert "secret" not in str(job)
     assert "secret" in server.log(), "the log is where the defect must be found"
+
+
+def test_a_lane_survives_what_nobody_foresaw(server):
+    (server.folder / "lane-fault").touch()
+    job = server.post(INSTANT, wait=20)
+    assert (job["status"], job["error"]["type"]) == ("failed", "/problems/internal-error")
+    assert "a defect of the lane" in server.log()
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_a_lane_survives_that_no_process_can_be_had(server):
+    server.post(INSTANT, wait=20)
+    (worker,) = server.workers()
+    (server.folder / "no-process").touch()
+    os.kill(worker, signal.SIGKILL)
+    assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+    assert not (server.folder / "no-process").exists()
+
+
+def test_news_for_a_loop_that_is_closed_are_dropped():
+    loop = asyncio.new_event_loop()
+    changes = Changes(loop)
+    loop.close()
+    changes.publish("job")
 
 
 def test_progress_is_seen_while_the_job_runs(server):

@@ -88,14 +88,15 @@ def test_the_openapi_document_is_complete(openapi):
     assert openapi["openapi"].startswith("3.1")
     ids = [op["operationId"] for _, _, op in operations(openapi)]
     assert sorted(ids) == [
-        "create_job", "delete_job", "draw_design", "get_job", "healthz", "list_jobs", "list_problems", "readyz",
+        "analyse", "create_job", "delete_job", "draw_design", "get_job", "healthz", "list_jobs", "list_problems",
+        "move_design", "readyz",
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)
     assert all(schema.get("title") for schema in schemas.values())
     references = set(re.findall(r'"#/components/schemas/([^"]+)"', json.dumps(openapi)))
     assert references <= set(schemas)
-    assert {"Job", "JobRequest", "JobList", "ProblemDetails", "Result"} <= references
+    assert {"Analysis", "AnalysisRequest", "Job", "JobRequest", "JobList", "ProblemDetails", "Result"} <= references
     for _, _, operation in operations(openapi):
         assert operation["tags"]
         assert operation["summary"]
@@ -110,6 +111,10 @@ def test_the_examples_of_the_openapi_document_run(client, openapi):
     for example in body["examples"].values():
         answer = client.post("/v1/jobs", json=example["value"], headers={"Prefer": "wait=30"})
         assert answer.json()["status"] == "succeeded"
+    body = openapi["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
+    assert body["examples"]
+    for example in body["examples"].values():
+        assert client.post("/v1/analyses", json=example["value"]).status_code == 200
 
 
 def test_a_wait_has_a_longest():
@@ -121,3 +126,22 @@ def test_a_wait_has_a_longest():
 def test_no_request_here_was_met_with_a_defect(server):
     """Runs at the end of its module: the log of the session's server holds no traceback."""
     assert "Traceback" not in server.log()
+
+
+@pytest.mark.parametrize("path", ["/healthz", "/readyz", "/docs", "/openapi.json", "/v1/problems", "/v1/jobs", "/nope"])
+def test_head_is_get_without_the_body(client, path):
+    asked, got = client.head(path), client.get(path)
+    assert asked.status_code == got.status_code
+    assert asked.headers["content-type"] == got.headers["content-type"]
+    assert asked.content == b""
+
+
+def test_a_client_that_leaves_is_no_defect(server):
+    host, port = server.url.removeprefix("http://").split(":")
+    before = server.log().count("Traceback")
+    with socket.create_connection((host, int(port))) as connection:
+        head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n{"
+        connection.sendall(head.encode())
+    assert server.client.get("/healthz").status_code == 200
+    assert server.client.get("/v1/jobs").status_code == 200
+    assert server.log().count("Traceback") == before

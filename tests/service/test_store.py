@@ -2,12 +2,12 @@ import sqlite3
 import threading
 
 import pytest
-from sqlalchemy import select, update
+from sqlalchemy import insert, select, update
 
 from service.jobs.database import connect, upgrade
 from service.jobs.schema import jobs, metadata
 from service.jobs.states import FINISHED, MOVES, Status
-from service.jobs.store import MAX_CRASHES, JobStore
+from service.jobs.store import MAX_CRASHES, JobStore, KeyReused, Repeatable, _new_row
 
 ACTIONS = {
     "claim": lambda store, job, attempt: store.claim(job) is not None,
@@ -174,6 +174,32 @@ def test_the_migrations_make_the_tables_of_the_schema(tmp_path):
         made.append((columns, sorted(indexes)))
     assert made[0] == made[1]
     assert made[0][0]
+
+
+def test_a_key_makes_one_job_until_that_is_removed(store):
+    ours = {"kind": "motion", "label": None, "problem": "{}"}
+    first, new = store.create_once(**ours, repeatable=Repeatable("k", "a"))
+    assert new
+    assert store.create_once(**ours, repeatable=Repeatable("k", "a")) == (first, False)
+    with pytest.raises(KeyReused) as reused:
+        store.create_once(**ours, repeatable=Repeatable("k", "b"))
+    assert reused.value.job_id == first.id
+    store.cancel(first.id)
+    assert store.delete(first.id)
+    second, new = store.create_once(**ours, repeatable=Repeatable("k", "b"))
+    assert new
+    assert second.id != first.id
+
+
+def test_jobs_of_an_older_store_are_kept(tmp_path):
+    engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
+    upgrade(engine, "0001")
+    row = {**_new_row("motion", "old", "{}"), "status": "succeeded"}
+    with engine.begin() as connection:
+        connection.execute(insert(jobs).values(row))
+    upgrade(engine)
+    assert JobStore(engine).get(row["id"]).label == "old"
+    engine.dispose()
 
 
 def test_upgrading_twice_keeps_the_jobs(engine, store, job):

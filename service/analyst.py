@@ -1,0 +1,141 @@
+"""The analysis core in the server's own process: loaded beside the start, then called in threads.
+
+Jobs are computed in worker processes, which can be killed; an analysis takes milliseconds, and a thread will do. Its
+library takes a second to import and its kernels some more to load, so that is done in the background when the service
+has started, and whoever asks before it is done waits.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+from queue import SimpleQueue
+from typing import Any, ParamSpec, TypeVar
+
+import structlog
+
+THREADS = 2
+"""Analyses that run at once. They hold the interpreter most of the time; more of them would only delay all others."""
+
+LONGEST_S = 20.0
+"""How long a client is kept waiting for an analysis."""
+
+LATEST_START_S = 10.0
+"""The core is loaded after the first worker has started, so that the service is ready soon, but not later than this."""
+
+_PERIOD_S = 0.02
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+log = structlog.get_logger(__name__)
+
+
+class Busy(Exception):
+    """Other analyses have kept this one from being begun in time."""
+
+
+class TooLong(Exception):
+    """The analysis was begun and has not ended in time."""
+
+
+class Analyst:
+    """Runs functions that need the analysis core, each in one of a few threads of its own, once it is loaded.
+
+    A thread cannot be killed. An analysis that takes too long keeps its thread, but nobody waits for it any more, and
+    the threads are daemons, so that the service can stop without it.
+    """
+
+    def __init__(self) -> None:
+        self._calls: SimpleQueue[tuple[Future[Any], Callable[[], Any]]] = SimpleQueue()
+        self._loaded = threading.Event()
+
+    def start(self, after: Callable[[], bool]) -> None:
+        """Load the core once ``after`` says so, at the latest :data:`LATEST_START_S` from now; returns at once."""
+        for n in range(THREADS):
+            loading = after if n == 0 else None
+            threading.Thread(target=self._serve, args=(loading,), name=f"analyst-{n}", daemon=True).start()
+
+    async def call(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Call a function in a thread; what it raises is raised here.
+
+        Raises
+        ------
+        Busy, TooLong
+            After :data:`LONGEST_S`.
+        """
+        future: Future[T] = Future()
+        self._calls.put((future, partial(work, *args, **kwargs)))
+        try:
+            async with asyncio.timeout(LONGEST_S):
+                return await asyncio.wrap_future(future)
+        except TimeoutError:
+            raise (Busy if future.cancelled() else TooLong) from None
+
+    def _serve(self, loading: Callable[[], bool] | None) -> None:
+        if loading is not None:
+            latest = time.monotonic() + LATEST_START_S
+            while not loading() and time.monotonic() < latest:
+                time.sleep(_PERIOD_S)
+            self._load()
+        self._loaded.wait()
+        while True:
+            future, work = self._calls.get()
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(work())
+                except Exception as error:  # it is the caller's
+                    future.set_exception(error)
+
+    def _load(self) -> None:
+        try:
+            warm_up()
+        except Exception:  # the requests will say, one by one, what they could not have
+            log.exception("the analysis core could not be warmed up")
+        # All that is imported by now stays; see service.web.
+        gc.freeze()
+        self._loaded.set()
+
+
+def warm_up() -> None:
+    """Compile the kernels of the analysis core, or load them from their cache, by an analysis of each sort."""
+    from synthesis.analyses import AnalysisRequest, analyse
+
+    for mechanism in (_FOURBAR, _SLIDER_CRANK, _CLASS_III):
+        analyse(AnalysisRequest.model_validate({"mechanism": mechanism}))
+
+
+_FOURBAR = {
+    "type": "fourbar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+}
+_SLIDER_CRANK = {
+    "type": "slider_crank",
+    "fixed_pivot": [0.0, 0.0],
+    "links": {"crank": 2.0, "coupler": 7.0},
+    "slide": {"point": [0.0, 1.0], "angle": 0.0},
+}
+_CLASS_III = {
+    "type": "stephenson_2",
+    "skeleton": {
+        "joints": {
+            "O2": [0.0, 0.0], "O4": [4.0, 0.0], "A": [0.3, 1.0], "C": [0.8, 0.6],
+            "B": [1.5, 3.0], "D": [3.0, 2.2], "E": [4.2, 2.0],
+        },
+        "links": [
+            {"name": "ground", "joints": ["O2", "O4"]},
+            {"name": "input", "joints": ["O2", "A", "C"]},
+            {"name": "link_3", "joints": ["A", "B"]},
+            {"name": "link_4", "joints": ["B", "D", "E"]},
+            {"name": "link_5", "joints": ["C", "D"]},
+            {"name": "output", "joints": ["O4", "E"]},
+        ],
+        "input_link": "input",
+    },
+}  # fmt: skip

@@ -1,0 +1,122 @@
+"""``/v1/analyses``: what the analysis core knows of a given mechanism, at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, ParamSpec
+
+from fastapi import APIRouter, Body, Depends, Request, Response
+from fastapi.exceptions import RequestValidationError
+from pydantic import ValidationError
+from pydantic_core import to_json
+
+from service.analyst import LONGEST_S, Analyst, Busy, TooLong
+from service.api import errors
+from service.api.body import JsonRoute
+from service.api.errors import Refusal, invalid_mechanism, invalid_request, sentence
+
+TAG = {"name": "analyses", "description": "Drive a given mechanism."}
+
+# The models of an analysis bring the analysis core with them, for which the start of the service does not wait. So the
+# body is validated where it is used, and the OpenAPI document gets the models when somebody asks for it.
+REQUEST = {"$ref": "#/components/schemas/AnalysisRequest"}
+ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
+
+
+P = ParamSpec("P")
+
+
+def _analyst(request: Request) -> Analyst:
+    analyst = request.app.state.analyst
+    assert isinstance(analyst, Analyst)
+    return analyst
+
+
+Core = Annotated[Analyst, Depends(_analyst)]
+
+router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
+
+
+@router.post(
+    "",
+    operation_id="analyse",
+    summary="Analyse a mechanism",
+    response_class=Response,
+    responses={
+        200: {"description": "The analysis.", "content": {"application/json": {"schema": ANALYSIS}}},
+        **errors.responses(
+            e400="The body is not JSON.",
+            e413="The body is too large.",
+            e415="The body is not `application/json`.",
+            e422="The body does not state a mechanism and its motion; `errors` says where.",
+            e503="Other analyses have kept this one from being begun.",
+        ),
+    },
+)
+async def analyse_mechanism(analyst: Core, body: Annotated[Any, Body()]) -> Response:
+    """Positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
+
+    Nothing is stored. Where the mechanism cannot be assembled `valid` is false and the numbers are null.
+    """
+    return await answered(analyst, _analysed, body)
+
+
+async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **kwargs: P.kwargs) -> Response:
+    """What an analysis gives, as the answer to a request.
+
+    Raises
+    ------
+    Refusal
+        422 or 503 when it is not there in time.
+    """
+    try:
+        return Response(await analyst.call(work, *args, **kwargs), media_type="application/json")
+    except TooLong:
+        fault = ("/mechanism", f"The analysis was given up after {LONGEST_S:g} seconds; are all lengths meant so?")
+        raise invalid_mechanism([fault]) from None
+    except Busy:
+        raise Refusal(
+            503, "busy", "Busy", "The service is busy with other analyses; ask again.", headers={"Retry-After": "5"}
+        ) from None
+
+
+def _analysed(body: Any) -> bytes:
+    from kinematics import errors as kinematics
+    from service.cycle import MOST_EFFORT, effort
+    from synthesis.analyses import AnalysisRequest, analyse
+    from synthesis.mechanisms import MechanismError
+
+    try:
+        request = AnalysisRequest.model_validate(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)
+        raise RequestValidationError([{**fault, "loc": ("body", *fault["loc"])} for fault in found]) from None
+    faults = request.faults()
+    if faults:
+        raise invalid_request([(path, sentence(detail)) for path, detail in faults])
+    try:
+        if effort(request.mechanism.mechanism()) > MOST_EFFORT:
+            raise invalid_mechanism([("/mechanism", "This has too many assemblies to be analysed at once.")])
+        answer = analyse(request)
+    except MechanismError as error:
+        raise invalid_mechanism([(f"/mechanism{error.path}", sentence(error.detail))]) from None
+    except kinematics.MechanismError as error:
+        raise invalid_mechanism([("/mechanism", sentence(str(error)))]) from None
+    return to_json(answer, inf_nan_mode="null")
+
+
+def complete(document: dict[str, Any]) -> None:
+    """Put the models of an analysis into the OpenAPI document."""
+    from pydantic.json_schema import models_json_schema
+
+    from synthesis.analyses import Analysis, AnalysisRequest
+
+    _, schemas = models_json_schema(
+        [(AnalysisRequest, "validation"), (Analysis, "serialization")],
+        ref_template="#/components/schemas/{model}",
+    )
+    document["components"]["schemas"].update(schemas["$defs"])
+    content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
+    content["schema"] = REQUEST
+    example = AnalysisRequest.model_json_schema()["examples"][0]
+    content["examples"] = {"fourbar": {"summary": "A fourbar through a full turn", "value": example}}
