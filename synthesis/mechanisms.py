@@ -24,6 +24,9 @@ from synthesis.problems import Number, Point, PositiveNumber, Statement
 AGREES = 1e-6
 """A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
 
+FIRST_TRIED = 30
+"""Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
+
 Assembly = Literal["open", "crossed"]
 
 
@@ -396,7 +399,7 @@ def _agree(path: str, stated: float | None, found: float, what: str = "the fixed
 
 
 def _assembled(make: Callable[[float], Mechanism], degrees: float | None) -> Mechanism:
-    """The mechanism at its reference angle; where none is stated, at the first degree where it can be assembled."""
+    """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on."""
     if degrees is not None:
         try:
             return make(math.radians(degrees))
@@ -406,7 +409,7 @@ def _assembled(make: Callable[[float], Mechanism], degrees: float | None) -> Mec
             ) from None
     for step in range(360):
         try:
-            return make(math.radians(step))
+            return make(math.radians((FIRST_TRIED + step) % 360))
         except DimensionError:
             continue
     raise MechanismError("/links", "the mechanism cannot be assembled with these lengths at any input angle")

@@ -134,7 +134,7 @@ def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[t
     value = least(np.tile(grid, rows), np.repeat(np.arange(rows), count))[0].reshape(rows, count)
     extra_row, extra_theta, extra_value = _extremes_near_zero(least, grid, value, period)
     brackets: list[tuple[int, float, float]] = []  # row, and the inputs on either side of an end
-    plans: list[tuple[Real, Real, NDArray[np.int64]] | bool] = []
+    plans: list[tuple[Real, NDArray[np.bool_]] | bool] = []  # ends known so far and which of them are, or all or none
     for row in range(rows):
         theta = np.concatenate([grid, extra_theta[extra_row == row]])
         order = np.argsort(theta, kind="stable")
@@ -148,23 +148,33 @@ def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[t
         theta = np.append(np.where(theta < theta[0], theta + period, theta), theta[0] + period)
         here = np.append(here, here[0])
         edges = np.flatnonzero(np.diff(np.append(inside, False).astype(int)))
-        plans.append((theta, here, edges))
-        brackets += [(row, float(theta[edge]), float(theta[edge + 1])) for edge in edges]
-    if not brackets:
-        return [[(0.0, period, True)] if plan is True else [] for plan in plans]
-    which = np.array([row for row, _, _ in brackets])
-    low, high = np.array([b[1] for b in brackets]), np.array([b[2] for b in brackets])
-    # The end is where the margin is still positive; at a change point it is the searched extreme itself.
-    roots = find_roots(lambda theta: _lifted(least(theta, which)[0]), low, high)[0]
-    pairs = iter(roots.reshape(-1, 2))
+        # Outside an edge at a change point stands the searched extreme: it is the end itself.
+        outer = np.where(inside[edges], edges + 1, edges)
+        touching = np.abs(here[outer]) <= TOUCHES
+        plans.append((theta[outer], touching))
+        brackets += [(row, float(theta[edge]), float(theta[edge + 1])) for edge in edges[~touching]]
+    roots = iter(_ends(least, brackets))
     found: list[list[tuple[float, float, bool]]] = []
     for plan in plans:
         if isinstance(plan, bool):
             found.append([(0.0, period, True)] if plan else [])
             continue
-        spans = [next(pairs) for _ in range(len(plan[2]) // 2)]
-        found.append([(float(np.mod(a, period)), float(np.mod(a, period) + b - a), False) for a, b in spans])
+        ends = [float(known) if touching else next(roots) for known, touching in zip(*plan, strict=True)]
+        spans = zip(ends[::2], ends[1::2], strict=True)
+        found.append(
+            [(float(np.mod(low, period)), float(np.mod(low, period) + high - low), False) for low, high in spans]
+        )
     return found
+
+
+def _ends(least: Margins, brackets: list[tuple[int, float, float]]) -> list[float]:
+    """Where the margins of rows vanish between two inputs; of the last bracket the end where it is not negative."""
+    if not brackets:
+        return []
+    row = np.array([row for row, _, _ in brackets])
+    low, high = np.array([b[1] for b in brackets]), np.array([b[2] for b in brackets])
+    ends: list[float] = find_roots(lambda theta: _lifted(least(theta, row)[0]), low, high)[0].tolist()
+    return ends
 
 
 def _lifted(margin: Real) -> Real:
@@ -223,7 +233,7 @@ def _meet(one: Branch, other: Branch, closing: list[str], period: float) -> bool
 
     A change point also joins the branches on its two sides.
     """
-    if meet_at(one, other, high=True, period=period) or meet_at(one, other, high=False, period=period):
+    if any(meet_at(one, other, closing, high=high, period=period) for high in (True, False)):
         return True
     flipped = {link for link, a, b in zip(closing, one.signs, other.signs, strict=True) if a != b}
     for low, high in ((one, other), (other, one)):
@@ -232,14 +242,14 @@ def _meet(one: Branch, other: Branch, closing: list[str], period: float) -> bool
     return False
 
 
-def meet_at(one: Branch, other: Branch, *, high: bool, period: float) -> bool:
-    """Whether two branches fold flat together at their high (or low) ends: all else alike, one assembly reversed."""
+def meet_at(one: Branch, other: Branch, closing: list[str], *, high: bool, period: float) -> bool:
+    """Whether two branches fold flat together at their high (or low) ends: only the folded closure's sign reversed."""
     if one.full or other.full:
         return False
     ends = (one.high, other.high) if high else (one.low, other.low)
     folded = (one.high_closure, other.high_closure) if high else (one.low_closure, other.low_closure)
-    reversed_ = sum(a != b for a, b in zip(one.signs, other.signs, strict=True))
-    return folded[0] == folded[1] and reversed_ == 1 and _same(*ends, period)
+    flipped = {link for link, a, b in zip(closing, one.signs, other.signs, strict=True) if a != b}
+    return folded[0] == folded[1] and flipped == {folded[0]} and _same(*ends, period)
 
 
 def _same(one: float, other: float, period: float) -> bool:

@@ -84,6 +84,8 @@ def inverted_slider_crank(
     """
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
+    if abs(reach) == 0.0:
+        raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
     # The line's distance from O4 is c sin γ: the output stands where a line at that distance passes through A.
     ratio = output * np.sin(line_angle) / abs(reach)
     if abs(ratio) > 1.0:

@@ -24,6 +24,9 @@ from kinematics.linkage.roots import find_roots, sign_changes
 Real = NDArray[np.float64]
 FULL_TURN = 2.0 * np.pi
 
+DEAD = 1e-9
+"""Rate of the true input by the other one (in units of the mechanism) below which the true input stands still."""
+
 
 class Piece(NamedTuple):
     """A part of a circuit on which the true input moves one way: from ``start`` to ``end``, unwrapped."""
@@ -61,10 +64,11 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
     parts = dyadic_branches(other)
     pieces = _pieces(mechanism, other, parts)
     found: list[Branch] = []
+    closing = [step.link for step in decompose(other).steps if step.has_two_solutions]
     left = list(range(len(parts)))
     number: dict[int, int] = {}
     while left:
-        loop = _loop(parts, left)
+        loop = _loop(parts, left, closing)
         for n, _ in loop:
             left.remove(n)
         circuit = number.setdefault(parts[loop[0][0]].circuit, len(number))
@@ -98,6 +102,8 @@ def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list
         grids.append(np.linspace(branch.low + hair, branch.high - hair, GRID))
     rows = np.repeat(np.arange(len(parts)), GRID)
     rate = true_input(np.concatenate(grids), rows, 1)[1].reshape(len(parts), GRID)
+    # A true input that stands still on a branch of the other driver (a dead branch) has no turning points.
+    rate[np.abs(rate).max(axis=1, initial=0.0, where=np.isfinite(rate)) <= DEAD] = 0.0
     changes = [(row, n) for row in range(len(parts)) for n in sign_changes(rate[row])]
     turns = np.empty(0)
     of = np.array([row for row, _ in changes], np.int64)
@@ -131,7 +137,7 @@ def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
     return rotation
 
 
-def _loop(parts: list[Branch], left: list[int]) -> list[tuple[int, bool]]:
+def _loop(parts: list[Branch], left: list[int], closing: list[str]) -> list[tuple[int, bool]]:
     """Branches of one circuit strung together: (index, upwards), starting with the first one left."""
     here, upwards = left[0], True
     loop = [(here, upwards)]
@@ -139,7 +145,8 @@ def _loop(parts: list[Branch], left: list[int]) -> list[tuple[int, bool]]:
         return loop
     while True:
         after = next(
-            (m for m in left if m != here and meet_at(parts[here], parts[m], high=upwards, period=FULL_TURN)), None
+            (m for m in left if m != here and meet_at(parts[here], parts[m], closing, high=upwards, period=FULL_TURN)),
+            None,
         )
         if after is None or after == loop[0][0]:
             return loop
@@ -170,6 +177,8 @@ def _branches_of(loop: list[tuple[int, bool]], cut: list[list[Piece]], circuit: 
     full = len(joined) == 1
     listed = []
     for piece in joined:
+        if abs(piece.end - piece.start) <= DEAD:
+            continue
         low, high = min(piece), max(piece)
         start = low if slide else float(np.mod(low, FULL_TURN))
         listed.append(Branch(circuit, start, start + high - low, full, (), "", ""))

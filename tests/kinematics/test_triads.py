@@ -18,7 +18,7 @@ def reach(mechanism: Mechanism, limit: float) -> tuple[Constraints, list[list[Tr
     """Both ways from the reference by small steps, to the first toggle: traces, and the input's way there (n, 2)."""
     constraints = Constraints.of(mechanism)
     both = [constraints.follow(constraints.start(), side, limit, to_toggle=True) for side in (1.0, -1.0)]
-    ends = [[t.toggles()[0][1] if t.ended == "toggle" else t.points[-1, -1] for t in traces] for traces in both]
+    ends = [[t.toggles[0][1] if t.ended == "toggle" else t.points[-1, -1] for t in traces] for traces in both]
     return constraints, both, np.array(ends).T
 
 

@@ -18,7 +18,9 @@ Everything takes many designs at once, shape (n,).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -80,6 +82,7 @@ class Constraints:
         self.column = {name: k for k, name in enumerate(self.moving)}
         self.n, self.width = n, 2 * len(self.moving) + 1
         self.rows: list[tuple[Any, ...]] = []
+        self.pushed = input not in links
         ratios = {input: 1.0}
         for first, second, ratio in gears:
             ratios |= {second: ratio} if first == input else {first: 1.0 / ratio}
@@ -338,7 +341,7 @@ class Constraints:
                         ended[k], done[n_live] = "stalled", True
                     continue
                 before, after = at[k], new[n_live]
-                if len(paths[k]) > 2 and self._passes(start[k], first[k], before, after):
+                if len(paths[k]) > 2 and self._passes(k, start[k], first[k], before, after):
                     ended[k], done[n_live] = "closed", True
                 elif to_toggle and turned[n_live][-1] * first[k, -1] < 0.0:
                     ended[k], done[n_live] = "toggle", True
@@ -353,18 +356,23 @@ class Constraints:
             for k, path in enumerate(paths)
         ]
 
-    def _passes(self, start: Real, first: Real, before: Real, after: Real) -> bool:
+    def _passes(self, design: int, start: Real, first: Real, before: Real, after: Real) -> bool:
         """Whether a step from before to after passes the start in its first direction, the input's turns apart."""
         there, here = (after - start)[:-1] @ first[:-1], (before - start)[:-1] @ first[:-1]
         step = np.abs(after - before)[:-1].max()
         if not here < 0.0 <= there or np.abs(before - start)[:-1].max() > 2.0 * step + 1e-9:
             return False
-        share = here / (here - there)
-        met = before + share * (after - before)
-        return bool(np.abs(met - start)[:-1].max() < 0.1 * step + 1e-9)
+        met = before + here / (here - there) * (after - before)
+        if np.abs(met - start)[:-1].max() > 0.1 * step + 1e-9:
+            return False
+        turns = 0.0 if self.pushed else np.round((met[-1] - start[-1]) / (2.0 * np.pi))
+        met[-1] = start[-1] + turns * 2.0 * np.pi
+        found, good = self.take([design]).solve(met[None])
+        return bool(good[0]) and bool(np.abs(found[0] - start)[:-1].max() < SAME)
 
 
-class Trace(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Trace:
     """One circuit from a configuration on: points (k, width), tangents (k, width), and how it ended."""
 
     constraints: Constraints
@@ -377,41 +385,56 @@ class Trace(NamedTuple):
         """Points after the toggle at which the trace ended: one, or none where it ended otherwise."""
         return int(self.ended == "toggle")
 
-    def toggles(self) -> list[tuple[int, float]]:
-        """Where the input turns back: number of the step and the input's way, by bisection along the arc."""
-        found = []
+    @cached_property
+    def toggles(self) -> list[tuple[float, float]]:
+        """Where the input turns back: place on the trace in steps, and the input's way; by bisection along the arc."""
         rate = self.tangents[:, -1]
-        for k in np.flatnonzero((rate[:-1] > 0.0) != (rate[1:] > 0.0)):
-            if np.abs(rate[[k, k + 1]]).max() < 1e-12:
-                continue
-            low, high = self.points[k], self.points[k + 1]
-            sign = np.sign(rate[k])
-            along = self.tangents[k]
-            for _ in range(40):
-                middle, _ = self.constraints.correct(((low + high) / 2.0)[None], along[None])
-                tangent = self.constraints.tangent(middle, along[None])[0]
-                if sign * tangent[-1] > 0.0:
-                    low = middle[0]
-                else:
-                    high = middle[0]
-            found.append((int(k), float((low[-1] + high[-1]) / 2.0)))
-        return found
+        turns = np.flatnonzero((rate[:-1] > 0.0) != (rate[1:] > 0.0))
 
-    def at(self, way: float, period: float) -> list[tuple[int, Real]]:
-        """All configurations that the trace passes at an input, whole periods apart: number of the step, and where."""
+        def passed(k: int, x: Real) -> bool:
+            return bool(self.constraints.tangent(x[None], self.tangents[k][None])[0, -1] * rate[k] <= 0.0)
+
+        return [(share, float(x[-1])) for share, x in (self._bisect(int(k), passed, 40) for k in turns)]
+
+    def at(self, way: float, period: float) -> list[tuple[float, Real]]:
+        """All configurations that the trace passes at an input, whole periods apart: place in steps, and where."""
         found = []
         t = self.points[:, -1]
+        turns = {int(place): x for place, x in self.toggles}
         for k in range(len(t) - 1):
-            low, high = sorted((t[k], t[k + 1]))
-            for turn in range(int(np.ceil((low - way) / period)), int(np.floor((high - way) / period)) + 1):
-                there = way + turn * period
-                share = (there - t[k]) / (t[k + 1] - t[k]) if high > low else 0.0
-                guess = self.points[k] + share * (self.points[k + 1] - self.points[k])
-                guess[-1] = there
-                x, good = self.constraints.solve(guess[None])
-                if good[0] and np.abs(x[0] - guess).max() < 2.0 * LONGEST_STEP:
-                    found.append((k, x[0]))
+            ends = [t[k], *([turns[k]] if k in turns else []), t[k + 1]]
+            for part in range(len(ends) - 1):
+                low, high = sorted(ends[part : part + 2])
+                rising = ends[part + 1] > ends[part]
+                for turn in range(int(np.ceil((low - way) / period)), int(np.floor((high - way) / period)) + 1):
+                    there = way + turn * period
+
+                    def passed(k: int, x: Real, part: int = part, rising: bool = rising, there: float = there) -> bool:
+                        tangent = self.constraints.tangent(x[None], self.tangents[k][None])[0]
+                        second = tangent[-1] * self.tangents[k, -1] <= 0.0
+                        if part == 0 and second and k in turns:
+                            return True
+                        if part == 1 and not second:
+                            return False
+                        return bool((x[-1] >= there) == rising)
+
+                    share, x = self._bisect(k, passed, 14)
+                    x[-1] = there
+                    solved, good = self.constraints.solve(x[None])
+                    assert good[0]
+                    found.append((share, solved[0]))
         return found
+
+    def _bisect(self, k: int, passed: Callable[[int, Real], bool], halvings: int) -> tuple[float, Real]:
+        """Place and configuration on step k at which a condition becomes true."""
+        low, high, along = 0.0, 1.0, self.tangents[k]
+        start, chord = self.points[k], self.points[k + 1] - self.points[k]
+        x = start
+        for _ in range(halvings):
+            middle = (low + high) / 2.0
+            x = self.constraints.correct((start + middle * chord)[None], along[None])[0][0]
+            low, high = (low, middle) if passed(k, x) else (middle, high)
+        return k + (low + high) / 2.0, x.copy()
 
 
 def _solve(matrix: Real, right: Real) -> Real:
