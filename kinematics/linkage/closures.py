@@ -21,9 +21,13 @@ have no such steps; :mod:`kinematics.linkage.triads` follows them by continuatio
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from kinematics.linkage.mechanism import GROUND, Mechanism, Slide
+
+RECENT = 8
+"""Mechanisms whose order of closures is remembered: root finding asks for it dozens of times."""
 
 
 class Step(NamedTuple):
@@ -57,9 +61,10 @@ class Decomposition(NamedTuple):
     left: tuple[str, ...]
 
 
-def decompose(mechanism: Mechanism, known_links: tuple[str, ...] | None = None) -> Decomposition:
-    """Order the closures of a mechanism from its input; ``known_links`` stand in for ground and input where given."""
-    known = list(known_links or ([GROUND] if mechanism.driven_by_slide else [GROUND, mechanism.input]))
+@lru_cache(maxsize=RECENT)
+def decompose(mechanism: Mechanism) -> Decomposition:
+    """Order the closures of a mechanism from its input."""
+    known = [GROUND] if mechanism.driven_by_slide else [GROUND, mechanism.input]
     joints = {joint for link in known for joint in mechanism.links[link]}
     if mechanism.driven_by_slide:
         joints.add(mechanism.input)

@@ -7,12 +7,13 @@ mechanism, so that tolerances are relative and digits are not lost to a far orig
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.linkage.closures import Decomposition, Step, decompose
+from kinematics.linkage.closures import RECENT, Decomposition, Step, decompose
 from kinematics.linkage.fourbar import ON_TOGGLE, one_shape
 from kinematics.linkage.jets import Jet, RealJet, angle_of, product, solve_angle, turn
 from kinematics.linkage.mechanism import GROUND, Complex, Mechanism, Real, Slide
@@ -81,6 +82,7 @@ class Frame:
     lines: dict[int, Complex]
 
 
+@lru_cache(maxsize=RECENT)
 def unit_frame(mechanism: Mechanism) -> Frame:
     """The mechanism's unit coordinates."""
     ground = mechanism.links[GROUND]
