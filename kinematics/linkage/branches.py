@@ -133,7 +133,7 @@ def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[t
     grid = np.linspace(0.0, period, count, endpoint=False)
     value = least(np.tile(grid, rows), np.repeat(np.arange(rows), count))[0].reshape(rows, count)
     extra_row, extra_theta, extra_value = _extremes_near_zero(least, grid, value, period)
-    brackets: list[tuple[int, float, float]] = []  # row, and the inputs on either side of an end
+    brackets: list[Bracket] = []
     plans: list[tuple[Real, NDArray[np.bool_]] | bool] = []  # ends known so far and which of them are, or all or none
     for row in range(rows):
         theta = np.concatenate([grid, extra_theta[extra_row == row]])
@@ -152,7 +152,8 @@ def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[t
         outer = np.where(inside[edges], edges + 1, edges)
         touching = np.abs(here[outer]) <= TOUCHES
         plans.append((theta[outer], touching))
-        brackets += [(row, float(theta[edge]), float(theta[edge + 1])) for edge in edges[~touching]]
+        for edge in edges[~touching]:
+            brackets.append(Bracket(row, *map(float, (theta[edge], theta[edge + 1], here[edge], here[edge + 1]))))
     roots = iter(_ends(least, brackets))
     found: list[list[tuple[float, float, bool]]] = []
     for plan in plans:
@@ -167,13 +168,23 @@ def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[t
     return found
 
 
-def _ends(least: Margins, brackets: list[tuple[int, float, float]]) -> list[float]:
+class Bracket(NamedTuple):
+    """Inputs between which the margin of a row vanishes, and the margins there."""
+
+    row: int
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+
+def _ends(least: Margins, brackets: list[Bracket]) -> list[float]:
     """Where the margins of rows vanish between two inputs; of the last bracket the end where it is not negative."""
     if not brackets:
         return []
-    row = np.array([row for row, _, _ in brackets])
-    low, high = np.array([b[1] for b in brackets]), np.array([b[2] for b in brackets])
-    ends: list[float] = find_roots(lambda theta: _lifted(least(theta, row)[0]), low, high)[0].tolist()
+    row, low, high, at_low, at_high = (np.array(column) for column in zip(*brackets, strict=True))
+    found = find_roots(lambda theta: _lifted(least(theta, row)[0]), low, high, _lifted(at_low), _lifted(at_high))
+    ends: list[float] = found[0].tolist()
     return ends
 
 

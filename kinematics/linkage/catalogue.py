@@ -11,10 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions, require
 from kinematics.linkage.mechanism import GearPair, Mechanism, Slide
 
 Complex = NDArray[np.complex128]
+
+ON_PIVOT = 1e-14
+"""A crank pin this near to a pivot, as a share of the ground, lies on it: no direction is left but rounding."""
+
+
+def _require_sign(name: str, sign: int) -> None:
+    require(name, "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
 
 
 def fourbar(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Mechanism:
@@ -58,6 +65,7 @@ def slider_crank(
     ``open`` is the slider's position farther along the slide's direction. ``coupler_point`` is P in the coupler's
     frame, origin at A, real axis towards B. ``driven_by`` is ``crank`` or ``slider``.
     """
+    _require_sign("assembly", assembly)
     direction = np.exp(1j * slide_angle)
     pin_a = pivot + crank * np.exp(1j * crank_angle)
     local = (pin_a - slide_point) * np.conj(direction)
@@ -129,9 +137,11 @@ def quick_return(
     The crank pin A slides in the link that turns about O4, through O4 itself; its end C, ``rocker`` from O4 (on A's
     side for ``open``), drives the ram D through the coupler; the ram slides on the given line.
     """
+    _require_sign("ram", ram)
+    _require_sign("rocker_side", rocker_side)
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
-    if abs(reach) == 0.0:
+    if abs(reach) <= ON_PIVOT * abs(o4 - o2):
         raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
     pin_c = o4 + rocker_side * rocker * reach / abs(reach)
     direction = np.exp(1j * slide_angle)
@@ -169,6 +179,8 @@ def geared_fivebar(
     ``open``: C, where the couplers meet, lies to the left of the directed line from A to B. ``coupler_point`` is P on
     coupler 1 in its frame, origin at A, real axis towards C.
     """
+    _require_sign("assembly", assembly)
+    require("gear_ratio", "finite", np.asarray(gear_ratio), np.isfinite(gear_ratio))
     ground = float(np.angle(o5 - o2))
     pin_a = o2 + input * np.exp(1j * input_angle)
     pin_b = o5 + output * np.exp(1j * (ground + gear_ratio * (input_angle - ground) + phase))

@@ -94,7 +94,7 @@ def _next(mechanism: Mechanism, known: list[str], joints: set[str]) -> Step | No
         for gear in mechanism.gears:
             if gear.second == link and gear.first in known:
                 return Step("gear", link, pin, other=gear.first, ratio=gear.ratio)
-            if gear.first == link and gear.second in known:
+            if gear.first == link and gear.second in known and gear.ratio != 0.0:
                 return Step("gear", link, pin, other=gear.second, ratio=1.0 / gear.ratio)
         for slide in mechanism.slides:
             if slide.link in known and slide.joint in mechanism.links[link] and slide.joint not in joints:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.linkage.closures import RECENT, Decomposition, Step, decompose
-from kinematics.linkage.fourbar import ON_TOGGLE, one_shape
+from kinematics.linkage.fourbar import ON_TOGGLE, one_shape, require
 from kinematics.linkage.jets import Jet, RealJet, angle_of, product, solve_angle, turn
 from kinematics.linkage.mechanism import GROUND, Complex, Mechanism, Real, Slide
 from kinematics.linkage.triads import follow, loop_equations, rates
@@ -108,6 +108,15 @@ def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs
     return tuple(signs)
 
 
+def _check_arms(frame: Frame, step: Step) -> None:
+    """Refuse a link that has no length between the joints by which it closes: any rotation would do."""
+    arms = {"RRR": [(step.link, step.pin), (step.other, step.other_pin)], "RRP": [(step.link, step.pin)]}
+    arms["carried"] = arms["RRP"]
+    for link, pin in arms.get(step.kind, []):
+        length = np.abs(frame.joints[step.joint] - frame.joints[pin])
+        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > 0.0)
+
+
 def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
     pin = frame.joints[step.pin]
     if step.kind == "RRR":
@@ -153,9 +162,13 @@ def drive(
     ------
     TopologyError
         For a class III mechanism with slides or gears.
+    DimensionError
+        For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, or a
+        link without length between the joints by which it closes.
     ShapeError
         For inputs that do not broadcast.
     """
+    require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
     return _Drive(mechanism, decompose(mechanism), input, (speed, acceleration, jerk)[:order], signs).run()
 
 
@@ -173,12 +186,19 @@ class _Drive:
         self.mechanism, self.steps = mechanism, () if decomposition.left else decomposition.steps
         self.dyadic = not decomposition.left
         self.signs = assembly_signs(mechanism, self.steps) if signs is None else signs
+        count = len(self.signs)
+        require("signs", f"{len(self.steps)} arrays", np.asarray(count), np.bool_(count == len(self.steps)))
+        for sign in self.signs:
+            require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
         self.frame = unit_frame(mechanism)
+        for step in self.steps:
+            _check_arms(self.frame, step)
         q = np.asarray(input, np.float64)
+        require("input", "finite", q, ~np.isinf(q))
         given = [np.asarray(rate, np.float64) for rate in rates]
         shape = one_shape(
             designs=(*mechanism.shape, 1),
-            signs=(*np.broadcast_shapes(*(s.shape for s in self.signs)), 1),
+            signs=(*np.broadcast_shapes(*(np.shape(s) for s in self.signs)), 1),
             input=q.shape,
             **{f"rate {n}": rate.shape for n, rate in enumerate(given, start=1)},
         )

@@ -106,16 +106,16 @@ def limit_positions(
     if not links and not slides:
         return [], []
     grid = np.linspace(low, high, GRID)
-    rate = quantities(grid, 1)[1]
+    values, rate = quantities(grid, 1)
     changes = [(row, n) for row in range(len(rate)) for n in sign_changes(rate[row])]
-    inputs = grid
     if changes:
         of = np.array([row for row, _ in changes]), np.arange(len(changes))
         left = np.array([grid[n] for _, n in changes])
         right = np.array([grid[n + 1] for _, n in changes])
-        roots = find_roots(lambda inputs: quantities(inputs, 1)[1][of], left, right)[0]
-        inputs = np.unique(np.concatenate([grid, roots]))
-    values = quantities(inputs, 0)[0]
+        at_left, at_right = (np.array([rate[row][n + k] for row, n in changes]) for k in (0, 1))
+        roots = find_roots(lambda inputs: quantities(inputs, 1)[1][of], left, right, at_left, at_right)[0]
+        first = np.unique(np.concatenate([grid, roots]), return_index=True)[1]
+        values = np.concatenate([values, quantities(roots, 0)[0]], axis=1)[:, first]
     known = np.isfinite(values).all(axis=0)
     spans: list[tuple[float, float] | None] = []
     for row, value in enumerate(values[:, known]):

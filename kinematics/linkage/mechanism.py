@@ -14,13 +14,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.fourbar import require
+from kinematics.linkage.fourbar import one_shape, require
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 
 GROUND = "ground"
 """Name of the link that does not move; every mechanism has it."""
+
+
+OFF_SLIDE = 1e-6
+"""Distance of a joint from its slide in the reference, as a share of the mechanism's size: inputs may be rounded."""
 
 
 class TopologyError(MechanismError, ValueError):
@@ -64,7 +68,9 @@ class Mechanism:
     TopologyError
         For names that do not exist, a link without joints, or a mobility other than one.
     DimensionError
-        For coordinates that are not finite.
+        For coordinates or gear ratios that are not finite, or a joint that is not on its slide.
+    ShapeError
+        For coordinates that do not broadcast.
     """
 
     joints: dict[str, Complex]
@@ -83,11 +89,20 @@ class Mechanism:
         gears: tuple[GearPair, ...] = (),
     ) -> None:
         points = {name: np.asarray(z, np.complex128) for name, z in joints.items()}
-        lines = tuple(s._replace(point=np.asarray(s.point, np.complex128), angle=np.asarray(s.angle)) for s in slides)
+        lines = tuple(
+            s._replace(point=np.asarray(s.point, np.complex128), angle=np.asarray(s.angle, np.float64)) for s in slides
+        )
         for name, point in points.items():
             require(name, "finite", point, np.isfinite(point))
-        shapes = [point.shape for point in points.values()] + [line.point.shape for line in lines]
-        shape = np.broadcast_shapes(*shapes)
+        for line in lines:
+            require(f"slide of {line.joint}", "finite", line.point, np.isfinite(line.point))
+            require(f"slide angle of {line.joint}", "finite", line.angle, np.isfinite(line.angle))
+        for gear in gears:
+            require("gear ratio", "finite", np.asarray(gear.ratio), np.isfinite(gear.ratio))
+        shapes = {name: point.shape for name, point in points.items()}
+        for n, line in enumerate(lines):
+            shapes |= {f"slide {n}": line.point.shape, f"slide angle {n}": line.angle.shape}
+        shape = one_shape(**shapes)
         own = {name: np.broadcast_to(point, shape) for name, point in points.items()}
         for name, value in (
             ("joints", own),
@@ -99,6 +114,7 @@ class Mechanism:
         ):
             object.__setattr__(self, name, value)
         self._check_names()
+        self._check_slides()
         if self.mobility != 1:
             raise TopologyError(f"expected a mobility of 1, got {self.mobility}; look for a link or joint too many")
 
@@ -143,6 +159,14 @@ class Mechanism:
         ]
         if self.input not in (*drives, *pinned):
             raise TopologyError(f"the input {self.input!r} is neither a link pinned to the ground nor a slide on it")
+
+    def _check_slides(self) -> None:
+        for slide in self.slides:
+            offset = self.joints[slide.joint] - slide.point
+            across = np.abs((offset * np.exp(-1j * slide.angle)).imag)
+            spread = np.max([np.abs(z - self.joints[slide.joint]) for z in self.joints.values()], axis=0)
+            reach = np.maximum(spread, np.abs(offset))
+            require(f"distance of {slide.joint} from its slide", "zero", across, across <= OFF_SLIDE * reach)
 
     @property
     def driven_by_slide(self) -> bool:

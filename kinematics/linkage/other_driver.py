@@ -101,7 +101,7 @@ def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list
         hair = 0.0 if branch.full else 1e-9 * (branch.high - branch.low)
         grids.append(np.linspace(branch.low + hair, branch.high - hair, GRID))
     rows = np.repeat(np.arange(len(parts)), GRID)
-    rate = true_input(np.concatenate(grids), rows, 1)[1].reshape(len(parts), GRID)
+    known, rate = (row.reshape(len(parts), GRID) for row in true_input(np.concatenate(grids), rows, 1))
     # A true input that stands still on a branch of the other driver (a dead branch) has no turning points.
     rate[np.abs(rate).max(axis=1, initial=0.0, where=np.isfinite(rate)) <= DEAD] = 0.0
     changes = [(row, n) for row in range(len(parts)) for n in sign_changes(rate[row])]
@@ -109,15 +109,17 @@ def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list
     of = np.array([row for row, _ in changes], np.int64)
     if changes:
         low, high = (np.array([grids[row][n + k] for row, n in changes]) for k in (0, 1))
-        turns = find_roots(lambda at: true_input(at, of, 1)[1], low, high)[0]
-    points = [
-        np.unique(np.concatenate([[branch.low], grid, turns[of == row], [branch.high]]))
-        for row, (branch, grid) in enumerate(zip(parts, grids, strict=True))
-    ]
-    lengths = [len(at) for at in points]
-    values = true_input(np.concatenate(points), np.repeat(np.arange(len(parts)), lengths), 0)[0]
-    cut = []
-    for row, value in enumerate(np.split(values, np.cumsum(lengths)[:-1])):
+        at_low, at_high = (np.array([rate[row][n + k] for row, n in changes]) for k in (0, 1))
+        turns = find_roots(lambda at: true_input(at, of, 1)[1], low, high, at_low, at_high)[0]
+    ends = np.array([end for branch in parts for end in (branch.low, branch.high)])
+    extra_of = np.concatenate([np.repeat(np.arange(len(parts)), 2), of])
+    extra = np.concatenate([ends, turns])
+    extra_known = true_input(extra, extra_of, 0)[0]
+    points, cut = [], []
+    for row, grid in enumerate(grids):
+        at, first = np.unique(np.concatenate([grid, extra[extra_of == row]]), return_index=True)
+        points.append(at)
+        value = np.concatenate([known[row], extra_known[extra_of == row]])[first]
         # A folded end may miss its assembly by rounding; the point next to it is a hair away.
         for end, inner_end in ((0, 1), (-1, -2)):
             if np.isnan(value[end]):

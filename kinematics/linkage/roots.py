@@ -18,7 +18,9 @@ STEPS = 100
 """Evaluations at most; a dozen is usual."""
 
 
-def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> tuple[Real, Real]:
+def find_roots(
+    function: Callable[[Real], Real], low: Real, high: Real, at_low: Real | None = None, at_high: Real | None = None
+) -> tuple[Real, Real]:
     """Close brackets with a change of sign in each down to rounding.
 
     Parameters
@@ -27,6 +29,8 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> tuple
         Takes points of shape (n,), one for each bracket, and returns values of the same shape.
     low, high : float, shape (n,)
         Ends of the brackets; the values there have opposite signs, or one of them is zero.
+    at_low, at_high : float, shape (n,), optional
+        The values there, where they are known already.
 
     Returns
     -------
@@ -34,7 +38,8 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> tuple
         The ends of the final brackets where the function is not negative, and where it is not positive.
     """
     x1, x2 = low.astype(np.float64), high.astype(np.float64)
-    f1, f2 = function(x1), function(x2)
+    f1 = function(x1) if at_low is None else at_low
+    f2 = function(x2) if at_high is None else at_high
     x3, f3 = x2.copy(), f2.copy()
     t = np.full(len(x1), 0.5)
     for _ in range(STEPS):
