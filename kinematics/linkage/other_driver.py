@@ -150,10 +150,10 @@ def _loop(parts: list[Branch], left: list[int], closing: list[str]) -> list[tupl
             (m for m in left if m != here and meet_at(parts[here], parts[m], closing, high=upwards, period=FULL_TURN)),
             None,
         )
-        if after is None or after == loop[0][0]:
+        if after is not None and after == loop[0][0]:
             return loop
-        if after in [n for n, _ in loop]:
-            return loop
+        if after is None or after in [n for n, _ in loop]:
+            raise TopologyError("a circuit does not close; two of its limits lie closer than the search resolves")
         here, upwards = after, not upwards
         loop.append((here, upwards))
 

@@ -155,23 +155,23 @@ def test_peaucellier_draws_a_straight_line() -> None:
 )
 def test_every_assembly_and_no_other(name: str) -> None:
     """At each input the configurations of all choices are those that Newton's iteration finds from random starts."""
-    rng, mechanism = batch(name, 6, 12)
+    rng, mechanism = batch(name, 6, 8)
     constraints = Constraints.of(mechanism)
-    unit = constraints.size if mechanism.driven_by_slide else np.ones(12)
+    unit = constraints.size if mechanism.driven_by_slide else np.ones(8)
     steps = decompose(mechanism).steps
     closing = [k for k, step in enumerate(steps) if step.has_two_solutions]
     counts = set()
     for way in (0.7, -1.9):
         every, sure = [], []
         for choice in np.ndindex(*(2,) * len(closing)):
-            signs = [np.ones(12, int)] * len(steps)
+            signs = [np.ones(8, int)] * len(steps)
             for k, sign in zip(closing, choice, strict=True):
-                signs[k] = np.full(12, 1 - 2 * sign)
+                signs[k] = np.full(8, 1 - 2 * sign)
             found = drive(mechanism, (mechanism.reference_input + way * unit)[:, None], signs=tuple(signs), order=0)
             every.append(constraints.pack({j: z[0, :, 0] for j, z in found.joints.items()}, way))
             margins = np.array([margin[0, :, 0] for margin in found.margins.values()])
             sure.append(np.nan_to_num(np.abs(margins), nan=1.0).min(axis=0) > 1e-3)
-        for design in range(12):
+        for design in range(8):
             if not all(s[design] for s in sure):
                 continue
             mine = [x[design] for x in every if np.isfinite(x[design]).all()]
