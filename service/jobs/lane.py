@@ -128,7 +128,7 @@ class Lane(threading.Thread):
         """Run a job and tell of it. A defect on the way fails the job; it does not end the lane."""
         try:
             self._run_job(job_id)
-        except Exception:
+        except Exception:  # a defect of the lane's own: it is this job's end, not that of all that come after
             log.exception("the lane failed", lane=self.name, job=job_id)
             self._discard_worker()
             try:
@@ -137,7 +137,7 @@ class Lane(threading.Thread):
                 log.exception("a job could not be failed", lane=self.name, job=job_id)
         try:
             self._changed(job_id)
-        except Exception:
+        except Exception:  # the store has the truth; who waits for the news finds it there when the wait is over
             log.exception("a change could not be told", lane=self.name, job=job_id)
 
     def _ensure_worker(self) -> None:

@@ -76,7 +76,7 @@ def slider_crank(linkage: SliderCrank, theta: ArrayLike, sign: ArrayLike, w2: fl
     return [position, *rest]
 
 
-def carried(sound, crank, coupler, arm, rates2, rates3, named):  # type: ignore[no-untyped-def]
+def carried(sound, crank, coupler, arm, rates2, rates3, named):
     """Derivatives of A, B and P from those of crank and coupler angle."""
     (w2, a2, j2), (w3, a3, j3) = rates2, rates3
     factors = [(1j * w2, 1j * w3), (1j * a2 - w2**2, 1j * a3 - w3**2), (third(w2, a2, j2), third(w3, a3, j3))]

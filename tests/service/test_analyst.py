@@ -27,11 +27,16 @@ def test_what_is_returned_or_raised_comes_back(ready):
 
 
 def test_nobody_waits_for_ever(ready):
-    end = threading.Event()
+    end, begun = threading.Event(), threading.Semaphore(0)
+
+    def work():
+        begun.release()
+        end.wait()
 
     async def ask():
-        under_way = [asyncio.ensure_future(ready.call(end.wait)) for _ in range(THREADS)]
-        await asyncio.sleep(0.05)  # they have the threads now
+        under_way = [asyncio.ensure_future(ready.call(work)) for _ in range(THREADS)]
+        for _ in range(THREADS):
+            assert await asyncio.to_thread(begun.acquire, timeout=10)
         waiting = asyncio.ensure_future(ready.call(end.wait))
         return await asyncio.gather(*under_way, waiting, return_exceptions=True)
 
