@@ -104,17 +104,14 @@ class Analyst:
 
 def warm_up() -> None:
     """Compile the kernels of the analysis core, or load them from their cache, by an analysis of each sort."""
-    from synthesis.analyses import AnalysisRequest, analyse
+    from synthesis.analyses import families, parse_request
 
-    for mechanism in (_FOURBAR, _SLIDER_CRANK, _CLASS_III):
-        analyse(AnalysisRequest.model_validate({"mechanism": mechanism}))
+    for family in families():
+        family.request.example().answer()
+    for mechanism in (_SLIDER_CRANK, _CLASS_III):
+        parse_request({"mechanism": mechanism}).answer()
 
 
-_FOURBAR = {
-    "type": "fourbar",
-    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
-    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
-}
 _SLIDER_CRANK = {
     "type": "slider_crank",
     "fixed_pivot": [0.0, 0.0],

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any, ParamSpec
 
 from fastapi import APIRouter, Body, Depends, Request, Response
 from fastapi.exceptions import RequestValidationError
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import to_json
 
 from service.analyst import LONGEST_S, Analyst, Busy, TooLong
@@ -82,12 +82,11 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
 
 def _analysed(body: Any) -> bytes:
     from kinematics import errors as kinematics
-    from service.cycle import MOST_EFFORT, effort
-    from synthesis.analyses import AnalysisRequest, analyse
+    from synthesis.analyses import parse_request
     from synthesis.mechanisms import MechanismError
 
     try:
-        request = AnalysisRequest.model_validate(body)
+        request = parse_request(body)
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False, include_input=False)
         raise RequestValidationError([{**fault, "loc": ("body", *fault["loc"])} for fault in found]) from None
@@ -95,9 +94,7 @@ def _analysed(body: Any) -> bytes:
     if faults:
         raise invalid_request([(path, sentence(detail)) for path, detail in faults])
     try:
-        if effort(request.mechanism.mechanism()) > MOST_EFFORT:
-            raise invalid_mechanism([("/mechanism", "This has too many assemblies to be analysed at once.")])
-        answer = analyse(request)
+        answer = request.answer()
     except MechanismError as error:
         raise invalid_mechanism([(f"/mechanism{error.path}", sentence(error.detail))]) from None
     except kinematics.MechanismError as error:
@@ -109,14 +106,21 @@ def complete(document: dict[str, Any]) -> None:
     """Put the models of an analysis into the OpenAPI document."""
     from pydantic.json_schema import models_json_schema
 
-    from synthesis.analyses import Analysis, AnalysisRequest
+    from synthesis.analyses import families
 
+    requests, answers = zip(*families(), strict=True)
     _, schemas = models_json_schema(
-        [(AnalysisRequest, "validation"), (Analysis, "serialization")],
+        [*((model, "validation") for model in requests), *((model, "serialization") for model in answers)],
         ref_template="#/components/schemas/{model}",
     )
-    document["components"]["schemas"].update(schemas["$defs"])
+    document["components"]["schemas"].update(
+        schemas["$defs"], AnalysisRequest=_any_of(requests), Analysis=_any_of(answers)
+    )
     content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
     content["schema"] = REQUEST
-    example = AnalysisRequest.model_json_schema()["examples"][0]
-    content["examples"] = {"fourbar": {"summary": "A fourbar through a full turn", "value": example}}
+    examples = {model.__name__: model.model_json_schema()["examples"][0] for model in requests}
+    content["examples"] = {name: {"value": example} for name, example in examples.items()}
+
+
+def _any_of(models: Iterable[type[BaseModel]]) -> dict[str, Any]:
+    return {"anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}

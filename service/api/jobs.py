@@ -282,10 +282,11 @@ async def move_design(
 
 
 def _motion(result: str, number: str, steps: int) -> bytes:
-    from service.cycle import over_the_cycle
+    from synthesis.analyses import family
 
     designs = from_json(result)["designs"]
-    answer = over_the_cycle(designs[_design_index(number, len(designs))]["mechanism"], steps)
+    mechanism = designs[_design_index(number, len(designs))]["mechanism"]
+    answer = family(mechanism).request.over_the_cycle(mechanism, steps)
     return to_json(answer, inf_nan_mode="null")
 
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.analyses import Analysis, AnalysisRequest
+from synthesis.analyses.linkage import LinkageAnalysis, LinkageAnalysisRequest
 from tests.cases import load
 
-EXAMPLE = AnalysisRequest.model_config["json_schema_extra"]["examples"][0]
+EXAMPLE = LinkageAnalysisRequest.model_config["json_schema_extra"]["examples"][0]
 CASES = {case.id: case for case in load()}
 
 FOURBAR = {
@@ -62,7 +62,7 @@ def at(case, name="theta2"):
 
 def assert_as_documented(found):
     """The answer has the shape of the model."""
-    Analysis.model_validate(found)
+    LinkageAnalysis.model_validate(found)
 
 
 @pytest.fixture

@@ -1,38 +1,17 @@
-"""A design over its cycle: which inputs it is driven to, and the analysis there."""
+"""The cycle of a linkage: from which input to which it is driven to see all of its motion, and the work that it is."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import TypeAdapter
 
 from kinematics.linkage.branches import cycle
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism, TopologyError
-from synthesis.analyses import analysis
-from synthesis.mechanisms import GivenMechanism
 
 MOST_EFFORT = 200
 """The most that is done in an answer that a client waits for; some seconds."""
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
-
-def over_the_cycle(mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-    """The answer of an analysis of a design's mechanism (as JSON has it) over its cycle, with the input at speed 1.
-
-    Raises
-    ------
-    MechanismError
-        For a mechanism that does not exist, which no design is.
-    """
-    given = _GIVEN.validate_python(mechanism).mechanism()
-    low, high = cycle_of(given)
-    at = np.linspace(low, high, steps + 1)
-    return {"time": None, **analysis(given, _stated(given, at), np.ones(steps + 1), 0.0)}
 
 
 def effort(mechanism: Mechanism) -> int:
@@ -63,7 +42,3 @@ def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
         # Branches are known to full turns, and the turn counts: the reference lies on it.
         low = at - float(np.mod(at - here.low, cycle(mechanism)))
     return low, low + here.high - here.low
-
-
-def _stated(mechanism: Mechanism, at: NDArray[np.float64]) -> NDArray[np.float64]:
-    return at if mechanism.driven_by_slide else np.degrees(at)

@@ -1,0 +1,40 @@
+"""What the analysis core knows of a given mechanism, for a client: a request and its answer, by mechanism family.
+
+A family is a module with the models of its request and answer. It is found by the mechanism's type, so that a fault
+in a request is told in the words of its family.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from synthesis.analyses import linkage
+from synthesis.analyses.base import AnalysisRequest, Family
+
+FAMILIES: dict[str, Family] = {}
+"""By the mechanism types that are no linkages; every other mechanism is one."""
+
+
+def family(mechanism: Any) -> Family:
+    """The family of a mechanism as JSON has it; linkages' where it cannot be told."""
+    kind = mechanism.get("type") if isinstance(mechanism, dict) else None
+    return FAMILIES.get(kind, linkage.FAMILY) if isinstance(kind, str) else linkage.FAMILY
+
+
+def families() -> list[Family]:
+    """All of them, linkages first."""
+    return list(dict.fromkeys([linkage.FAMILY, *FAMILIES.values()]))
+
+
+def parse_request(body: Any) -> AnalysisRequest:
+    """A request from the body of a call.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        For a body that states no mechanism and its motion.
+    """
+    return family(body.get("mechanism") if isinstance(body, dict) else None).request.model_validate(body)
+
+
+__all__ = ["FAMILIES", "AnalysisRequest", "Family", "families", "family", "parse_request"]

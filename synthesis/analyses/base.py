@@ -1,0 +1,44 @@
+"""What an analysis is for every family of mechanisms: a request that checks and answers itself, and its answer."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any, NamedTuple, Self
+
+from synthesis.designs import Answer
+from synthesis.problems import Statement
+
+
+class AnalysisRequest(Statement, ABC):
+    """A mechanism and how it is driven; each family has its own fields."""
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows: (JSON pointer, detail)."""
+        return []
+
+    @abstractmethod
+    def answer(self) -> dict[str, Any]:
+        """The answer to a request without faults, as plain lists and numbers in the shape of the family's model.
+
+        Raises
+        ------
+        MechanismError
+            For a mechanism that does not exist.
+        """
+
+    @classmethod
+    @abstractmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The answer for a design's mechanism (as JSON has it) over its cycle, with the input at speed 1."""
+
+    @classmethod
+    def example(cls) -> Self:
+        """The example of the API documentation."""
+        return cls.model_validate(cls.model_json_schema()["examples"][0])
+
+
+class Family(NamedTuple):
+    """Mechanisms that are stated and answered in one shape."""
+
+    request: type[AnalysisRequest]
+    analysis: type[Answer]

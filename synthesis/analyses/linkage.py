@@ -1,0 +1,173 @@
+"""The analysis of a planar linkage: request and answer, in degrees.
+
+The answer is plain lists, made for speed; :class:`LinkageAnalysis` documents it. Where the mechanism cannot be
+assembled ``valid`` is False and the numbers are NaN, which JSON has as null.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, Field, TypeAdapter
+
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
+from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.analyses.quantities import analysis
+from synthesis.designs import Answer
+from synthesis.mechanisms import GivenMechanism, MechanismError
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class LinkageAnalysisRequest(AnalysisRequest):
+    """A mechanism and how it is driven; a full turn in 360 steps by default."""
+
+    model_config = ConfigDict(
+        title="Analysis of a linkage: request",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "fourbar",
+                        "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+                        "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+                        "coupler_point": {"distance": 6.0, "angle": 30.0},
+                        "assembly": "open",
+                    },
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 360, "speed_rpm": 60.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenMechanism
+    motion: StatedMotion = Sweep()
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows: (path, detail)."""
+        found = []
+        if self.motion.speed is not None and self.motion.speed_rpm is not None:
+            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
+        if isinstance(self.motion, Run):
+            span = self.motion.time
+            if span.end < span.start:
+                found.append(("/motion/time/end", "the end lies before the start"))
+            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
+                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
+        mechanism = self.mechanism.mechanism()
+        if effort(mechanism) > MOST_EFFORT:
+            raise MechanismError("", "this has too many assemblies to be analysed at once")
+        at, speed, time = self.motion.inputs()
+        return {
+            "time": None if time is None else time.tolist(),
+            **analysis(mechanism, at, speed, self.motion.acceleration),
+        }
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same from the first target on, through a full turn or from toggle to toggle."""
+        given = _GIVEN.validate_python(mechanism).mechanism()
+        low, high = cycle_of(given)
+        at = np.linspace(low, high, steps + 1)
+        stated = at if given.driven_by_slide else np.degrees(at)
+        return {"time": None, **analysis(given, stated, np.ones(steps + 1), 0.0)}
+
+
+class Series(Answer):
+    """A quantity over the positions; null where the mechanism cannot be assembled, rates also at toggles."""
+
+    angle: list[float | None]
+    omega: list[float | None]
+    alpha: list[float | None]
+    jerk: list[float | None]
+
+
+class Track(Answer):
+    """A joint over the positions: coordinates and their time derivatives."""
+
+    x: list[float | None]
+    y: list[float | None]
+    vx: list[float | None]
+    vy: list[float | None]
+    ax: list[float | None]
+    ay: list[float | None]
+    jx: list[float | None]
+    jy: list[float | None]
+
+
+class Travel(Answer):
+    """A slide over the positions, along its line."""
+
+    position: list[float | None]
+    velocity: list[float | None]
+    acceleration: list[float | None]
+    jerk: list[float | None]
+
+
+class Points(Answer):
+    """A point over the positions."""
+
+    x: list[float | None]
+    y: list[float | None]
+
+
+class Classification(Answer):
+    """Grashof and Barker for a fourbar (null for others), and mobility."""
+
+    grashof: str | None
+    barker: int | None
+    barker_code: str | None
+    mobility: int
+
+
+class BranchRange(Answer):
+    """A branch: the input range that it covers; ``full`` where the input turns through."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    start: float = Field(alias="from")
+    end: float = Field(alias="to")
+    full: bool
+    reference: bool = Field(description="Whether the reference configuration lies on it.")
+
+
+class CircuitBranches(Answer):
+    """A circuit and its branches."""
+
+    branches: list[BranchRange]
+
+
+class LinkageAnalysis(Answer):
+    """Everything the analysis core knows of the mechanism over the motion; degrees, rad/s, length units per second."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool]
+    links: dict[str, Series]
+    joints: dict[str, Track]
+    slides: dict[str, Travel]
+    transmission_angle: list[float | None] = Field(description="Least of the transmission angles, degrees.")
+    transmission_angles: dict[str, list[float | None]] = Field(description="At each dyad, by its link.")
+    torque_ratio: dict[str, list[float | None]] = Field(
+        description="Output torque over input torque without losses: the mechanical advantage of each grounded link."
+    )
+    instant_centers: dict[str, Points] = Field(
+        description="Of every two links, as `link-link`; null where they move parallel. For a single position only."
+    )
+    classification: Classification
+    toggles: list[float]
+    circuits: list[CircuitBranches]
+    limits: dict[str, list[float] | None] = Field(
+        description="Extreme angles (positions) of the grounded links (slides) on the reference's branch; null: turns."
+    )
+
+
+FAMILY = Family(LinkageAnalysisRequest, LinkageAnalysis)

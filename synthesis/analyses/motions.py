@@ -1,0 +1,92 @@
+"""How a linkage is driven: equal steps of its input, one position, or a run in time."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Discriminator, Field, Tag
+
+from synthesis.problems import Count, Number, Statement
+
+MOST_POSITIONS = 10_000
+"""Positions of one analysis at most; a finer run is asked for in parts."""
+
+RAD_PER_S = math.pi / 30.0
+"""One revolution a minute in rad/s."""
+
+Real = NDArray[np.float64]
+
+
+class _Motion(Statement):
+    speed: Number | None = Field(default=None, description="Input speed, rad/s (length unit/s for a driven slider).")
+    speed_rpm: Number | None = Field(default=None, description="Input speed, revolutions a minute.")
+    acceleration: Number = Field(default=0.0, description="Input acceleration, rad/s².")
+
+    @property
+    def rate(self) -> float:
+        """Input speed, rad/s; 1 where none is stated, so that rates are by the radian."""
+        if self.speed is not None:
+            return self.speed
+        return 1.0 if self.speed_rpm is None else self.speed_rpm * RAD_PER_S
+
+
+class Sweep(_Motion):
+    """Equal steps of the input from one angle to another, both included."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    start: Number = Field(default=0.0, alias="from", description="First input angle, degrees.")
+    end: Number = Field(default=360.0, alias="to", description="Last input angle, degrees.")
+    steps: Annotated[Count, Field(ge=1, le=MOST_POSITIONS - 1)] = 360
+
+    def inputs(self) -> tuple[Real, Real, Real | None]:
+        """Inputs, speeds and no times."""
+        at = np.asarray(np.linspace(self.start, self.end, self.steps + 1), np.float64)
+        return at, np.full(len(at), self.rate), None
+
+
+class OnePosition(_Motion):
+    """One position of the input."""
+
+    at: Number = Field(description="Input angle, degrees.")
+
+    def inputs(self) -> tuple[Real, Real, Real | None]:
+        """Input, speed and no time."""
+        return np.array([self.at]), np.array([self.rate]), None
+
+
+class TimeSpan(Statement):
+    """Start, end and step of a run, seconds."""
+
+    start: Number = 0.0
+    end: Number
+    step: Annotated[float, Field(strict=True, gt=0.0, le=1e9)]
+
+
+class Run(_Motion):
+    """A run in time with constant input acceleration, from an angle at time 0."""
+
+    time: TimeSpan
+    at: Number = Field(default=0.0, description="Input angle at time 0, degrees.")
+
+    def inputs(self) -> tuple[Real, Real, Real | None]:
+        """Inputs, speeds and times."""
+        count = math.floor((self.time.end - self.time.start) / self.time.step * (1.0 + 1e-12)) + 1
+        t = np.asarray(self.time.start + self.time.step * np.arange(max(count, 1)), np.float64)
+        turned = self.rate * t + 0.5 * self.acceleration * t * t
+        return np.asarray(self.at + np.degrees(turned)), np.asarray(self.rate + self.acceleration * t), t
+
+
+def _motion_tag(statement: Any) -> str:
+    if isinstance(statement, dict) and "time" in statement:
+        return "<run>"
+    return "<position>" if isinstance(statement, dict) and "at" in statement else "<sweep>"
+
+
+StatedMotion = Annotated[
+    Annotated[Sweep, Tag("<sweep>")] | Annotated[OnePosition, Tag("<position>")] | Annotated[Run, Tag("<run>")],
+    Discriminator(_motion_tag),
+]

@@ -1,0 +1,167 @@
+"""What the analysis core knows of a linkage over given inputs, as plain lists in degrees."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage import Fourbar, barker_type
+from kinematics.linkage.classification import BARKER
+from kinematics.linkage.drive import MechanismMotion, drive
+from kinematics.linkage.instant_centers import instant_centers
+from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
+from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
+
+Real = NDArray[np.float64]
+
+
+def analysis(mechanism: Mechanism, at: Real, speed: Real, acceleration: float) -> dict[str, Any]:
+    """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it."""
+    slide = mechanism.driven_by_slide
+    motion = drive(mechanism, at if slide else np.radians(at), speed=speed, acceleration=acceleration)
+    sines = {link: np.abs(sine) for link, sine in motion.sines.items()}
+    transmission = {link: _listed(np.degrees(np.arcsin(np.minimum(sine, 1.0)))) for link, sine in sines.items()}
+    with np.errstate(invalid="ignore"):
+        least = np.degrees(np.arcsin(np.minimum(np.stack(list(sines.values())).min(axis=0), 1.0))) if sines else None
+    return {
+        "input_angle": at.tolist(),
+        "valid": motion.valid.tolist(),
+        "links": {name: _series(jet) for name, jet in motion.angles.items()},
+        "joints": {name: _track(jet) for name, jet in motion.joints.items()},
+        "slides": {name: _travel(jet) for name, jet in motion.slides.items()},
+        "transmission_angle": [math.nan] * len(at) if least is None else _listed(least),
+        "transmission_angles": transmission,
+        "torque_ratio": _torque_ratios(mechanism, motion),
+        "instant_centers": _instant_centers(mechanism, motion) if len(at) == 1 else {},
+        "classification": _classification(mechanism),
+        **_global(mechanism),
+    }
+
+
+def _listed(values: Real) -> list[float]:
+    listed: list[float] = values.tolist()
+    return listed
+
+
+def _series(jet: Real) -> dict[str, list[float]]:
+    return {
+        "angle": _listed(np.degrees(_unwrapped(jet[0]))),
+        "omega": _listed(jet[1]),
+        "alpha": _listed(jet[2]),
+        "jerk": _listed(jet[3]),
+    }
+
+
+def _unwrapped(angle: Real) -> Real:
+    """Angles without jumps of a full turn, the first in (−π, π]; gaps are passed over."""
+    known = np.isfinite(angle)
+    out = angle.copy()
+    if known.any():
+        values = np.unwrap(angle[known])
+        out[known] = values + (np.angle(np.exp(1j * values[0])) - values[0])
+    return out
+
+
+def _track(jet: NDArray[np.complex128]) -> dict[str, list[float]]:
+    names = (("x", "y"), ("vx", "vy"), ("ax", "ay"), ("jx", "jy"))
+    return {
+        name: _listed(part)
+        for pair, row in zip(names, jet, strict=True)
+        for name, part in zip(pair, (row.real, row.imag), strict=True)
+    }
+
+
+def _travel(jet: Real) -> dict[str, list[float]]:
+    return dict(zip(("position", "velocity", "acceleration", "jerk"), map(_listed, jet), strict=True))
+
+
+def _torque_ratios(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, list[float]]:
+    found = {}
+    for name in _grounded(mechanism):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = motion.input[1] / motion.angles[name][1]
+        found[name] = _listed(np.where(np.isfinite(ratio), ratio, np.nan))
+    return found
+
+
+def _instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, dict[str, list[float]]]:
+    return {
+        f"{one}-{other}": {"x": _listed(center.point.real), "y": _listed(center.point.imag)}
+        for (one, other), center in instant_centers(mechanism, motion).items()
+    }
+
+
+def _grounded(mechanism: Mechanism) -> list[str]:
+    """Links pinned to the ground, but for the input."""
+    ground = set(mechanism.links[GROUND])
+    return [n for n, listed in mechanism.links.items() if n not in (GROUND, mechanism.input) and ground & set(listed)]
+
+
+def _classification(mechanism: Mechanism) -> dict[str, Any]:
+    kind = 0
+    linkage = fourbar_of(mechanism)
+    if linkage is not None:
+        kind = int(barker_type(linkage))
+    row = BARKER[kind - 1] if kind else None
+    return {
+        "grashof": None if row is None else row.motion,
+        "barker": None if row is None else row.type,
+        "barker_code": None if row is None else row.code,
+        "mobility": mechanism.mobility,
+    }
+
+
+def fourbar_of(mechanism: Mechanism) -> Fourbar | None:
+    """The pin-jointed fourbar that a mechanism is, or None."""
+    if len(mechanism.links) != 4 or mechanism.slides or mechanism.gears:
+        return None
+    output = _grounded(mechanism)
+    if len(output) != 1:
+        return None
+    (coupler,) = (n for n in mechanism.links if n not in (GROUND, mechanism.input, output[0]))
+    places = []
+    for one, other in (
+        (GROUND, mechanism.input),
+        (mechanism.input, coupler),
+        (coupler, output[0]),
+        (output[0], GROUND),
+    ):
+        (joint,) = set(mechanism.links[one]) & set(mechanism.links[other])
+        places.append(complex(mechanism.joints[joint]))
+    o2, a, b, o4 = places
+    if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) == 0.0:
+        return None
+    return Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4))
+
+
+def _global(mechanism: Mechanism) -> dict[str, Any]:
+    """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed."""
+    try:
+        found = branches(mechanism)
+    except TopologyError:
+        return {"toggles": [], "circuits": [], "limits": {}}
+    scale = (lambda x: x) if mechanism.driven_by_slide else math.degrees
+    here = holding_reference(mechanism, found)
+    circuits: dict[int, list[dict[str, Any]]] = {}
+    for branch in found:
+        listed = circuits.setdefault(branch.circuit, [])
+        listed.append(
+            {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch == here}
+        )
+    limits: dict[str, list[float] | None] = {}
+    if here is not None:
+        links = _grounded(mechanism)
+        slides = [s.joint for s in mechanism.slides if s.link == GROUND and s.joint != mechanism.input]
+        angles, travels = limit_positions(mechanism, here, links, slides)
+        for name, span in zip(links, angles, strict=True):
+            limits[name] = None if span is None else [math.degrees(x) for x in span]
+        for name, span in zip(slides, travels, strict=True):
+            limits[name] = None if span is None else list(span)
+    return {
+        "toggles": [scale(x) for x in toggles(mechanism, found)],
+        "circuits": [{"branches": listed} for listed in circuits.values()],
+        "limits": limits,
+    }

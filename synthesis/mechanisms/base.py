@@ -1,0 +1,80 @@
+"""What several stated mechanisms share: pivots, lines, points, and what is refused."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.mechanism import Mechanism
+from synthesis.problems import Number, Point, Statement
+
+AGREES = 1e-6
+"""A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
+
+FIRST_TRIED = 30
+"""Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
+
+Assembly = Literal["open", "crossed"]
+
+
+class MechanismError(ValueError):
+    """A stated mechanism that does not exist; carries the field's path below the mechanism."""
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{path}: {detail}")
+
+
+class StatedPivots(Statement):
+    """Fixed pivots of input and output."""
+
+    input: Point
+    output: Point
+
+
+class StatedCouplerPoint(Statement):
+    """P: distance from A, and angle from the coupler's line (A towards its other pin) to the line A → P, degrees."""
+
+    distance: Annotated[Number, Field(ge=0.0)]
+    angle: Number = 0.0
+
+    @property
+    def vector(self) -> complex:
+        """P in the coupler's frame."""
+        return cmath.rect(self.distance, math.radians(self.angle))
+
+
+class StatedLine(Statement):
+    """A slide on the ground: a point of its line and the line's angle, degrees."""
+
+    point: Point
+    angle: Number
+
+
+def agree(path: str, stated: float | None, found: float, what: str = "the fixed pivots") -> None:
+    """Refuse a redundant dimension that contradicts the others."""
+    if stated is not None and abs(stated - found) > AGREES * max(abs(found), abs(stated)):
+        raise MechanismError(path, f"{what} give {found:.9g}; leave the field out or correct it")
+
+
+def assembled(make: Callable[[float], Mechanism], degrees: float | None) -> Mechanism:
+    """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on."""
+    if degrees is not None:
+        try:
+            return make(math.radians(degrees))
+        except DimensionError:
+            raise MechanismError(
+                "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
+            ) from None
+    for step in range(360):
+        try:
+            return make(math.radians((FIRST_TRIED + step) % 360))
+        except DimensionError:
+            continue
+    raise MechanismError("/links", "the mechanism cannot be assembled with these lengths at any input angle")

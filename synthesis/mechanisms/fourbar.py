@@ -1,0 +1,49 @@
+"""The pin-jointed fourbar by its dimensions."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import catalogue
+from kinematics.linkage.catalogue import ASSEMBLY
+from kinematics.linkage.fourbar import Fourbar
+from kinematics.linkage.mechanism import Mechanism
+from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
+from synthesis.mechanisms.skeleton import StatedSkeleton
+from synthesis.problems import Number, PositiveNumber, Statement
+
+
+class FourbarLengths(Statement):
+    """Link lengths; ``ground`` follows from the fixed pivots and may be left out."""
+
+    ground: PositiveNumber | None = None
+    input: PositiveNumber
+    coupler: PositiveNumber
+    output: PositiveNumber
+
+
+class GivenFourbar(Statement):
+    """A pin-jointed fourbar."""
+
+    type: Literal["fourbar"]
+    fixed_pivots: StatedPivots
+    links: FourbarLengths
+    coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
+    assembly: Assembly = "open"
+    reference_input_angle: Number | None = None
+    skeleton: StatedSkeleton | None = None
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
+        agree("/links/ground", self.links.ground, abs(o4 - o2))
+        try:
+            linkage = Fourbar(
+                o2, o4, self.links.input, self.links.coupler, self.links.output, self.coupler_point.vector
+            )
+        except DimensionError as error:
+            raise MechanismError("/fixed_pivots", str(error)) from None
+        return assembled(
+            lambda angle: catalogue.fourbar(linkage, angle, ASSEMBLY[self.assembly]), self.reference_input_angle
+        )

@@ -1,0 +1,156 @@
+"""The slider-crank and its inversions by their dimensions."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from kinematics.linkage import catalogue
+from kinematics.linkage.catalogue import ASSEMBLY
+from kinematics.linkage.mechanism import Mechanism
+from synthesis.mechanisms.base import (
+    Assembly,
+    MechanismError,
+    StatedCouplerPoint,
+    StatedLine,
+    StatedPivots,
+    agree,
+    assembled,
+)
+from synthesis.mechanisms.skeleton import StatedSkeleton
+from synthesis.problems import Number, Point, PositiveNumber, Statement
+
+
+class SliderCrankLengths(Statement):
+    """Link lengths."""
+
+    crank: PositiveNumber
+    coupler: PositiveNumber
+
+
+class GivenSliderCrank(Statement):
+    """A slider-crank; ``offset``, the distance of the pivot from the slide's line, follows from the slide."""
+
+    type: Literal["slider_crank"]
+    fixed_pivot: Point
+    links: SliderCrankLengths
+    slide: StatedLine
+    offset: Number | None = None
+    assembly: Assembly = "open"
+    coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
+    driven_by: Literal["crank", "slider"] = "crank"
+    reference_input_angle: Number | None = Field(default=None, description="Crank angle of the reference, degrees.")
+    skeleton: StatedSkeleton | None = None
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism at its reference crank angle, or at one where it can be assembled."""
+        pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
+        line = complex(*self.slide.point)
+        # Books differ in the sign of an offset; the slide says on which side of the pivot it passes.
+        offset = None if self.offset is None else abs(self.offset)
+        agree("/offset", offset, abs(((pivot - line) * cmath.exp(-1j * angle)).imag), "the slide and the pivot")
+        return assembled(
+            lambda at: catalogue.slider_crank(
+                pivot,
+                line,
+                angle,
+                self.links.crank,
+                self.links.coupler,
+                at,
+                ASSEMBLY[self.assembly],
+                self.coupler_point.vector,
+                self.driven_by,
+            ),
+            self.reference_input_angle,
+        )
+
+
+class InvertedLengths(Statement):
+    """Link lengths; ``ground`` may be left out. ``output`` is the distance from O4 to B on the sliding line, or 0."""
+
+    ground: PositiveNumber | None = None
+    input: PositiveNumber
+    output: Annotated[Number, Field(ge=0.0)]
+
+
+class OutputSlide(Statement):
+    """The line in the output link on which the crank pin slides: through B, at an angle from the line O4 → B."""
+
+    link: Literal["output"] = "output"
+    angle: Number
+
+
+class GivenInvertedSliderCrank(Statement):
+    """An inverted slider-crank (Norton, Sec. 4.7): the crank pin slides in the output link."""
+
+    type: Literal["inverted_slider_crank"]
+    fixed_pivots: StatedPivots
+    links: InvertedLengths
+    slide: OutputSlide
+    assembly: Assembly = "open"
+    reference_input_angle: Number | None = None
+    skeleton: StatedSkeleton | None = None
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
+        agree("/links/ground", self.links.ground, abs(o4 - o2))
+        return assembled(
+            lambda angle: catalogue.inverted_slider_crank(
+                o2,
+                o4,
+                self.links.input,
+                self.links.output,
+                math.radians(self.slide.angle),
+                angle,
+                ASSEMBLY[self.assembly],
+            ),
+            self.reference_input_angle,
+        )
+
+
+class QuickReturnLengths(Statement):
+    """Link lengths; ``ground`` may be left out. ``rocker`` is the distance from O4 to C."""
+
+    ground: PositiveNumber | None = None
+    crank: PositiveNumber
+    rocker: PositiveNumber
+    coupler: PositiveNumber
+
+
+class GivenQuickReturn(Statement):
+    """A crank-shaper or Whitworth mechanism: the crank pin slides in the rocker, whose end drives a ram."""
+
+    type: Literal["crank_shaper", "whitworth"]
+    fixed_pivots: StatedPivots
+    links: QuickReturnLengths
+    slide: StatedLine = Field(description="The ram's line on the ground.")
+    assembly: Assembly = "open"
+    reference_input_angle: Number | None = None
+    skeleton: StatedSkeleton | None = None
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism at its reference input angle, or at one where it can be assembled."""
+        o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
+        agree("/links/ground", self.links.ground, abs(o4 - o2))
+        if (self.links.crank > abs(o4 - o2)) != (self.type == "whitworth"):
+            raise MechanismError(
+                "/links/crank", "a crank-shaper's crank is shorter than the ground, a Whitworth's is longer"
+            )
+        return assembled(
+            lambda angle: catalogue.quick_return(
+                o2,
+                o4,
+                self.links.crank,
+                self.links.rocker,
+                self.links.coupler,
+                complex(*self.slide.point),
+                math.radians(self.slide.angle),
+                angle,
+                ASSEMBLY[self.assembly],
+            ),
+            self.reference_input_angle,
+        )
