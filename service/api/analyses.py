@@ -114,13 +114,17 @@ def complete(document: dict[str, Any]) -> None:
         ref_template="#/components/schemas/{model}",
     )
     document["components"]["schemas"].update(
-        schemas["$defs"], AnalysisRequest=_any_of(requests), Analysis=_any_of(answers)
+        schemas["$defs"],
+        AnalysisRequest=_any_of("Analysis request", requests),
+        Analysis=_any_of("Analysis", answers),
     )
     content = document["paths"]["/v1/analyses"]["post"]["requestBody"]["content"]["application/json"]
     content["schema"] = REQUEST
-    examples = {model.__name__: model.model_json_schema()["examples"][0] for model in requests}
-    content["examples"] = {name: {"value": example} for name, example in examples.items()}
+    content["examples"] = {
+        model.__name__: {"summary": model.model_config["title"], "value": model.model_json_schema()["examples"][0]}
+        for model in requests
+    }
 
 
-def _any_of(models: Iterable[type[BaseModel]]) -> dict[str, Any]:
-    return {"anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}
+def _any_of(title: str, models: Iterable[type[BaseModel]]) -> dict[str, Any]:
+    return {"title": title, "anyOf": [{"$ref": f"#/components/schemas/{model.__name__}"} for model in models]}

@@ -25,7 +25,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
     """A mechanism and how it is driven; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
-        title="Analysis of a linkage: request",
+        title="Linkage, how it is driven",
         json_schema_extra={
             "examples": [
                 {
