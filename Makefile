@@ -1,5 +1,6 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
 # make test    ruff, mypy, import-linter and the whole pytest suite
+# make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make lock    resolve the dependencies of pyproject.toml anew
 
@@ -10,7 +11,7 @@ STAMP  := $(VENV)/.installed
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test demo check quick bench lock clean
+.PHONY: serve test campaign demo check quick bench lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -19,7 +20,10 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest
+	$(BIN)/pytest -m "not campaign"
+
+campaign: $(STAMP)
+	$(BIN)/pytest -m campaign
 
 check: $(STAMP)
 	$(BIN)/ruff check .
@@ -29,7 +33,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow" -q
+	$(BIN)/pytest -m "not slow and not campaign" -q
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from synthesis.designs import Result
+from synthesis.designs import MotionResult
 from synthesis.dispatch import solve, warm_up
-from synthesis.problems import MotionProblem, parse_problem
+from synthesis.kinds import parse_problem
+from synthesis.problems import MotionProblem
 from tests.cases import search_tasks
 
 REPEATS = 400
@@ -62,7 +63,7 @@ EXACT = {
 }
 
 
-def timed(problem: MotionProblem) -> tuple[Result, float]:
+def timed(problem: MotionProblem) -> tuple[MotionResult, float]:
     start = time.perf_counter()
     result = solve(problem, lambda fraction, message: None)
     return result, time.perf_counter() - start

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any
+
 from kinematics import linkage
 from synthesis.designs import Result
-from synthesis.motion.solver import Progress, solve_motion
-from synthesis.problems import Problem, example, parse_problem
+from synthesis.kinds import KINDS, Progress, example, parse_problem
+from synthesis.problems import StatedProblem
 
 __all__ = ["Progress", "solve", "warm_up"]
 
 
-def solve(problem: Problem, progress: Progress) -> Result:
+def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
     """Solve a problem and verify every design.
 
     Parameters
     ----------
-    problem : Problem
+    problem : StatedProblem
         A statement without contradictions.
     progress : callable
         Told from time to time how far the work is.
@@ -26,10 +29,14 @@ def solve(problem: Problem, progress: Progress) -> Result:
         Where ``problem.contradictions()`` is not empty.
     """
     problem.require_consistent()
-    return solve_motion(problem, progress)
+    module, function = KINDS[problem.kind].solver.split(":")
+    result = getattr(import_module(module), function)(problem, progress)
+    assert isinstance(result, Result)
+    return result
 
 
 def warm_up() -> None:
     """Compile the kernels, or load them from their cache: the analysis core's, then by an example of each kind."""
     linkage.warm_up()
-    solve(parse_problem(example("motion")), lambda fraction, message: None)
+    for kind in KINDS:
+        solve(parse_problem(example(kind)), lambda fraction, message: None)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synthesis.designs import Design
+from synthesis.designs import LinkageDesign
 
 BULKY = 3.0
 """A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
@@ -65,7 +65,7 @@ def distinct(joints: NDArray[np.complex128], count: int, apart: float) -> list[i
     return chosen
 
 
-_KEYS: dict[str, Callable[[Design], float]] = {
+_KEYS: dict[str, Callable[[LinkageDesign], float]] = {
     "quality": lambda design: -design.metrics.quality,
     "accuracy": lambda design: max(target.residual for target in design.targets),
     "size": lambda design: design.metrics.size,
@@ -73,10 +73,10 @@ _KEYS: dict[str, Callable[[Design], float]] = {
 }
 
 
-def ranked(designs: Sequence[Design], rank_by: str) -> list[Design]:
+def ranked(designs: Sequence[LinkageDesign], rank_by: str) -> list[LinkageDesign]:
     """Designs in the order asked for, those that break a check after all others; ties by quality."""
 
-    def key(design: Design) -> tuple[bool, float, float]:
+    def key(design: LinkageDesign) -> tuple[bool, float, float]:
         value = _KEYS[rank_by](design)
         if rank_by == "accuracy":
             value = math.floor(math.log10(max(value, 1e-12)))  # residuals at rounding level are all alike

@@ -24,7 +24,15 @@ from kinematics.linkage import (
     transmission_extremes,
     traverse,
 )
-from synthesis.designs import Check, Design, FourbarLinks, FourbarMechanism, Metrics, Target, Verification
+from synthesis.designs import (
+    Check,
+    FourbarLinks,
+    FourbarMechanism,
+    LinkageDesign,
+    LinkageMetrics,
+    Target,
+    Verification,
+)
 from synthesis.linkages import DrivenFourbar, driven_fourbar, to_complex
 from synthesis.problems import Constraints, MotionProblem
 from synthesis.ranking import quality
@@ -50,7 +58,7 @@ class _Driven(NamedTuple):
     joints: np.ndarray
 
 
-def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None:
+def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> LinkageDesign | None:
     """Drive a mechanism through a problem's targets and measure it.
 
     Parameters
@@ -62,7 +70,7 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
 
     Returns
     -------
-    Design or None
+    LinkageDesign or None
         The mechanism with its checks and metrics; ``verification.passed`` tells whether it may be used. None where the
         dimensions do not make a linkage that can be assembled and driven at all.
     """
@@ -88,7 +96,7 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
     reach = max(*lengths, abs(point), abs(point - links.coupler))
     ratio = max(lengths) / min(lengths)
     span = np.ptp(driven.joints.view(np.float64).reshape(-1, 2), axis=0)
-    metrics = Metrics(
+    metrics = LinkageMetrics(
         grashof=barker.motion,
         barker=barker.code,
         min_transmission_angle=math.degrees(least),
@@ -102,7 +110,7 @@ def verify(problem: MotionProblem, mechanism: FourbarMechanism) -> Design | None
     )
     checks = [*_motion_checks(driven, on_circuit), *_choice_checks(problem, driven, size)]
     checks += _constraint_checks(problem.constraints, links, driven, metrics)
-    return Design(
+    return LinkageDesign(
         mechanism=mechanism,
         targets=_targets(mechanism.reference_input_angle, driven, way),
         verification=Verification(passed=all(check.passed for check in checks), checks=checks),
@@ -192,7 +200,9 @@ def _turn(vector: complex, degrees: float) -> float:
     return abs(cmath.phase(vector * cmath.exp(-1j * math.radians(degrees))))
 
 
-def _constraint_checks(constraints: Constraints, links: FourbarLinks, driven: _Driven, metrics: Metrics) -> list[Check]:
+def _constraint_checks(
+    constraints: Constraints, links: FourbarLinks, driven: _Driven, metrics: LinkageMetrics
+) -> list[Check]:
     """The client's constraints."""
     checks = []
     if constraints.same_branch:

@@ -196,6 +196,8 @@ def _place(fault: Mapping[str, Any]) -> str:
     if location[:1] == ("body",):
         location = location[1:]
     # A fault of a key of an object is at that key.
+    if fault["type"] == "unknown_kind" and isinstance(fault["input"], dict):
+        location = (*location, "kind")
     if location[-1:] == ("[key]",) and fault["type"] != "extra_forbidden":
         location = location[:-1]
     # Which of several models has read a part is no step of the body.
@@ -207,7 +209,8 @@ def _explained(fault: Mapping[str, Any]) -> str:
         return "There is no such field; check its name."
     if fault["type"] == "missing":
         return "This field is required."
-    if fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
+    unread = fault["type"] == "unknown_kind" and not isinstance(fault["input"], dict)
+    if unread or fault["type"] in ("model_type", "model_attributes_type", "dict_type"):
         return "This must be an object."
     return sentence(str(fault["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, "))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -17,13 +17,12 @@ from service.api.body import JsonRoute
 from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
-from service.api.schemas import KINDS, Job, JobList, JobRequest, list_item, whole_job
+from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused
-from synthesis.designs import Result
-from synthesis.problems import PROBLEM_KINDS, example
+from synthesis.kinds import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
 
@@ -69,8 +68,11 @@ class JobFilter(BaseModel):
 
 _BODY = Body(
     openapi_examples={
-        kind: {"summary": model.model_config.get("title", kind), "value": {"problem": example(kind), "label": kind}}
-        for kind, model in PROBLEM_KINDS.items()
+        name: {
+            "summary": kind.problem.model_config.get("title", name),
+            "value": {"problem": example(name), "label": name},
+        }
+        for name, kind in KINDS.items()
     }
 )
 _LOCATION = {"Location": {"description": "The path of the job.", "schema": {"type": "string"}}}
@@ -218,31 +220,73 @@ async def delete_job(desk: Desk, job_id: str) -> Response:
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
 
 
+_MEDIA_TYPES = {"svg": "image/svg+xml", "dxf": "image/vnd.dxf", "csv": "text/csv; charset=utf-8"}
+
+
+def _exported(form: str) -> dict[int | str, dict[str, Any]]:
+    return {
+        200: {"description": "The file.", "content": {_MEDIA_TYPES[form]: {"schema": {"type": "string"}}}},
+        **errors.responses(
+            e404="There is no such job or design, or no such file of its type of mechanism.",
+            e409="The job has no result (yet).",
+        ),
+    }
+
+
 @router.get(
     "/{job_id}/designs/{number}.svg",
     operation_id="draw_design",
     summary="Draw a design",
     response_class=Response,
-    responses={
-        200: {"description": "The drawing.", "content": {"image/svg+xml": {"schema": {"type": "string"}}}},
-        **errors.responses(e404="There is no such job or design.", e409="The job has no result (yet)."),
-    },
+    responses=_exported("svg"),
 )
 async def draw_design(desk: Desk, job_id: str, number: str) -> Response:
     """A labelled drawing of design ``number`` of the job's result, counted from 0."""
+    return await _file(desk, job_id, number, "svg")
+
+
+@router.get(
+    "/{job_id}/designs/{number}.dxf",
+    operation_id="export_design_dxf",
+    summary="Export a design to CAD",
+    response_class=Response,
+    responses=_exported("dxf"),
+)
+async def export_design_dxf(desk: Desk, job_id: str, number: str) -> Response:
+    """A DXF file of design ``number`` of the job's result, in true dimensions and with units."""
+    return await _file(desk, job_id, number, "dxf")
+
+
+@router.get(
+    "/{job_id}/designs/{number}.csv",
+    operation_id="export_design_csv",
+    summary="Export a design as a table",
+    response_class=Response,
+    responses=_exported("csv"),
+)
+async def export_design_csv(desk: Desk, job_id: str, number: str) -> Response:
+    """A table of design ``number`` of the job's result, with units in its header."""
+    return await _file(desk, job_id, number, "csv")
+
+
+async def _file(desk: JobDesk, job_id: str, number: str, form: Literal["svg", "dxf", "csv"]) -> Response:
     job, result = await _solved(desk, job_id)
-    return Response(await run_in_threadpool(_drawn, job, result, number), media_type="image/svg+xml")
+    return Response(await run_in_threadpool(_rendered, job, result, number, form), media_type=_MEDIA_TYPES[form])
 
 
-def _drawn(job: JobRow, result: str, number: str) -> str:
+def _rendered(job: JobRow, result: str, number: str, form: Literal["svg", "dxf", "csv"]) -> str:
     # Drawing is for those who ask for it; the other requests do not wait for its import.
-    from service.render import drawing
+    from service import render
 
-    designs = Result.model_validate_json(result).designs
+    kind = KINDS[job.kind]
+    designs = kind.result.model_validate_json(result).designs
     n = _design_index(number, len(designs))
-    problem = PROBLEM_KINDS[job.kind].model_validate_json(job.problem)
+    problem = kind.problem.model_validate_json(job.problem)
     title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
-    return drawing(designs[n], problem, title)
+    try:
+        return render.exported(designs[n], problem, title, form)
+    except render.NoSuchExport:
+        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
 
 
 class MotionSteps(BaseModel):

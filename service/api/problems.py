@@ -8,7 +8,7 @@ from functools import cache
 from fastapi import APIRouter
 
 from service.api.schemas import ProblemKind, ProblemKinds
-from synthesis.problems import PROBLEM_KINDS, example
+from synthesis.kinds import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
 
@@ -26,12 +26,12 @@ def _kinds() -> ProblemKinds:
     return ProblemKinds(
         problems=[
             ProblemKind(
-                kind=kind,
-                title=model.model_config.get("title") or kind,
-                description=inspect.getdoc(model) or "",
-                schema=model.model_json_schema(),
-                example=example(kind),
+                kind=name,
+                title=kind.problem.model_config.get("title") or name,
+                description=inspect.getdoc(kind.problem) or "",
+                schema=kind.problem.model_json_schema(),
+                example=example(name),
             )
-            for kind, model in PROBLEM_KINDS.items()
+            for name, kind in KINDS.items()
         ]
     )

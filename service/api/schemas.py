@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Union
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from pydantic_core import to_json
@@ -11,9 +11,13 @@ from service.api.errors import ProblemDetails
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
 from synthesis.designs import Result
-from synthesis.problems import PROBLEM_KINDS, Problem, example
+from synthesis.kinds import KINDS, Problem, example
 
-KINDS = tuple(PROBLEM_KINDS)
+if TYPE_CHECKING:
+    AnyResult = Result[Any]
+else:
+    AnyResult = Union[tuple(kind.result for kind in KINDS.values())]  # noqa: UP007  (made of a list)
+    """The answer to any problem; which kind it is, the job tells."""
 
 Timestamp = Annotated[str, Field(json_schema_extra={"format": "date-time"}, examples=["2026-01-31T12:00:00.000000Z"])]
 
@@ -69,7 +73,7 @@ class Job(JobListItem):
     model_config = ConfigDict(title="Job")
 
     problem: Problem = Field(description="The problem as accepted, defaults filled in.")
-    result: Result | None = Field(description="The answer of a job that has succeeded.")
+    result: AnyResult | None = Field(description="The answer of a job that has succeeded.")
     error: ProblemDetails | None = Field(description="Why a job has failed.")
 
 

@@ -109,9 +109,9 @@ def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
 
 def _solve(store: JobStore, job_id: str, claim: Claim) -> str:
     from synthesis import dispatch
-    from synthesis.problems import PROBLEM_KINDS
+    from synthesis.kinds import KINDS
 
-    problem = PROBLEM_KINDS[claim.kind].model_validate_json(claim.problem)
+    problem = KINDS[claim.kind].problem.model_validate_json(claim.problem)
     stored_at = time.monotonic()
 
     def progress(fraction: float, message: str) -> None:

@@ -1,33 +1,52 @@
-"""Drawings of designs: one self-contained, labelled SVG sheet a design."""
+"""Files of designs: labelled SVG sheets, DXF drawings and tables, by type of mechanism."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, Literal
+
 from service.render.sheet import fourbar_sheet
-from synthesis.designs import Design
-from synthesis.problems import Problem
 
-__all__ = ["drawing"]
+__all__ = ["NoSuchExport", "exported"]
 
-SHEETS = {"fourbar": fourbar_sheet}
-"""How each mechanism type is drawn."""
+Form = Literal["svg", "dxf", "csv"]
+
+EXPORTS: dict[str, dict[Form, Callable[[Any, Any, str], str]]] = {
+    "fourbar": {"svg": fourbar_sheet},
+}
+"""For each type of mechanism how a design and its problem, under a title, become a file of each form."""
 
 
-def drawing(design: Design, problem: Problem, title: str) -> str:
-    """A design as a complete, self-contained SVG document.
+class NoSuchExport(LookupError):
+    """This type of mechanism has no file of this form."""
+
+
+def exported(design: Any, problem: Any, title: str, form: Form) -> str:
+    """A design as the text of a file.
 
     Parameters
     ----------
-    design : Design
+    design : LinkageDesign or the design of another kind
         What is drawn; a design that failed a check is drawn as it is.
-    problem : Problem
-        The problem that it answers: demanded positions and length unit.
+    problem : StatedProblem
+        The problem that it answers.
     title : str
-        Heading; any text, characters that XML forbids are left out.
+        Heading; any text, characters that the form forbids are left out.
+    form : {"svg", "dxf", "csv"}
+        An SVG has a title and a description, and no scripts, style sheets, element ids or references, so that it can
+        stand in a page beside others.
 
     Returns
     -------
     str
-        SVG with a title and a description, without scripts, style sheets, element ids or references, so that it can
-        stand in a page beside others. The same arguments give the same text.
+        The same arguments give the same text.
+
+    Raises
+    ------
+    NoSuchExport
+        Where there is no such file of this type of mechanism.
     """
-    return SHEETS[design.mechanism.type](design, problem, title).write() + "\n"
+    forms = EXPORTS.get(design.mechanism.type, {})
+    if form not in forms:
+        raise NoSuchExport(design.mechanism.type, form)
+    return forms[form](design, problem, title)

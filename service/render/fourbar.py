@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
 from service.render.svg import Box, Points
-from synthesis.designs import Design
+from synthesis.designs import LinkageDesign
 from synthesis.linkages import DrivenFourbar, driven_fourbar
-from synthesis.problems import Problem
+from synthesis.problems import MotionProblem
 
 Real = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ class Scene:
         return needed
 
 
-def scene(design: Design, problem: Problem) -> Scene:
+def scene(design: LinkageDesign, problem: MotionProblem) -> Scene:
     """What is drawn of a fourbar design and of the problem that it answers."""
     driven = driven_fourbar(design.mechanism)
     linkage = driven.linkage
@@ -138,7 +138,7 @@ def scene(design: Design, problem: Problem) -> Scene:
     return Scene(linkage, configurations, demands, curve, rest, limits, start, end)
 
 
-def _configurations(design: Design, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
+def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
     """The linkage at each target, in the assembly that meets it; without targets where it cannot be assembled."""
     toggles = toggle_angles(driven.linkage)
     reference = _assembled(driven.linkage, toggles, driven.reference, driven.assembly)

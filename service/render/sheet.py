@@ -9,8 +9,8 @@ from service.render.fourbar import Scene, details, scene
 from service.render.svg import Box, Element, Viewport, clean, element, line, shortened, text, text_width
 from service.render.symbols import CURVE, DEMANDED, GREY, INK, INPUT, PALE
 from service.render.view import FOOT, MARGIN, Detail, panel
-from synthesis.designs import Design
-from synthesis.problems import Problem
+from synthesis.designs import LinkageDesign
+from synthesis.problems import MotionProblem
 
 WIDTH, EDGE, TOP = 1100.0, 22.0, 74.0
 """Width of the sheet, its border, and the height of the title, pixels."""
@@ -29,8 +29,8 @@ UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"
 DETAIL_HEIGHT, KEY_HEIGHT = 300.0, 30.0
 
 
-def fourbar_sheet(design: Design, problem: Problem, title: str) -> Element:
-    """The drawing of a fourbar design as one ``svg`` element."""
+def fourbar_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> str:
+    """The drawing of a fourbar design as a complete SVG document."""
     shown = scene(design, problem)
     unit = problem.length_unit
     heading = clean(title) or "Fourbar linkage"
@@ -63,7 +63,7 @@ def fourbar_sheet(design: Design, problem: Problem, title: str) -> Element:
             parts.append(drawn)
         bottom = max(bottom, y)
     height = math.ceil(bottom + EDGE - 8.0)
-    return element(
+    sheet = element(
         "svg",
         element("title", heading),
         element("desc", _description(design, problem, shown)),
@@ -77,9 +77,10 @@ def fourbar_sheet(design: Design, problem: Problem, title: str) -> Element:
         viewBox=f"0 0 {WIDTH:g} {height}",
         font_family="sans-serif",
     )
+    return sheet.write() + "\n"
 
 
-def _title(design: Design, heading: str, unit: str) -> list[Element]:
+def _title(design: LinkageDesign, heading: str, unit: str) -> list[Element]:
     room = WIDTH - 2.0 * EDGE
     mechanism, failed = design.mechanism, [c for c in design.verification.checks if not c.passed]
     kind = tables.GRASHOF[design.metrics.grashof]
@@ -91,7 +92,7 @@ def _title(design: Design, heading: str, unit: str) -> list[Element]:
     ]
 
 
-def _description(design: Design, problem: Problem, shown: Scene) -> str:
+def _description(design: LinkageDesign, problem: MotionProblem, shown: Scene) -> str:
     mechanism, links = design.mechanism, design.mechanism.links
     unit = problem.length_unit
     sizes = ", ".join(

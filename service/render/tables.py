@@ -9,8 +9,8 @@ from service.render.fourbar import Scene
 from service.render.numbers import NONE, angle, length, small
 from service.render.svg import Element, clean, element, line, shortened, text, text_width
 from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT, PALE
-from synthesis.designs import Check, Design
-from synthesis.problems import Problem
+from synthesis.designs import Check, LinkageDesign
+from synthesis.problems import MotionProblem
 
 ROW, HEADING, GAP = 18.0, 24.0, 16.0
 """Heights of a row and of a block's heading, and the space after a block, pixels."""
@@ -37,7 +37,7 @@ Block = Callable[[float, float, float], tuple[Element, float]]
 """Draws itself at left, top and width; returns its element and the y below it."""
 
 
-def dimensions(design: Design, scene: Scene, unit: str) -> Block:
+def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Links, coupler point, assembly, pivots and reference angle."""
     mechanism = design.mechanism
     links, point, pivots = mechanism.links, mechanism.coupler_point, mechanism.fixed_pivots
@@ -75,7 +75,7 @@ def dimensions(design: Design, scene: Scene, unit: str) -> Block:
     return draw
 
 
-def targets(design: Design, problem: Problem, scene: Scene, unit: str) -> Block:
+def targets(design: LinkageDesign, problem: MotionProblem, scene: Scene, unit: str) -> Block:
     """Demanded positions with the input angle that meets each, and how exactly."""
     shares = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
     found = {target.index: target for target in design.targets}
@@ -116,7 +116,7 @@ def targets(design: Design, problem: Problem, scene: Scene, unit: str) -> Block:
     return draw
 
 
-def checks(design: Design) -> Block:
+def checks(design: LinkageDesign) -> Block:
     """Every check with a mark, its value and its limit."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
@@ -136,7 +136,7 @@ def checks(design: Design) -> Block:
     return draw
 
 
-def metrics(design: Design, unit: str) -> Block:
+def metrics(design: LinkageDesign, unit: str) -> Block:
     """Measured properties that nothing was demanded of."""
     found = design.metrics
     rows = [

@@ -8,11 +8,12 @@ is left, that side is a cloud of dyads (:mod:`synthesis.motion.choices`), every 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
-from synthesis.designs import Design, Result, Search
+from synthesis.designs import LinkageDesign, MotionResult, Search
+from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.motion.choices import Cloud, side_dyads
 from synthesis.motion.dyads import Dyads
@@ -21,9 +22,6 @@ from synthesis.motion.task import MotionTask, motion_task
 from synthesis.problems import Constraints, DyadChoices, MotionProblem
 from synthesis.ranking import distinct, ranked
 from synthesis.verification import verify
-
-Progress = Callable[[float, str], None]
-"""Called with the fraction done, 0 to 1, and a short message."""
 
 USABLE_TRANSMISSION_ANGLE = 30.0
 """Degrees. Where the client sets no limit, a search offers linkages below this only if it met none that reaches it;
@@ -61,7 +59,7 @@ _NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
 """Reasons that say what could not be shown, not what cannot be; a search with one of them proves nothing."""
 
 
-def solve_motion(problem: MotionProblem, progress: Progress) -> Result:
+def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve a motion-generation problem of two or three positions."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
@@ -86,11 +84,11 @@ class _Pairs:
         self.inputs, self.outputs = inputs.dyads, outputs.dyads
         self.sampled = inputs.sampled or outputs.sampled
         self.complete = inputs.complete and outputs.complete
-        self.passed: list[Design] = []
-        self.failed: list[Design] = []
+        self.passed: list[LinkageDesign] = []
+        self.failed: list[LinkageDesign] = []
         self.rejected: Counter[str] = Counter()
 
-    def determined(self, progress: Progress) -> Result:
+    def determined(self, progress: Progress) -> MotionResult:
         """Verify every pair of a few determined dyads."""
         for i in range(len(self.inputs.fixed)):
             for j in range(len(self.outputs.fixed)):
@@ -100,7 +98,7 @@ class _Pairs:
         complete = self.complete and not _NUMERICAL & self.rejected.keys()
         return self._result("exact", complete, count, self._summary_of_determined(count, complete))
 
-    def searched(self, progress: Progress) -> Result:
+    def searched(self, progress: Progress) -> MotionResult:
         """Screen all pairs and verify the best distinct ones."""
         count = len(self.inputs.fixed) * len(self.outputs.fixed)
         progress(0.1, f"screening {count} pairs of dyads")
@@ -124,7 +122,7 @@ class _Pairs:
         progress(1.0, "verified")
         return self._result("dyad_search", False, count, self._summary_of_search(count, sound))
 
-    def none(self, cloud: Cloud, side: str) -> Result:
+    def none(self, cloud: Cloud, side: str) -> MotionResult:
         """The answer when one side has no dyad at all, with the reason."""
         method = "dyad_search" if self.sampled else "exact"
         return self._result(method, cloud.complete, 0, cloud.reason.replace("the side", f"the {side} side"))
@@ -187,9 +185,9 @@ class _Pairs:
             del self.passed[passed:]  # what passes was met by the search already
         self.rejected = kept
 
-    def _result(self, method: str, complete: bool, candidates: int, summary: str) -> Result:
+    def _result(self, method: str, complete: bool, candidates: int, summary: str) -> MotionResult:
         shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
-        return Result(
+        return MotionResult(
             designs=ranked(shown, self.problem.rank_by)[: self.problem.max_designs],
             search=Search(
                 method=method,

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar, positions
-from service.render import drawing
+from service.render.sheet import fourbar_sheet as drawing
 from service.render.svg import Box, clipped, clipped_polygon, number, shortened, text_width
-from synthesis.designs import Check, Design, Metrics, Target, Verification
+from synthesis.designs import Check, LinkageDesign, LinkageMetrics, Target, Verification
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.problems import MotionProblem
 
@@ -28,7 +28,9 @@ def _polar(length: float, degrees: float) -> complex:
     return cmath.rect(length, math.radians(degrees))
 
 
-def _case(linkage: Fourbar, angles: list[float], signs: list[int], unit: str = "mm") -> tuple[Design, MotionProblem]:
+def _case(
+    linkage: Fourbar, angles: list[float], signs: list[int], unit: str = "mm"
+) -> tuple[LinkageDesign, MotionProblem]:
     """A linkage, and the problem whose positions it reaches at these input angles (degrees) in these assemblies."""
     at = [positions(linkage, math.radians(t), s) for t, s in zip(angles, signs, strict=True)]
     assert all(bool(c.valid) for c in at)
@@ -56,7 +58,7 @@ def _case(linkage: Fourbar, angles: list[float], signs: list[int], unit: str = "
         }
     )
     passed = len(set(signs)) == 1
-    return Design(
+    return LinkageDesign(
         mechanism=mechanism,
         targets=[Target(index=k, input_angle=t, residual=1e-15) for k, t in enumerate(angles)],
         verification=Verification(
@@ -67,7 +69,7 @@ def _case(linkage: Fourbar, angles: list[float], signs: list[int], unit: str = "
                 Check(name="transmission_angle", passed=True, value=41.23, limit=30.0),
             ],
         ),
-        metrics=Metrics(
+        metrics=LinkageMetrics(
             grashof="rocker_rocker",
             barker="RRR1",
             min_transmission_angle=41.23,
@@ -82,7 +84,7 @@ def _case(linkage: Fourbar, angles: list[float], signs: list[int], unit: str = "
     ), problem
 
 
-def _norton_5_2(size: float = 1.0) -> tuple[Design, MotionProblem]:
+def _norton_5_2(size: float = 1.0) -> tuple[LinkageDesign, MotionProblem]:
     """Norton, Example 5-2 (crossed)."""
     o2, o4 = complex(-1.233833828, -7.771417129) * size, complex(2.736718211, 0.3385457838) * size
     bare = Fourbar(o2, o4, 6.831999238 * size, 1.399320056 * size, 3.199669641 * size)
@@ -108,11 +110,11 @@ CASES = {
 
 
 @pytest.fixture(params=CASES)
-def case(request: pytest.FixtureRequest) -> tuple[Design, MotionProblem]:
+def case(request: pytest.FixtureRequest) -> tuple[LinkageDesign, MotionProblem]:
     return CASES[request.param]()
 
 
-def _parsed(design: Design, problem: MotionProblem, title: str = "A design") -> ET.Element:
+def _parsed(design: LinkageDesign, problem: MotionProblem, title: str = "A design") -> ET.Element:
     return ET.fromstring(drawing(design, problem, title))
 
 
@@ -139,7 +141,7 @@ class _Main:
         }
 
 
-def test_joints_stand_where_the_dimensions_say(case: tuple[Design, MotionProblem]) -> None:
+def test_joints_stand_where_the_dimensions_say(case: tuple[LinkageDesign, MotionProblem]) -> None:
     design, problem = case
     main = _Main(_parsed(design, problem))
     near = PIXEL * math.sqrt(2.0) / main.scale
@@ -158,7 +160,7 @@ def test_joints_stand_where_the_dimensions_say(case: tuple[Design, MotionProblem
         assert abs(a - o2 - _polar(links.input, target.input_angle)) < 2 * near
 
 
-def test_every_demanded_position_is_drawn_at_its_point_and_angle(case: tuple[Design, MotionProblem]) -> None:
+def test_every_demanded_position_is_drawn_at_its_point_and_angle(case: tuple[LinkageDesign, MotionProblem]) -> None:
     design, problem = case
     root = _parsed(design, problem)
     found = {e.attrib["data-target"]: e for e in root.iter() if "data-target" in e.attrib}
@@ -184,7 +186,7 @@ def test_the_body_line_lies_in_the_demanded_direction_when_it_is_met() -> None:
         assert directions[0] == pytest.approx(directions[1], abs=1e-3)
 
 
-def test_labels_and_tables_say_what_it_is(case: tuple[Design, MotionProblem]) -> None:
+def test_labels_and_tables_say_what_it_is(case: tuple[LinkageDesign, MotionProblem]) -> None:
     design, problem = case
     root = _parsed(design, problem, "Gripper for jars")
     labels = {e.attrib["data-label"] for e in root.iter(f"{SVG}text") if "data-label" in e.attrib}
@@ -214,7 +216,7 @@ def test_coordinates_far_from_the_origin_tell_the_pivots_apart() -> None:
     assert "(900000080, 0)" in words
 
 
-def test_the_scale_bar_is_as_long_as_it_says(case: tuple[Design, MotionProblem]) -> None:
+def test_the_scale_bar_is_as_long_as_it_says(case: tuple[LinkageDesign, MotionProblem]) -> None:
     root = _parsed(*case)
     for panel in (e for e in root.iter(f"{SVG}svg") if "data-view" in e.attrib):
         bar = next(e for e in panel.iter() if "data-scale-bar" in e.attrib)
@@ -256,13 +258,13 @@ def test_a_long_title_is_cut_on_the_sheet_and_whole_in_the_description() -> None
     assert text_width(heading.text, float(heading.attrib["font-size"])) < float(root.attrib["width"])
 
 
-def test_the_document_stands_alone(case: tuple[Design, MotionProblem]) -> None:
+def test_the_document_stands_alone(case: tuple[LinkageDesign, MotionProblem]) -> None:
     document = drawing(*case, "A design")
     assert document.count("http") == 1  # the name space
     assert not re.search(r"url\(|href|<style|<script|\bid=|\bon\w+=", document)
 
 
-def test_all_numbers_are_finite_and_of_the_sheet(case: tuple[Design, MotionProblem]) -> None:
+def test_all_numbers_are_finite_and_of_the_sheet(case: tuple[LinkageDesign, MotionProblem]) -> None:
     document = drawing(*case, "A design")
     assert not re.search(r"\b(nan|inf|infinity)\b", document, re.IGNORECASE)
     root = ET.fromstring(document)
@@ -292,7 +294,7 @@ def test_the_picture_does_not_depend_on_the_size_of_the_mechanism(size: float) -
     assert np.abs(plain - scaled).max() < 2 * PIXEL
 
 
-def test_the_same_design_gives_the_same_text(case: tuple[Design, MotionProblem]) -> None:
+def test_the_same_design_gives_the_same_text(case: tuple[LinkageDesign, MotionProblem]) -> None:
     assert drawing(*case, "A design") == drawing(*case, "A design")
 
 
@@ -362,7 +364,7 @@ def _boxes(root: ET.Element) -> list[tuple[str, Box]]:
     return found
 
 
-def test_no_text_overlaps_other_text_or_leaves_the_sheet(case: tuple[Design, MotionProblem]) -> None:
+def test_no_text_overlaps_other_text_or_leaves_the_sheet(case: tuple[LinkageDesign, MotionProblem]) -> None:
     root = _parsed(*case, "A title of ordinary length for a design")
     boxes = _boxes(root)
     sheet = Box(0.0, 0.0, float(root.attrib["width"]), float(root.attrib["height"]))

@@ -166,7 +166,7 @@ def test_what_is_large(client, name):
 
 
 def test_at_most_twenty_faults_are_listed(client):
-    body = raw("{" + ",".join(f'"wrong_{n}":0' for n in range(50)) + "}")
+    body = raw('{"kind":"motion",' + ",".join(f'"wrong_{n}":0' for n in range(50)) + "}")
     _, problem = refused(client, body)
     assert len(problem["errors"]) == 20
     assert "52 faults" in problem["detail"]

@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from service.api.prefer import wait_seconds
-from synthesis.problems import PROBLEM_KINDS
+from synthesis.kinds import KINDS
 
 
 def test_health(client):
@@ -52,7 +52,7 @@ def test_headers_with_odd_bytes(server):
 
 def test_every_kind_is_listed_with_an_example_that_runs(client):
     kinds = client.get("/v1/problems").json()["problems"]
-    assert [kind["kind"] for kind in kinds] == list(PROBLEM_KINDS)
+    assert [kind["kind"] for kind in kinds] == list(KINDS)
     for kind in kinds:
         assert set(kind) == {"kind", "title", "description", "schema", "example"}
         assert kind["schema"]["type"] == "object"
@@ -107,7 +107,7 @@ def test_the_openapi_document_is_complete(openapi):
 
 def test_the_examples_of_the_openapi_document_run(client, openapi):
     body = openapi["paths"]["/v1/jobs"]["post"]["requestBody"]["content"]["application/json"]
-    assert set(body["examples"]) == set(PROBLEM_KINDS)
+    assert set(body["examples"]) == set(KINDS)
     for example in body["examples"].values():
         answer = client.post("/v1/jobs", json=example["value"], headers={"Prefer": "wait=30"})
         assert answer.json()["status"] == "succeeded"

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from synthesis.kinds import parse_problem
 from synthesis.motion.choices import side_dyads, stated_conditions
 from synthesis.motion.dyads import DyadConditions, Dyads, solve_dyads
 from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import Constraints, DyadChoices, parse_problem
+from synthesis.problems import Constraints, DyadChoices
 from tests.cases import Case, cases
 from tests.synthesis.planted import plant
 from tests.synthesis.test_motion_literature import vector

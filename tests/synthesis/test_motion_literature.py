@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from synthesis.designs import Design
+from synthesis.designs import LinkageDesign
 from synthesis.dispatch import solve
-from synthesis.problems import parse_problem
+from synthesis.kinds import parse_problem
 from tests.cases import Case, cases
 
 
@@ -30,7 +30,7 @@ def positions(case: Case) -> list[dict[str, float]]:
     return [{"x": p.real, "y": p.imag, "angle": a} for p, a in zip(points, angles, strict=True)]
 
 
-def only_design(**statement: Any) -> Design:
+def only_design(**statement: Any) -> LinkageDesign:
     result = solve(parse_problem({"kind": "motion", **statement}), quiet)
     assert result.search.complete
     assert result.search.candidates == 1
@@ -48,7 +48,7 @@ def polar(name: str, z: complex) -> dict[str, float]:
     }
 
 
-def measured(design: Design) -> dict[str, Any]:
+def measured(design: LinkageDesign) -> dict[str, Any]:
     """Everything that the tables print, from the design's dimensions and skeleton."""
     joints = {name: complex(*point) for name, point in design.mechanism.skeleton.joints.items()}
     links, start = design.mechanism.links, [target.input_angle for target in design.targets]
@@ -81,7 +81,7 @@ def measured(design: Design) -> dict[str, Any]:
     return found
 
 
-def output_rotations(design: Design, statement: list[dict[str, float]]) -> dict[str, float]:
+def output_rotations(design: LinkageDesign, statement: list[dict[str, float]]) -> dict[str, float]:
     """γ2, γ3: rotations of the output from where the body carries B."""
     joints = {name: complex(*point) for name, point in design.mechanism.skeleton.joints.items()}
     first = joints["B"] - joints["O4"]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.designs import Result
+from synthesis.designs import MotionResult
 from synthesis.dispatch import solve
-from synthesis.problems import parse_problem
+from synthesis.kinds import parse_problem
 from tests.cases import search_tasks
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import plant
@@ -22,11 +22,11 @@ ORDINARY = [
 ]
 
 
-def run(**statement: Any) -> Result:
+def run(**statement: Any) -> MotionResult:
     return solve(parse_problem({"kind": "motion", **statement}), lambda fraction, message: None)
 
 
-def confirm(result: Result, positions: list[dict[str, float]], least: float) -> None:
+def confirm(result: MotionResult, positions: list[dict[str, float]], least: float) -> None:
     """Every returned design, followed step by step from its dimensions, does what its verification says."""
     mechanisms = [design.mechanism.model_dump() for design in result.designs]
     for design, found in zip(result.designs, drive(mechanisms, positions), strict=True):

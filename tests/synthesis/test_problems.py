@@ -8,7 +8,8 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.dispatch import solve
-from synthesis.problems import PROBLEM_KINDS, ContradictionError, example, parse_problem
+from synthesis.kinds import KINDS, example, parse_problem
+from synthesis.problems import ContradictionError
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},
@@ -36,7 +37,6 @@ def statement(**changes: Any) -> dict[str, Any]:
         ({"positions": [*POSITIONS[:2], {"x": 0, "y": 0}]}, ("positions", 2, "angle")),
         ({"positions": [*POSITIONS[:2], {"x": 0, "y": 0, "angle": 0, "z": 0}]}, ("positions", 2, "z")),
         ({"typo": 1}, ("typo",)),
-        ({"kind": "emotion"}, ("kind",)),
         ({"max_designs": 0}, ("max_designs",)),
         ({"max_designs": 2.0}, ("max_designs",)),
         ({"seed": -1}, ("seed",)),
@@ -55,7 +55,13 @@ def statement(**changes: Any) -> dict[str, Any]:
 def test_ill_formed_statements_name_the_field(changes: dict[str, Any], where: tuple[Any, ...]) -> None:
     with pytest.raises(ValidationError) as caught:
         parse_problem(statement(**changes))
-    assert where in [error["loc"] for error in caught.value.errors()]
+    assert ("<motion>", *where) in [error["loc"] for error in caught.value.errors()]
+
+
+@pytest.mark.parametrize("changes", [{"kind": "emotion"}, {"kind": ["motion"]}, {"kind": None}])
+def test_an_unknown_kind_is_said(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError, match="kind must be given and be one of: motion"):
+        parse_problem(statement(**changes))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +94,7 @@ def test_contradictions_name_the_field(changes: dict[str, Any], path: str) -> No
         solve(problem, lambda fraction, message: None)
 
 
-@pytest.mark.parametrize("kind", PROBLEM_KINDS)
+@pytest.mark.parametrize("kind", KINDS)
 def test_examples_are_solved(kind: str) -> None:
     problem = parse_problem(example(kind))
     assert problem.contradictions() == []

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from synthesis.kinds import parse_problem
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.motion.choices import side_dyads
 from synthesis.motion.screening import REASONS, demands, screen
 from synthesis.motion.task import motion_task
-from synthesis.problems import parse_problem
 from synthesis.ranking import distinct, quality
 from synthesis.verification import verify
 from tests.synthesis.planted import plant

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.designs import Design, FourbarMechanism
+from synthesis.designs import FourbarMechanism, LinkageDesign
 from synthesis.dispatch import solve
+from synthesis.kinds import parse_problem
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.problems import MotionProblem, parse_problem
+from synthesis.problems import MotionProblem
 from synthesis.verification import verify
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import Planted, plant
@@ -29,13 +30,13 @@ def mechanism_of(planted: Planted) -> FourbarMechanism:
     )
 
 
-def verified(problem: MotionProblem, mechanism: FourbarMechanism) -> Design:
+def verified(problem: MotionProblem, mechanism: FourbarMechanism) -> LinkageDesign:
     design = verify(problem, mechanism)
     assert design is not None
     return design
 
 
-def failed(design: Design) -> set[str]:
+def failed(design: LinkageDesign) -> set[str]:
     return {check.name for check in design.verification.checks if not check.passed}
 
 

@@ -1,22 +1,14 @@
-"""Statements of problems: what a client asks for.
-
-These pydantic models are the API schema, the stored form and the solver's input; nothing repeats them.
-Angles are degrees and lengths are numbers in the problem's ``length_unit`` here and in :mod:`synthesis.designs`;
-solvers and verification turn them into radians and complex numbers when they take a statement in.
-
-A statement can be well-formed and still contradict itself (two equal positions, more choices than there are
-freedoms). Each kind lists such faults by field in ``contradictions``, so that a client is told where to look.
-"""
+"""Motion generation: a linkage whose coupler carries a body through positions."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
-ABSURD = 1e9
-"""Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
+from synthesis.problems.base import Contradiction, Number, Point, PositiveNumber, Statement
+from synthesis.problems.linkage import LinkageProblem
 
 LEAST_LENGTH = 1e-12
 """Positions that differ, but by less than this many length units, are refused as absurd."""
@@ -24,53 +16,11 @@ LEAST_LENGTH = 1e-12
 LEAST_MOTION = 1e-3
 """A motion of P below this share of the way to stated pivots does not set the size of the task."""
 
-ON_EDGE = 1e-9
-"""Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
-
 EQUAL_POSITIONS = 1e-9
 """Positions closer than this share of the coordinates' size, and this many radians, count as equal.
 
 Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
 half its digits and no residual of 1e-9 could be shown for it."""
-
-LEAST_MOTION = 1e-3
-"""A motion of P below this share of the way to stated pivots does not set the size of the task."""
-
-Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False)]
-PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False)]
-Flag = Annotated[bool, Field(strict=True)]
-Count = Annotated[int, Field(strict=True)]
-Point = tuple[Number, Number]
-
-
-class Contradiction(NamedTuple):
-    """A fault of a well-formed statement: the field (JSON pointer below the problem) and what is wrong with it."""
-
-    path: str
-    detail: str
-
-
-class ContradictionError(ValueError):
-    """A problem that contradicts itself was given to a solver; carries the :class:`Contradiction`."""
-
-    def __init__(self, contradiction: Contradiction) -> None:
-        self.contradiction = contradiction
-        super().__init__(f"{contradiction.path}: {contradiction.detail}")
-
-
-class Statement(BaseModel):
-    """Base of every model that a client writes: unknown fields are refused, values cannot change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
-    if interval[0] >= interval[1]:
-        raise ValueError("the lower end must be below the upper end")
-    return interval
-
-
-Interval = Annotated[tuple[Number, Number], AfterValidator(_ordered)]
 
 
 class Position(Statement):
@@ -84,33 +34,6 @@ class Position(Statement):
     def point(self) -> complex:
         """The reference point as a complex number, in length units."""
         return complex(self.x, self.y)
-
-
-class Region(Statement):
-    """A rectangle with sides along the axes, in length units."""
-
-    x: Interval
-    y: Interval
-
-    def contains(self, point: complex) -> bool:
-        """Whether a point lies in the region, its edges (to rounding) included."""
-        (left, right), (low, high) = self.x, self.y
-        slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
-        across = left - slack <= point.real <= right + slack
-        return across and low - slack <= point.imag <= high + slack
-
-
-class LengthLimits(Statement):
-    """Shortest and longest link allowed, in length units."""
-
-    min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False)] = 0.0
-    max: PositiveNumber | None = None
-
-    @model_validator(mode="after")
-    def _min_below_max(self) -> Self:
-        if self.max is not None and self.min >= self.max:
-            raise ValueError("min must be below max")
-        return self
 
 
 class CouplerVector(Statement):
@@ -149,35 +72,6 @@ class DyadChoices(Statement):
             + 2 * (self.moving_pivot is not None)
             + sum(s is not None for s in scalars)
         )
-
-
-class Constraints(Statement):
-    """What a usable linkage must satisfy; everything has a default that demands nothing beyond a sound motion."""
-
-    min_transmission_angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0)] | None = Field(
-        default=None, description="Least transmission angle over the used range of the input, degrees."
-    )
-    grashof: Literal["any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"] = "any"
-    full_rotation: Flag = Field(default=False, description="The input link must be able to turn through.")
-    same_branch: Flag = Field(default=True, description="No toggle position between the targets.")
-    in_order: Flag = Field(default=True, description="The input, turning one way, visits the targets in order.")
-    link_length: LengthLimits | None = None
-    max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
-        default=None, description="Longest link over shortest link, at most."
-    )
-    fixed_pivot_region: Region | None = None
-    moving_pivot_region: Region | None = Field(default=None, description="For the moving pivots in the first position.")
-
-
-class LinkageProblem(Statement):
-    """Fields that all linkage problems share."""
-
-    length_unit: Literal["mm", "cm", "m", "in"] = "mm"
-    constraints: Constraints = Constraints()
-    rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "quality"
-    max_designs: Annotated[Count, Field(ge=1, le=200)] = 10
-    include_failed: Flag = Field(default=False, description="Also return designs that break a check, after the others.")
-    seed: Annotated[Count, Field(ge=0, le=2**53 - 1)] = 0
 
 
 class MotionProblem(LinkageProblem):
@@ -252,12 +146,6 @@ class MotionProblem(LinkageProblem):
             *self._impossible_class(),
         ]
 
-    def require_consistent(self) -> None:
-        """Raise the first contradiction, if there is one."""
-        found = self.contradictions()
-        if found:
-            raise ContradictionError(found[0])
-
     def _equal_positions(self) -> list[Contradiction]:
         size = max(max(abs(p.x), abs(p.y)) for p in self.positions)
         moved = max(abs(p.point - q.point) for p in self.positions for q in self.positions)
@@ -330,25 +218,3 @@ class MotionProblem(LinkageProblem):
                     )
                 )
         return found
-
-
-Problem = MotionProblem
-"""Any problem; the field ``kind`` tells which."""
-
-PROBLEM_KINDS: dict[str, type[MotionProblem]] = {"motion": MotionProblem}
-
-
-def parse_problem(statement: dict[str, Any]) -> Problem:
-    """The problem of a JSON-like statement; raises pydantic's ValidationError for an ill-formed one."""
-    return MotionProblem.model_validate(statement)
-
-
-def example(kind: str) -> dict[str, Any]:
-    """The runnable example of a problem kind, as a client would post it."""
-    schema_extra = PROBLEM_KINDS[kind].model_config["json_schema_extra"]
-    assert isinstance(schema_extra, dict)
-    examples = schema_extra["examples"]
-    assert isinstance(examples, list)
-    first = examples[0]
-    assert isinstance(first, dict)
-    return first

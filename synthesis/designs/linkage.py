@@ -1,22 +1,16 @@
-"""Answers: what the service returns, as pydantic models.
+"""Linkages as answers: dimensions that their users know them by, the skeleton, and what was measured on them.
 
-The numbers of a design are dimensions only; what was measured on it stands beside it in ``targets``,
-``verification`` and ``metrics``. Angles are degrees, lengths are in the problem's unit.
+The numbers of a mechanism are dimensions only; what was measured on it stands beside it in ``targets``,
+``verification`` and ``metrics``.
 """
 
 from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-Point = tuple[float, float]
-
-
-class Answer(BaseModel):
-    """Base of every model that the service writes."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+from synthesis.designs.base import Answer, Point, Verification
 
 
 class Link(Answer):
@@ -47,8 +41,8 @@ class Skeleton(Answer):
 
     joints: dict[str, Point]
     links: list[Link]
-    slides: list[Slide] = []
-    gears: list[GearPair] = []
+    slides: list[Slide] = Field(default=[])
+    gears: list[GearPair] = Field(default=[])
     input_link: str
 
 
@@ -100,27 +94,7 @@ class Target(Answer):
     )
 
 
-def _blank(value: float | None) -> bool:
-    return value is None
-
-
-class Check(Answer):
-    """One measured property. ``value`` and ``limit`` are left out where the property has none."""
-
-    name: str
-    passed: bool
-    value: float | None = Field(default=None, exclude_if=_blank)
-    limit: float | None = Field(default=None, exclude_if=_blank)
-
-
-class Verification(Answer):
-    """What the analysis core found when it drove the mechanism; ``passed`` means that every check passed."""
-
-    passed: bool
-    checks: list[Check]
-
-
-class Metrics(Answer):
+class LinkageMetrics(Answer):
     """Measured properties of a linkage that were not demanded."""
 
     grashof: Literal["double_crank", "crank_rocker", "double_rocker", "rocker_crank", "rocker_rocker", "change_point"]
@@ -135,35 +109,10 @@ class Metrics(Answer):
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 
-class Design(Answer):
+class LinkageDesign(Answer):
     """A mechanism with the proof of what it does."""
 
     mechanism: FourbarMechanism
     targets: list[Target]
     verification: Verification
-    metrics: Metrics
-
-
-class Search(Answer):
-    """How the answer was found and how complete it is.
-
-    ``complete`` is a promise: every solution of the stated problem was found, so that an empty list of designs is a
-    proof that none exists. ``candidates`` = ``accepted`` + all ``rejected``; ``accepted`` were driven and passed every
-    check. In a search ``outranked`` counts pairs of dyads that passed the screening but were not driven, because better
-    ones that differ from them were.
-    """
-
-    method: str
-    complete: bool
-    candidates: int
-    accepted: int
-    rejected: dict[str, int]
-    seed: int
-
-
-class Result(Answer):
-    """The answer to a problem: designs, best first, and how they were found."""
-
-    designs: list[Design]
-    search: Search
-    summary: str
+    metrics: LinkageMetrics

@@ -1,0 +1,63 @@
+"""What every answer is made of, whatever the kind of its problem."""
+
+from __future__ import annotations
+
+from typing import Generic, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Point = tuple[float, float]
+
+
+class Answer(BaseModel):
+    """Base of every model that the service writes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _blank(value: float | None) -> bool:
+    return value is None
+
+
+class Check(Answer):
+    """One measured property. ``value`` and ``limit`` are left out where the property has none."""
+
+    name: str
+    passed: bool
+    value: float | None = Field(default=None, exclude_if=_blank)
+    limit: float | None = Field(default=None, exclude_if=_blank)
+
+
+class Verification(Answer):
+    """What the analysis core found when it drove the mechanism; ``passed`` means that every check passed."""
+
+    passed: bool
+    checks: list[Check]
+
+
+class Search(Answer):
+    """How the answer was found and how complete it is.
+
+    ``complete`` is a promise: every solution of the stated problem was found, so that an empty list of designs is a
+    proof that none exists. ``candidates`` = ``accepted`` + all ``rejected``; ``accepted`` were driven and passed every
+    check. In a search ``outranked`` counts pairs of dyads that passed the screening but were not driven, because better
+    ones that differ from them were.
+    """
+
+    method: str
+    complete: bool
+    candidates: int
+    accepted: int
+    rejected: dict[str, int]
+    seed: int
+
+
+Design = TypeVar("Design", bound=Answer)
+
+
+class Result(Answer, Generic[Design]):
+    """The answer to a problem: designs, best first, and how they were found."""
+
+    designs: list[Design]
+    search: Search
+    summary: str

@@ -1,0 +1,70 @@
+"""The kinds of problems: how each is stated, how it is answered, and which solver does it.
+
+A new kind is one line here, beside its models in :mod:`synthesis.problems` and :mod:`synthesis.designs` and its solver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
+
+from pydantic import Discriminator, Tag, TypeAdapter
+
+from synthesis.designs import MotionResult, Result
+from synthesis.problems import MotionProblem, StatedProblem
+
+Progress = Callable[[float, str], None]
+"""Called with the fraction done, 0 to 1, and a short message."""
+
+
+class Kind(NamedTuple):
+    """One kind of problem; ``solver``, imported when it is needed, is ``module:function`` of problem and progress."""
+
+    problem: type[StatedProblem]
+    result: type[Result[Any]]
+    solver: str
+
+
+KINDS: dict[str, Kind] = {
+    "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
+}
+"""Every kind of problem by its name."""
+
+
+def _tag(statement: Any) -> str | None:
+    kind = statement.get("kind") if isinstance(statement, dict) else getattr(statement, "kind", None)
+    return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
+
+
+if TYPE_CHECKING:
+    Problem = StatedProblem
+else:
+    _members = tuple(Annotated[kind.problem, Tag(f"<{name}>")] for name, kind in KINDS.items())
+    Problem = Annotated[
+        Union[_members],  # noqa: UP007  (made of a list)
+        Discriminator(
+            _tag,
+            custom_error_type="unknown_kind",
+            custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
+        ),
+    ]
+    """Any problem; the field ``kind`` tells which."""
+
+
+def parse_problem(statement: dict[str, Any]) -> Problem:
+    """The problem of a JSON-like statement; raises pydantic's ValidationError for an ill-formed one."""
+    return _PROBLEM.validate_python(statement)
+
+
+def example(kind: str) -> dict[str, Any]:
+    """The runnable example of a kind, as a client would post it."""
+    schema_extra = KINDS[kind].problem.model_config["json_schema_extra"]
+    assert isinstance(schema_extra, dict)
+    examples = schema_extra["examples"]
+    assert isinstance(examples, list)
+    first = examples[0]
+    assert isinstance(first, dict)
+    return first
+
+
+_PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem)

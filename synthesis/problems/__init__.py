@@ -1,0 +1,44 @@
+"""Statements of problems: what a client asks for.
+
+These pydantic models are the API schema, the stored form and the solver's input; nothing repeats them.
+Angles are degrees and lengths are numbers in the problem's ``length_unit`` here and in :mod:`synthesis.designs`;
+solvers and verification turn them into radians and complex numbers when they take a statement in.
+
+One module a kind; :mod:`synthesis.kinds` joins each to its answers and its solver.
+"""
+
+from synthesis.problems.base import (
+    Contradiction,
+    ContradictionError,
+    Count,
+    Flag,
+    Interval,
+    Number,
+    Point,
+    PositiveNumber,
+    StatedProblem,
+    Statement,
+)
+from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
+from synthesis.problems.motion import CouplerVector, DyadChoices, MotionProblem, Position
+
+__all__ = [
+    "Constraints",
+    "Contradiction",
+    "ContradictionError",
+    "Count",
+    "CouplerVector",
+    "DyadChoices",
+    "Flag",
+    "Interval",
+    "LengthLimits",
+    "LinkageProblem",
+    "MotionProblem",
+    "Number",
+    "Point",
+    "Position",
+    "PositiveNumber",
+    "Region",
+    "StatedProblem",
+    "Statement",
+]

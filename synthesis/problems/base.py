@@ -1,0 +1,70 @@
+"""What every statement of a problem is made of, whatever its kind.
+
+A statement can be well-formed and still contradict itself (two equal positions, more choices than there are
+freedoms). Each kind lists such faults by field in ``contradictions``, so that a client is told where to look.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+ABSURD = 1e9
+"""Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
+
+Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False)]
+PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False)]
+Flag = Annotated[bool, Field(strict=True)]
+Count = Annotated[int, Field(strict=True)]
+Point = tuple[Number, Number]
+
+
+class Contradiction(NamedTuple):
+    """A fault of a well-formed statement: the field (JSON pointer below the problem) and what is wrong with it."""
+
+    path: str
+    detail: str
+
+
+class ContradictionError(ValueError):
+    """A problem that contradicts itself was given to a solver; carries the :class:`Contradiction`."""
+
+    def __init__(self, contradiction: Contradiction) -> None:
+        self.contradiction = contradiction
+        super().__init__(f"{contradiction.path}: {contradiction.detail}")
+
+
+class Statement(BaseModel):
+    """Base of every model that a client writes: unknown fields are refused, values cannot change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
+    if interval[0] >= interval[1]:
+        raise ValueError("the lower end must be below the upper end")
+    return interval
+
+
+Interval = Annotated[tuple[Number, Number], AfterValidator(_ordered)]
+
+
+class StatedProblem(Statement):
+    """Base of the problems: the fields that every kind has."""
+
+    kind: str
+    length_unit: Literal["mm", "cm", "m", "in"] = "mm"
+    max_designs: Annotated[Count, Field(ge=1, le=200)] = 10
+    include_failed: Flag = Field(default=False, description="Also return designs that break a check, after the others.")
+    seed: Annotated[Count, Field(ge=0, le=2**53 - 1)] = 0
+
+    def contradictions(self) -> list[Contradiction]:
+        """Faults that no single field shows."""
+        return []
+
+    def require_consistent(self) -> None:
+        """Raise the first contradiction, if there is one."""
+        found = self.contradictions()
+        if found:
+            raise ContradictionError(found[0])
