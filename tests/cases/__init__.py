@@ -85,7 +85,18 @@ def search_tasks() -> tuple[dict[str, Any], ...]:
     return tuple(json.loads((HERE / "search_3_positions.json").read_text(encoding="utf-8")))
 
 
+def _gear_case(row: dict[str, Any]) -> Case:
+    expected = {
+        name: Expected(value.get("likely", value["value"]), value.get("tol_likely", value["tol"]))
+        for name, value in row["expected"].items()
+    }
+    inputs = row["inputs"] if "op" in row else None
+    return Case(row["id"], row.get("op", row["kind"]), row["source"], row["status"], row["note"], inputs, expected)
+
+
 def _case(row: dict[str, Any]) -> Case:
+    if "tolerance" not in row:
+        return _gear_case(row)
     suspect = row.get("suspect_fields", {})
     tolerance, modulo = row["tolerance"], row.get("modulo_360", [])
     expected = {}

@@ -1,0 +1,1 @@
+"""Gears: teeth and meshes, ordinary and planetary trains."""

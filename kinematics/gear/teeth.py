@@ -1,0 +1,437 @@
+"""Involute spur teeth: circles, tooth thickness, meshes, contact ratio, interference, undercut, profile shift.
+
+A :class:`Gear` is cut by a rack of module m and pressure angle φ (the coefficients of addendum and dedendum are shares
+of m); z teeth give the pitch radius r = m z / 2 and the base radius r_b = r cos φ. The profile shift x·m moves the
+teeth outward on external *and* internal gears.
+
+A :class:`Mesh` of a pinion with an external or internal gear or a rack: on the common tangent of the base circles
+(the line of action) contact runs from where the gear's tip circle crosses it to where the pinion's does. With the
+pinion driving, the part cut by the gear's tip is the *approach* and the part cut by the pinion's tip the *recess*
+(Norton, Design of Machinery, Sec. 9.2–9.5; Rao, Sec. 6.9–6.12). Beyond the points where the line touches the base
+circles there is no involute: a tip that reaches further digs into the mate's flank, which is *interference*.
+
+Angles are radians, lengths are in any one unit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from kinematics.errors import DimensionError
+
+INCH = 25.4
+"""Millimetres in an inch: a module in mm is 25.4 / diametral pitch (Norton, eq. 9.4d)."""
+
+FULL_DEPTH_ADDENDUM = 1.0
+FULL_DEPTH_DEDENDUM = 1.25
+"""Full-depth teeth, shares of the module (Norton, Table 9-1, coarse pitch)."""
+
+PRESSURE_ANGLE = math.radians(20.0)
+
+ON_LIMIT = 1e-12
+"""A tip this share of the limiting radius beyond it counts as on it: teeth on the limit are sound, and rounding must
+not condemn them."""
+
+
+def fine_pitch_dedendum(diametral_pitch: float) -> float:
+    """Dedendum, in modules, of a fine-pitch gear: 1.2 + 0.002 in × p_d for p_d ≥ 20 (Norton, Table 9-1).
+
+    Parameters
+    ----------
+    diametral_pitch : float
+        Teeth per inch of pitch diameter.
+    """
+    return 1.2 + 0.002 * diametral_pitch
+
+
+def involute(angle: float) -> float:
+    """The involute function inv φ = tan φ − φ."""
+    return math.tan(angle) - angle
+
+
+def inverse_involute(value: float) -> float:
+    """The angle φ in [0, π/2) with tan φ − φ = ``value`` ≥ 0, by Newton's method from above.
+
+    Raises
+    ------
+    DimensionError
+        For a negative value, which no angle has.
+    """
+    if not value >= 0.0:
+        raise DimensionError("value", "zero or positive", value)
+    if value == 0.0:
+        return 0.0
+    # In t = tan φ the function t − atan t is convex and increasing: from a start above the root Newton falls onto it.
+    # t − atan t ≥ t³/3/(1 + t²) gives the start for small values, t ≤ value + π/2 the one for large.
+    t = min(value + 0.5 * math.pi, 1.2 * (3.0 * value) ** (1.0 / 3.0) + value)
+    for _ in range(60):
+        step = (t - math.atan(t) - value) * (1.0 + t * t) / (t * t)
+        t -= step
+        if abs(step) <= 4e-16 * t:
+            break
+    return math.atan(t)
+
+
+@dataclass(frozen=True)
+class Gear:
+    """A spur gear. ``addendum``, ``dedendum`` and ``shift`` are shares of the module.
+
+    Raises
+    ------
+    DimensionError
+        For teeth, module, angle or depths that no gear has.
+    """
+
+    teeth: int
+    module: float
+    pressure_angle: float = PRESSURE_ANGLE
+    addendum: float = FULL_DEPTH_ADDENDUM
+    dedendum: float = FULL_DEPTH_DEDENDUM
+    shift: float = 0.0
+    internal: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.teeth > 0:
+            raise DimensionError("teeth", "a positive number", self.teeth)
+        if not 0.0 < self.module < math.inf:
+            raise DimensionError("module", "positive and finite", self.module)
+        if not 0.0 < self.pressure_angle < 0.5 * math.pi:
+            raise DimensionError("pressure_angle", "between 0 and π/2", self.pressure_angle)
+        if not (self.addendum > 0.0 and self.dedendum > 0.0):
+            raise DimensionError("addendum and dedendum", "positive", (self.addendum, self.dedendum))
+        if not (self.tip_radius > 0.0 and self.root_radius > 0.0):
+            raise DimensionError("tip and root radius", "positive", (self.tip_radius, self.root_radius))
+
+    @classmethod
+    def from_diametral_pitch(cls, teeth: int, diametral_pitch: float, pressure_angle: float = PRESSURE_ANGLE) -> Gear:
+        """A full-depth gear of ``diametral_pitch`` teeth per unit of pitch diameter; lengths are in that unit."""
+        return cls(teeth, 1.0 / diametral_pitch, pressure_angle)
+
+    @property
+    def _outward(self) -> float:
+        return -1.0 if self.internal else 1.0
+
+    @property
+    def pitch_radius(self) -> float:
+        """R = m z / 2."""
+        return 0.5 * self.module * self.teeth
+
+    @property
+    def base_radius(self) -> float:
+        """r_b = r cos φ."""
+        return self.pitch_radius * math.cos(self.pressure_angle)
+
+    @property
+    def tip_radius(self) -> float:
+        """Radius of the outside circle; of the inside circle for internal teeth."""
+        return self.pitch_radius + self.module * (self.shift + self._outward * self.addendum)
+
+    @property
+    def root_radius(self) -> float:
+        """Radius of the circle through the bottoms of the tooth spaces."""
+        return self.pitch_radius + self.module * (self.shift - self._outward * self.dedendum)
+
+    @property
+    def circular_pitch(self) -> float:
+        """P_c = π m, measured on the pitch circle."""
+        return math.pi * self.module
+
+    @property
+    def base_pitch(self) -> float:
+        """P_b = π m cos φ, the distance of neighbouring teeth along the line of action."""
+        return self.circular_pitch * math.cos(self.pressure_angle)
+
+    @property
+    def whole_depth(self) -> float:
+        """Addendum + dedendum."""
+        return self.module * (self.addendum + self.dedendum)
+
+    @property
+    def tooth_thickness(self) -> float:
+        """Thickness on the pitch circle, m (π/2 ± 2 x tan φ)."""
+        return self.module * (0.5 * math.pi + self._outward * 2.0 * self.shift * math.tan(self.pressure_angle))
+
+    def thickness_at(self, radius: float) -> float:
+        """Arc thickness of a tooth on the circle of this radius: 2 ρ (t / 2r ± (inv φ − inv φ_ρ)), cos φ_ρ = r_b/ρ.
+
+        Negative where the flanks have crossed (a pointed tooth). Below the base circle there is no involute: nan.
+        """
+        if radius < self.base_radius:
+            return math.nan
+        there = math.acos(min(1.0, self.base_radius / radius))
+        half = self.tooth_thickness / (2.0 * self.pitch_radius)
+        return 2.0 * radius * (half + self._outward * (involute(self.pressure_angle) - involute(there)))
+
+    @property
+    def is_pointed(self) -> bool:
+        """Whether the flanks meet before the tip circle is reached."""
+        return self.thickness_at(self.tip_radius) <= 0.0
+
+    @property
+    def least_shift(self) -> float:
+        """Shift below which the cutting rack undercuts the flank: x = k − z sin² φ / 2, k the addendum coefficient."""
+        return self.addendum - 0.5 * self.teeth * math.sin(self.pressure_angle) ** 2
+
+    @property
+    def is_undercut(self) -> bool:
+        """Whether a rack that cuts this gear removes flank above the base circle. Internal teeth are shaped: never."""
+        return not self.internal and self.shift < self.least_shift - ON_LIMIT
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A pinion with a gear, external or internal, at the distance without backlash or at a given one.
+
+    Lengths along the line of action are measured from the pitch point. With the pinion driving ``approach`` is the
+    part before it; ``recess`` the part after it.
+
+    Raises
+    ------
+    DimensionError
+        For an internal pinion, unequal modules or pressure angles, an internal gear without more teeth than the
+        pinion, shifts that no distance takes up, or a centre distance at which the base circles do not part.
+    """
+
+    pinion: Gear
+    gear: Gear
+    given_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        one, two = self.pinion, self.gear
+        if one.internal:
+            raise DimensionError("pinion", "external", one)
+        if (one.module, one.pressure_angle) != (two.module, two.pressure_angle):
+            raise DimensionError("module and pressure angle", "the same on both gears", (one, two))
+        if two.internal and two.teeth <= one.teeth:
+            raise DimensionError("internal gear", "of more teeth than its pinion", (one.teeth, two.teeth))
+        if not 0.0 <= self.pressure_angle < 0.5 * math.pi:
+            raise DimensionError("centre distance", "such that the base circles part", self.given_distance)
+
+    @property
+    def _side(self) -> float:
+        return -1.0 if self.gear.internal else 1.0
+
+    @property
+    def standard_distance(self) -> float:
+        """Centre distance of the pitch circles, r₂ ± r₁."""
+        return self.gear.pitch_radius + self._side * self.pinion.pitch_radius
+
+    @cached_property
+    def pressure_angle(self) -> float:
+        """Working pressure angle.
+
+        Without backlash inv φ_w = inv φ + 2 tan φ (x₂ ± x₁) / (z₂ ± z₁); at a given centre distance C
+        cos φ_w = C₀ cos φ / C (Norton, Sec. 9.2, changing centre distance). Outside [0, π/2): no such mesh.
+        """
+        phi = self.pinion.pressure_angle
+        if self.given_distance is not None:
+            cosine = self.standard_distance * math.cos(phi) / self.given_distance
+            return math.acos(cosine) if 0.0 < cosine <= 1.0 else math.nan
+        taken_up = self.gear.shift + self._side * self.pinion.shift
+        teeth = self.gear.teeth + self._side * self.pinion.teeth
+        value = involute(phi) + 2.0 * math.tan(phi) * taken_up / teeth
+        return phi if taken_up == 0.0 else inverse_involute(value) if value >= 0.0 else math.nan
+
+    @property
+    def centre_distance(self) -> float:
+        """Distance of the shafts: as given, or C₀ cos φ / cos φ_w."""
+        if self.given_distance is not None:
+            return self.given_distance
+        return self.standard_distance * math.cos(self.pinion.pressure_angle) / math.cos(self.pressure_angle)
+
+    @property
+    def _tangents(self) -> tuple[float, float]:
+        """From the pitch point to where the line of action touches the base circles of pinion and gear."""
+        slope = math.tan(self.pressure_angle)
+        return self.pinion.base_radius * slope, self.gear.base_radius * slope
+
+    @property
+    def approach(self) -> float:
+        """Part of the path of contact that the gear's tip circle cuts off."""
+        tip, base = self.gear.tip_radius, self.gear.base_radius
+        return self._side * (math.sqrt(max(tip * tip - base * base, 0.0)) - self._tangents[1])
+
+    @property
+    def recess(self) -> float:
+        """Part of the path of contact that the pinion's tip circle cuts off."""
+        tip, base = self.pinion.tip_radius, self.pinion.base_radius
+        return math.sqrt(max(tip * tip - base * base, 0.0)) - self._tangents[0]
+
+    @property
+    def path_of_contact(self) -> float:
+        """Norton's length of action Z (eq. 9.2)."""
+        return self.approach + self.recess
+
+    @property
+    def arc_of_contact(self) -> float:
+        """Path of contact over cos φ_w: the way a point of the working pitch circle goes while two teeth touch."""
+        return self.path_of_contact / math.cos(self.pressure_angle)
+
+    @property
+    def contact_ratio(self) -> float:
+        """m_p = Z / p_b (Norton, eq. 9.7a): the mean number of pairs of teeth in contact."""
+        return self.path_of_contact / self.pinion.base_pitch
+
+    @property
+    def gear_tip_limit(self) -> float:
+        """Radius that the gear's tip must not pass (internal: not fall below): √(r_b₂² + (C sin φ_w)²)."""
+        return math.hypot(self.gear.base_radius, self.centre_distance * math.sin(self.pressure_angle))
+
+    @property
+    def pinion_tip_limit(self) -> float:
+        """Radius that the pinion's tip must not pass: √(r_b₁² + (C sin φ_w)²). An internal gear sets none."""
+        if self.gear.internal:
+            return math.inf
+        return math.hypot(self.pinion.base_radius, self.centre_distance * math.sin(self.pressure_angle))
+
+    @property
+    def interferes(self) -> bool:
+        """Whether a tip of one gear digs into the flank of this very mate.
+
+        A rack would be the worst mate of all; with a finite gear fewer teeth are sound (Norton, Tables 9-4, 9-5).
+        """
+        slack = 1.0 + ON_LIMIT
+        if self.pinion.tip_radius > self.pinion_tip_limit * slack:
+            return True
+        if self.gear.internal:
+            return self.gear.tip_radius * slack < self.gear_tip_limit or self.tips_foul
+        return self.gear.tip_radius > self.gear_tip_limit * slack
+
+    @property
+    def tips_foul(self) -> bool:
+        """Whether the tips of an internal pair meet outside the line of action; external pairs never.
+
+        The pinion's tip corner passes the gear's tip circle at the angles δ₁, δ₂ from the line of centres; it is clear
+        of the gear's tip corner where z₁ (inv φ_a₁ + δ₁) − z₂ (inv φ_a₂ + δ₂) + (z₂ − z₁) inv φ_w ≥ 0 (Colbourne, The
+        Geometry of Involute Gears, 1987, ch. 8). With few teeth of difference it is the limit of planetary rings.
+        """
+        if not self.gear.internal:
+            return False
+        tip, gear_tip, distance = self.pinion.tip_radius, self.gear.tip_radius, self.centre_distance
+        if gear_tip >= distance + tip:
+            return False
+        if gear_tip <= abs(distance - tip) or gear_tip < self.gear.base_radius:
+            return True
+        at_pinion = math.acos((gear_tip**2 - tip**2 - distance**2) / (2.0 * tip * distance))
+        at_gear = math.acos((distance**2 + gear_tip**2 - tip**2) / (2.0 * gear_tip * distance))
+        flank = involute(math.acos(self.pinion.base_radius / tip))
+        gear_flank = involute(math.acos(self.gear.base_radius / gear_tip))
+        room = self.pinion.teeth * (flank + at_pinion) - self.gear.teeth * (gear_flank + at_gear)
+        return room + (self.gear.teeth - self.pinion.teeth) * involute(self.pressure_angle) < 0.0
+
+    @property
+    def clearance(self) -> float:
+        """The smaller room between a tip and the mate's root on the line of centres."""
+        one, two, distance = self.pinion, self.gear, self.centre_distance
+        if two.internal:
+            return min(two.root_radius - distance - one.tip_radius, two.tip_radius - distance - one.root_radius)
+        return min(distance - one.tip_radius - two.root_radius, distance - two.tip_radius - one.root_radius)
+
+    @property
+    def backlash(self) -> float:
+        """Play on the working pitch circles: 0 at the distance of a tight mesh."""
+        wide = math.cos(self.pinion.pressure_angle) / math.cos(self.pressure_angle)
+        radii = self.pinion.pitch_radius * wide, self.gear.pitch_radius * wide
+        pitch = 2.0 * math.pi * radii[0] / self.pinion.teeth
+        return pitch - self.pinion.thickness_at(radii[0]) - self.gear.thickness_at(radii[1])
+
+    @property
+    def loss_factor(self) -> float:
+        """Power lost per unit of friction coefficient, averaged over the mesh cycle.
+
+        H = π (1/z₁ ± 1/z₂) (1 − ε + ε₁² + ε₂²), where ε₁ and ε₂ are recess and approach in base pitches and ε is the
+        contact ratio (Niemann & Winter, Maschinenelemente II, 1983, Sec. 21.11; for 1 ≤ ε ≤ 2). Efficiency 1 − μ H.
+        """
+        teeth = 1.0 / self.pinion.teeth + self._side / self.gear.teeth
+        recess, approach = (part / self.pinion.base_pitch for part in (self.recess, self.approach))
+        return math.pi * teeth * (1.0 - self.contact_ratio + recess**2 + approach**2)
+
+
+def rack_path(gear: Gear, rack_addendum: float) -> tuple[float, float]:
+    """Approach and recess of a gear that drives a rack of this addendum (a length, not a share).
+
+    The rack's tip line cuts the line of action at a / sin φ before the pitch point; contact cannot begin before the
+    tangent point r sin φ of the base circle (see :func:`rack_interferes`).
+    """
+    phi = gear.pressure_angle
+    recess = math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.base_radius * math.tan(phi)
+    return rack_addendum / math.sin(phi), recess
+
+
+def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
+    """Whether a rack of this addendum (a length) reaches below the gear's base tangent: a > r sin² φ."""
+    return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + ON_LIMIT)
+
+
+def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
+    """Fewest teeth that mesh with a rack, and with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8, Table 9-4)."""
+    return _ceil(2.0 * addendum / math.sin(pressure_angle) ** 2)
+
+
+def largest_gear(
+    pinion: int, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM
+) -> int | None:
+    """Most teeth of an external gear that meshes with a pinion without interference (Norton, Table 9-5).
+
+    From r_a₂² ≤ r_b₂² + C² sin² φ: z₂ ≤ (z₁² sin² φ − 4 k²) / (4 k − 2 z₁ sin² φ). None: every gear and the rack mesh.
+    Where the number is below ``pinion`` the pair would have to be turned round: no gear of at least as many teeth.
+    """
+    squared = math.sin(pressure_angle) ** 2
+    room = 4.0 * addendum - 2.0 * pinion * squared
+    if pinion >= least_teeth_with_rack(pressure_angle, addendum):
+        return None
+    return max(0, math.floor((pinion * pinion * squared - 4.0 * addendum**2) / room * (1.0 + ON_LIMIT)))
+
+
+def least_pinion(ratio: float, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> float:
+    """Real number of pinion teeth from which on a gear of ``ratio`` ≥ 1 times as many does not interfere.
+
+    z = 2 k (G + √(G² + (1 + 2 G) sin² φ)) / ((1 + 2 G) sin² φ) (Norton, eq. 9.9; Rao, Sec. 6.12).
+    """
+    squared = (1.0 + 2.0 * ratio) * math.sin(pressure_angle) ** 2
+    return 2.0 * addendum * (ratio + math.sqrt(ratio * ratio + squared)) / squared
+
+
+def largest_addendum(pinion: int, gear: int, pressure_angle: float = PRESSURE_ANGLE) -> float:
+    """Largest addendum coefficient of the gear that does not interfere with the pinion, at standard distance."""
+    squared = math.sin(pressure_angle) ** 2
+    return 0.5 * (math.sqrt(gear * gear + squared * (pinion * pinion + 2.0 * pinion * gear)) - gear)
+
+
+def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
+    """A profile shift that makes an undercut or interfering external pair sound, if there is one.
+
+    The pinion is moved out to where the rack no longer undercuts it. If the gear can take the opposite shift the centre
+    distance stays (long and short addendum, Norton, Sec. 9.3); otherwise the gear stays and the shafts move apart.
+
+    Parameters
+    ----------
+    least_contact_ratio : float
+        A shifted pair with less is no help; Norton, Sec. 9.5, asks for 1.2 at least.
+
+    Returns
+    -------
+    Mesh or None
+        The same teeth, shifted; None where the pair needs no shift, is internal, or no such shift saves it.
+    """
+    one, two = mesh.pinion, mesh.gear
+    if two.internal or not (mesh.interferes or one.is_undercut or two.is_undercut):
+        return None
+    need = max(0.0, one.least_shift), max(0.0, two.least_shift)
+    choices = [(need[0], -need[0])] if two.least_shift <= -need[0] else []
+    for shifts in [*choices, need]:
+        pair = tuple(
+            Gear(g.teeth, g.module, g.pressure_angle, g.addendum, g.dedendum, x)
+            for g, x in zip((one, two), shifts, strict=True)
+        )
+        shifted = Mesh(pair[0], pair[1])
+        sound = not (shifted.interferes or pair[0].is_pointed or pair[1].is_pointed)
+        if sound and shifted.contact_ratio >= least_contact_ratio:
+            return shifted
+    return None
+
+
+def _ceil(value: float) -> int:
+    return math.ceil(value * (1.0 - ON_LIMIT))
