@@ -22,6 +22,10 @@ from kinematics.linkage.triads import follow, loop_equations, rates
 Mask = NDArray[np.bool_]
 Signs = NDArray[np.int64]
 
+AT_LIMIT = 16 * ON_TOGGLE
+"""A margin this far below zero counts as zero, so that a mechanism exists at its own limits: a limit is known to the
+rounding of an angle, which the margin's rate, up to some ten in unit coordinates, multiplies."""
+
 
 class Pose(NamedTuple):
     """A link in motion: jets of its rotation φ from the reference, of e^{iφ}, and of where the origin has gone."""
@@ -316,7 +320,7 @@ class _Drive:
             self.sines[step.link] = self.sines[step.link] * np.abs(base[0]) / np.abs(second)
 
     def _close(self, step: Step, k: Jet, r: RealJet, sign: Signs) -> None:
-        angle = solve_angle(k, r, sign, 4.0 * ON_TOGGLE)
+        angle = solve_angle(k, r, sign, AT_LIMIT)
         self.sines[step.link], self.margins[step.link] = angle.sine, angle.margin
         self._turn(step.link, step.pin, angle.rotation)
 

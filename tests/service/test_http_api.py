@@ -88,15 +88,23 @@ def test_the_openapi_document_is_complete(openapi):
     assert openapi["openapi"].startswith("3.1")
     ids = [op["operationId"] for _, _, op in operations(openapi)]
     assert sorted(ids) == [
-        "analyse", "create_job", "delete_job", "draw_design", "get_job", "healthz", "list_jobs", "list_problems",
-        "move_design", "readyz",
+        "analyse", "create_job", "delete_job", "draw_design", "export_design_csv", "export_design_dxf", "get_job",
+        "healthz", "list_jobs", "list_problems", "move_design", "readyz",
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)
     assert all(schema.get("title") for schema in schemas.values())
     references = set(re.findall(r'"#/components/schemas/([^"]+)"', json.dumps(openapi)))
     assert references <= set(schemas)
-    assert {"Analysis", "AnalysisRequest", "Job", "JobRequest", "JobList", "ProblemDetails", "Result"} <= references
+    assert {
+        "Analysis",
+        "AnalysisRequest",
+        "Job",
+        "JobRequest",
+        "JobList",
+        "MotionResult",
+        "ProblemDetails",
+    } <= references
     for _, _, operation in operations(openapi):
         assert operation["tags"]
         assert operation["summary"]
