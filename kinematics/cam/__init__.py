@@ -1,0 +1,1 @@
+"""Cams: motion laws, programs, followers, profiles, contact and follower dynamics."""

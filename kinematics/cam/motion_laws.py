@@ -1,0 +1,176 @@
+"""Laws of cam motion: unit lift over unit angle, s(0) = 0 and s(1) = 1, exact in every derivative.
+
+Most of the classical laws have an acceleration that rises as a quarter sine over p1, stays over p2, falls as a quarter
+cosine over p3 and is zero up to the middle, with a mirrored second half (Norton, *Design of Machinery*, §8.3, the SCCA
+family, widened by a stretch of constant velocity):
+
+    =========================  =====  =====  =====
+    law                        p1     p2     p3
+    =========================  =====  =====  =====
+    constant acceleration      0      1/2    0
+    simple harmonic            0      0      1/2
+    cycloidal                  1/4    0      1/4
+    modified trapezoid         1/8    1/4    1/8
+    modified sine              1/8    0      3/8
+    modified constant velocity 1/16   0      3/16
+    =========================  =====  =====  =====
+
+With A the greatest acceleration, V = A (2 (p1 + p3)/π + p2) is the velocity in the middle, and A follows from
+s(1/2) = 1/2. Half laws join a dwell to a constant velocity (Kloomok & Muffley; Rao, *Kinematics of Machinery*, §5.2).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+
+from kinematics.cam.extremes import Extremes, extremes
+from kinematics.cam.pieces import Motion, Pieces, harmonic_piece, joined, polynomial_pieces
+from kinematics.errors import DimensionError
+
+HALF_PI = 0.5 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A law of motion.
+
+    Parameters
+    ----------
+    name : str
+        The field's name of it.
+    pieces : Pieces
+        From 0 to 1, with s(0) = 0 and s(1) = 1.
+    """
+
+    name: str
+    pieces: Pieces
+
+    def motion(self, at: float | list[float] | np.ndarray) -> Motion:
+        """s, v, a, j at shares of the angle; at an inner jump the values after it."""
+        return self.pieces.motion(at)
+
+    @cached_property
+    def factors(self) -> tuple[Extremes, Extremes, Extremes]:
+        """Exact extremes of v, a, j within the law; its meeting with its neighbours is not part of it.
+
+        >>> [round(factor.largest, 6) for factor in LAWS["polynomial_345"].factors]
+        [1.875, 5.773503, 60.0]
+
+        The jerk is infinite where the acceleration jumps within the law, as in the middle of constant acceleration.
+        """
+        v, a = self.pieces.derivative(), self.pieces.derivative().derivative()
+        jerk = a.derivative()
+        found = [extremes(lambda u, f=f: f.motion(u).s, self.pieces.start) for f in (v, a, jerk)]  # type: ignore[misc]
+        inner = self.pieces.start[1:-1]
+        jump = self.pieces.motion(inner).a - self.pieces.motion(inner, before=True).a
+        if np.any(np.abs(jump) > JUMP * found[1].largest):
+            down, up = float(inner[jump.argmin()]), float(inner[jump.argmax()])
+            least = (-math.inf, down) if jump.min() < 0.0 else (found[2].least, found[2].at_least)
+            greatest = (math.inf, up) if jump.max() > 0.0 else (found[2].greatest, found[2].at_greatest)
+            found[2] = Extremes(least[0], greatest[0], least[1], greatest[1])
+        return found[0], found[1], found[2]
+
+    def reversed(self, name: str) -> Law:
+        """1 − s(1 − u): the law whose fall is this one's rise seen in a mirror."""
+        mirrored = self.pieces.reversed()
+        return Law(name, mirrored.scaled(1.0, -1.0, 1.0))
+
+
+JUMP = 1e-9
+"""Share of the greatest acceleration above which a step of it inside a law is a jump and not rounding."""
+
+
+def sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> Law:
+    """The law with a quarter sine over p1, constant acceleration over p2 and a quarter cosine over p3 in each half.
+
+    ``p1 + p2 + p3`` is at most 1/2; what is left runs at constant velocity in the middle.
+    """
+    rest = 0.5 - (p1 + p2 + p3)
+    if min(p1, p2, p3) < 0.0 or rest < -1e-12 or p1 + p2 + p3 <= 0.0:
+        raise DimensionError("parts of the law", "at least 0, one positive, with a sum of at most 1/2", (p1, p2, p3))
+    parts: list[tuple[float, list[float], tuple[float, float, float]]] = []
+    s, v = 0.0, 0.0
+    if p1 > 0.0:
+        k = p1 / HALF_PI
+        parts.append((p1, [0.0, k], (-k * k, 1.0 / k, 0.0)))
+        s, v = k * (p1 - k), k
+    if p2 > 0.0:
+        parts.append((p2, [s, v, 0.5], (0.0, 0.0, 0.0)))
+        s, v = s + v * p2 + 0.5 * p2 * p2, v + p2
+    if p3 > 0.0:
+        k = p3 / HALF_PI
+        parts.append((p3, [s + k * k, v], (-k * k, 1.0 / k, HALF_PI)))
+        s, v = s + v * p3 + k * k, v + k
+    if rest > 1e-12:
+        parts.append((rest, [s, v], (0.0, 0.0, 0.0)))
+        s += v * rest
+    half = joined([harmonic_piece(*part) for part in parts])
+    first = half.scaled(0.5, 0.5 / s)
+    return Law(name, joined([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
+
+
+def polynomial(name: str, *coefficients: float) -> Law:
+    """The law Σ c_k u^k, constant first."""
+    return Law(name, polynomial_pieces([0.0, 1.0], [coefficients]))
+
+
+def trapezoidal(name: str, ramp: float) -> Law:
+    """Constant acceleration with linear ramps of length ``ramp`` at both ends of each half (Norton Fig. 8-14)."""
+    flat = 0.5 - 2.0 * ramp
+    peak = 1.0 / (0.5 * (0.5 - ramp))
+    jerk = peak / ramp
+    breaks, row = np.cumsum([0.0, ramp, flat, ramp]), [0.0, 0.0, 0.0, jerk / 6.0]
+    rows = []
+    for span, next_jerk in ((ramp, 0.0), (flat, -jerk), (ramp, 0.0)):
+        rows.append(row)
+        s, v, half_a, sixth_j = row
+        state = (
+            s + span * (v + span * (half_a + span * sixth_j)),
+            v + span * (2.0 * half_a + 3.0 * span * sixth_j),
+            half_a + 3.0 * span * sixth_j,
+        )
+        row = [*state, next_jerk / 6.0]
+    first = polynomial_pieces(breaks, rows)
+    return Law(name, joined([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
+
+
+def _laws() -> dict[str, Law]:
+    pi = math.pi
+    cosine = HALF_PI
+    double = harmonic_piece(1.0, [0.375], (-0.5, pi, cosine), (0.125, 2.0 * pi, cosine))
+    double_harmonic = Law("double_harmonic", double)
+    # Kloomok and Muffley's P-1, with the printed coefficients, which satisfy the end conditions exactly.
+    eighth = polynomial("eighth_power", 0.0, 0.0, 0.0, 6.09755, 0.0, -20.78040, 26.73155, -13.60965, 2.56095)
+    laws = [
+        polynomial("constant_velocity", 0.0, 1.0),
+        sine_constant_cosine("constant_acceleration", 0.0, 0.5, 0.0),
+        Law("simple_harmonic", harmonic_piece(1.0, [0.5], (-0.5, pi, cosine))),
+        Law("cycloidal", harmonic_piece(1.0, [0.0, 1.0], (-0.5 / pi, 2.0 * pi, 0.0))),
+        trapezoidal("trapezoidal", 1.0 / 8.0),
+        sine_constant_cosine("modified_trapezoid", 1.0 / 8.0, 1.0 / 4.0, 1.0 / 8.0),
+        sine_constant_cosine("modified_sine", 1.0 / 8.0, 0.0, 3.0 / 8.0),
+        sine_constant_cosine("modified_constant_velocity", 1.0 / 16.0, 0.0, 3.0 / 16.0),
+        polynomial("polynomial_23", 0.0, 0.0, 3.0, -2.0),
+        polynomial("polynomial_345", 0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+        polynomial("polynomial_4567", 0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0),
+        polynomial("polynomial_456789", 0.0, 0.0, 0.0, 0.0, 0.0, 126.0, -420.0, 540.0, -315.0, 70.0),
+        eighth,
+        eighth.reversed("eighth_power_reversed"),
+        double_harmonic,
+        double_harmonic.reversed("double_harmonic_reversed"),
+        Law("half_harmonic_start", harmonic_piece(1.0, [1.0], (-1.0, HALF_PI, cosine))),
+        Law("half_harmonic_end", harmonic_piece(1.0, [0.0], (1.0, HALF_PI, 0.0))),
+        Law("half_cycloidal_start", harmonic_piece(1.0, [0.0, 1.0], (-1.0 / pi, pi, 0.0))),
+        Law("half_cycloidal_end", harmonic_piece(1.0, [0.0, 1.0], (1.0 / pi, pi, 0.0))),
+    ]
+    return {law.name: law for law in laws}
+
+
+LAWS = MappingProxyType(_laws())
+"""Every named law. ``*_start`` begins at rest and ends with a velocity, ``*_end`` the other way; a ``*_reversed`` law
+is for the fall that mirrors its rise."""

@@ -1,0 +1,189 @@
+"""Functions in pieces: on each piece a polynomial and up to two harmonics of the distance x from its start,
+
+    s(x) = Σ c_k x^k + Σ A_m sin(w_m x + φ_m).
+
+Every law of cam motion is of this form, and so is each of its derivatives: all of them are evaluated by one kernel,
+scaled, put one after the other and searched for stationary points without regard to the law's name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+
+HARMONICS = 2
+"""Sine terms that a piece can have; the double harmonic needs two."""
+
+DERIVATIVES = 4
+"""Values that the kernel gives at each point: s, v, a, j."""
+
+
+class Motion(NamedTuple):
+    """Displacement and its first three derivatives, arrays of one shape."""
+
+    s: Real
+    v: Real
+    a: Real
+    j: Real
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A function in n pieces.
+
+    Parameters
+    ----------
+    start : float, shape (n + 1,)
+        Where each piece begins, ascending, and where the last one ends.
+    polynomial : float, shape (n, degree + 1)
+        Coefficients c_k, constant first, of the distance from the piece's start.
+    amplitude, frequency, phase : float, shape (n, 2)
+        A_m, w_m, φ_m of the sine terms; an amplitude of zero where there is none.
+    """
+
+    start: Real
+    polynomial: Real
+    amplitude: Real
+    frequency: Real
+    phase: Real
+
+    @property
+    def count(self) -> int:
+        """Number of pieces."""
+        return len(self.start) - 1
+
+    @property
+    def length(self) -> float:
+        """Distance from the first start to the last end."""
+        return float(self.start[-1] - self.start[0])
+
+    def motion(self, at: ArrayLike, *, before: bool = False) -> Motion:
+        """Values and first three derivatives.
+
+        Parameters
+        ----------
+        at : array_like
+            Points of any shape. Outside the pieces the first or the last one is continued.
+        before : bool
+            At a joint of two pieces the values of the piece that ends there; otherwise of the one that begins.
+        """
+        points = np.asarray(at, dtype=np.float64)
+        values = np.empty((DERIVATIVES, points.size))
+        flat = np.ascontiguousarray(points.reshape(-1))
+        _evaluate(self.start, self.polynomial, self.amplitude, self.frequency, self.phase, flat, before, values)
+        return Motion(*values.reshape(DERIVATIVES, *points.shape))
+
+    def derivative(self) -> Pieces:
+        """The function's derivative, again in pieces."""
+        degree = self.polynomial.shape[1] - 1
+        polynomial = self.polynomial[:, 1:] * np.arange(1, degree + 1) if degree else np.zeros((self.count, 1))
+        amplitude = self.amplitude * self.frequency
+        return Pieces(self.start, polynomial, amplitude, self.frequency, self.phase + 0.5 * math.pi)
+
+    def scaled(self, length: float, factor: float, constant: float = 0.0) -> Pieces:
+        """constant + factor·s, stretched to a length and moved to begin at zero."""
+        stretch = length / self.length
+        polynomial = factor * self.polynomial / stretch ** np.arange(self.polynomial.shape[1])
+        polynomial[:, 0] += constant
+        start = (self.start - self.start[0]) * stretch
+        start[-1] = length
+        return Pieces(start, polynomial, factor * self.amplitude, self.frequency / stretch, self.phase)
+
+    def reversed(self) -> Pieces:
+        """s(start + end − t): the same function run through from its end."""
+        spans = np.diff(self.start)[::-1]
+        start = self.start[0] + self.start[-1] - self.start[::-1]
+        polynomial = _mirrored(self.polynomial[::-1], spans)
+        amplitude, frequency, phase = self.amplitude[::-1], self.frequency[::-1], self.phase[::-1]
+        return Pieces(start, polynomial, -amplitude, frequency, -(phase + frequency * spans[:, None]))
+
+
+def polynomial_pieces(start: ArrayLike, coefficients: ArrayLike) -> Pieces:
+    """Piecewise polynomial from its breaks, shape (n + 1,), and local coefficients, shape (n, degree + 1)."""
+    breaks, polynomial = np.array(start, dtype=np.float64), np.array(coefficients, dtype=np.float64)
+    if polynomial.ndim != 2 or breaks.shape != (len(polynomial) + 1,) or not len(polynomial):
+        raise DimensionError("breaks", "one more than the rows of coefficients", breaks.shape)
+    if not (np.isfinite(breaks).all() and np.isfinite(polynomial).all() and (np.diff(breaks) > 0.0).all()):
+        raise DimensionError("breaks and coefficients", "finite, breaks ascending", start)
+    none = np.zeros((len(polynomial), HARMONICS))
+    return Pieces(breaks, polynomial, none, none, none)
+
+
+def harmonic_piece(length: float, polynomial: Sequence[float], *harmonics: tuple[float, float, float]) -> Pieces:
+    """One piece from 0 to a length: polynomial coefficients and up to two (amplitude, frequency, phase)."""
+    terms = np.zeros((HARMONICS, 3))
+    terms[: len(harmonics)] = np.reshape(harmonics, (-1, 3))
+    amplitude, frequency, phase = terms.T[:, None, :]
+    return Pieces(np.array([0.0, length]), np.array([polynomial], dtype=np.float64), amplitude, frequency, phase)
+
+
+def joined(parts: Sequence[Pieces]) -> Pieces:
+    """Functions one after the other, each moved to begin where the one before ends; the first begins at zero."""
+    degree = max(part.polynomial.shape[1] for part in parts)
+    ends = np.cumsum([0.0, *(part.length for part in parts)])
+    starts = [part.start[:-1] - part.start[0] + end for part, end in zip(parts, ends, strict=False)]
+    polynomial = [np.pad(part.polynomial, ((0, 0), (0, degree - part.polynomial.shape[1]))) for part in parts]
+    return Pieces(
+        np.concatenate([*starts, ends[-1:]]),
+        np.concatenate(polynomial),
+        np.concatenate([part.amplitude for part in parts]),
+        np.concatenate([part.frequency for part in parts]),
+        np.concatenate([part.phase for part in parts]),
+    )
+
+
+def _mirrored(polynomial: Real, spans: Real) -> Real:
+    """Coefficients of p(L − y) from those of p(x), each row with its own L; Horner in the ring of polynomials."""
+    mirrored = np.zeros_like(polynomial)
+    for k in range(polynomial.shape[1] - 1, -1, -1):
+        shifted = mirrored * spans[:, None]
+        shifted[:, 1:] -= mirrored[:, :-1]
+        shifted[:, 0] += polynomial[:, k]
+        mirrored = shifted
+    return mirrored
+
+
+@njit(cache=True, nogil=True)
+def _evaluate(
+    start: Real, polynomial: Real, amplitude: Real, frequency: Real, phase: Real, at: Real, before: bool, values: Real
+) -> None:
+    """Fill s, v, a, j at each point: Taylor's coefficients by repeated Horner, and the sines."""
+    last = start.size - 2
+    terms = polynomial.shape[1]
+    for i in range(at.size):
+        low, high = 0, last
+        while low < high:
+            middle = (low + high + 1) // 2
+            if start[middle] < at[i] or (not before and start[middle] == at[i]):
+                low = middle
+            else:
+                high = middle - 1
+        x = at[i] - start[low]
+        s, v, a, j = 0.0, 0.0, 0.0, 0.0
+        for k in range(terms - 1, -1, -1):
+            j = j * x + a
+            a = a * x + v
+            v = v * x + s
+            s = s * x + polynomial[low, k]
+        a, j = 2.0 * a, 6.0 * j
+        for m in range(amplitude.shape[1]):
+            size = amplitude[low, m]
+            if size != 0.0:
+                w = frequency[low, m]
+                turn = w * x + phase[low, m]
+                sine, cosine = math.sin(turn), math.cos(turn)
+                s += size * sine
+                v += size * w * cosine
+                a -= size * w * w * sine
+                j -= size * w * w * w * cosine
+        values[0, i], values[1, i], values[2, i], values[3, i] = s, v, a, j

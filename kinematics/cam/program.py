@@ -1,0 +1,165 @@
+"""The motion program of a cam: segments once around, their motion at any angle, exact peaks, and the joints.
+
+The fundamental law of cam design (Norton §8.3): displacement, velocity and acceleration are continuous all around, so
+that the jerk is finite everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.extremes import Extremes, extremes
+from kinematics.cam.pieces import DERIVATIVES, Motion, Pieces, joined
+from kinematics.cam.segments import Segment
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+
+TURN = 2.0 * math.pi
+
+CLOSED = 1e-9
+"""Radians by which the segments' angles may miss a full turn: rounding of degrees, far less than a cam can show."""
+
+CONTINUOUS = 1e-6
+"""Jump, relative to the derivative's largest value, up to which it counts as continuous: statements carry about seven
+digits, and a cam no more."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """What happens where two segments meet, or at a jump within one.
+
+    Parameters
+    ----------
+    angle : float
+        From the program's start; the last segment meets the first one at 0.
+    segments : tuple of two ints
+        The one that ends and the one that begins; equal within a segment.
+    before, after : tuple of four floats
+        s, v, a, j on both sides.
+    continuous : tuple of four bools
+        Whether each of them is the same on both sides.
+    """
+
+    angle: float
+    segments: tuple[int, int]
+    before: tuple[float, float, float, float]
+    after: tuple[float, float, float, float]
+    continuous: tuple[bool, bool, bool, bool]
+
+    @property
+    def jump(self) -> tuple[float, ...]:
+        """Steps of s, v, a, j."""
+        return tuple(after - before for before, after in zip(self.before, self.after, strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A motion program, periodic over one turn of the cam.
+
+    Parameters
+    ----------
+    segments : sequence of Segment
+        Any number, in order from cam angle 0; their angles make one turn.
+
+    Raises
+    ------
+    DimensionError
+        No segment, or angles that do not sum to 2π.
+    """
+
+    segments: Sequence[Segment]
+
+    def __post_init__(self) -> None:
+        total = math.fsum(segment.angle for segment in self.segments)
+        if not abs(total - TURN) <= CLOSED:
+            raise DimensionError("sum of the segments' angles", "one turn (360 degrees)", math.degrees(total))
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """All segments as one function from 0 to 2π."""
+        pieces = joined([segment.pieces for segment in self.segments])
+        pieces.start[-1] = TURN
+        return pieces
+
+    @property
+    def breaks(self) -> Real:
+        """Angles between which s and all its derivatives are smooth, from 0 to 2π; shape (n + 1,)."""
+        return self.pieces.start
+
+    @cached_property
+    def joints(self) -> Real:
+        """Angles where the segments begin, and 2π; shape (segments + 1,)."""
+        counts = np.cumsum([0, *(segment.pieces.count for segment in self.segments)])
+        return np.asarray(self.pieces.start[counts])
+
+    def motion(self, angle: ArrayLike, *, before: bool = False) -> Motion:
+        """s, v, a, j at any cam angles, of any shape; at a joint those after it unless ``before``."""
+        at = np.mod(np.asarray(angle, dtype=np.float64), TURN)
+        # np.mod rounds a small negative angle up to a whole turn.
+        at = np.where(at == 0.0, TURN, at) if before else np.where(at == TURN, 0.0, at)
+        return self.pieces.motion(at, before=before)
+
+    @cached_property
+    def peaks(self) -> tuple[Extremes, Extremes, Extremes, Extremes]:
+        """Exact extremes of s, v, a, j with their angles, both sides of every joint included."""
+        found = [
+            extremes(lambda angle, order=order: self.pieces.motion(angle)[order], self.breaks)  # type: ignore[misc]
+            for order in range(DERIVATIVES)
+        ]
+        return found[0], found[1], found[2], found[3]
+
+    @property
+    def lift(self) -> float:
+        """The follower's whole travel."""
+        return self.peaks[0].greatest - self.peaks[0].least
+
+    @cached_property
+    def continuity(self) -> tuple[Joint, ...]:
+        """Every joint of two segments, the last with the first one included, and every inner jump of s, v or a."""
+        counts = np.cumsum([0, *(segment.pieces.count for segment in self.segments)])
+        before = np.array(self.pieces.motion(np.append(self.breaks[1:-1], TURN), before=True))
+        after = np.array(self.pieces.motion(np.append(self.breaks[1:-1], 0.0)))
+        allowed = CONTINUOUS * np.array([self.lift, *(peak.largest for peak in self.peaks[1:])])
+        same = np.abs(after - before) <= allowed[:, None]
+        found = []
+        for piece in range(self.pieces.count):
+            index = int(np.searchsorted(counts, piece, side="right")) - 1
+            following = int(np.searchsorted(counts, piece + 1, side="right")) - 1
+            if index == following and same[:3, piece].all():
+                continue
+            s, v, a, j = (bool(value) for value in same[:, piece])
+            found.append(
+                Joint(
+                    float(self.breaks[piece + 1]) % TURN,
+                    (index, following % len(self.segments)),
+                    _four(before[:, piece]),
+                    _four(after[:, piece]),
+                    (s, v, a, j),
+                )
+            )
+        return tuple(found)
+
+    @property
+    def smoothness(self) -> int:
+        """How many of s, v, a, j, in this order, are continuous at every joint."""
+        for order in range(DERIVATIVES):
+            if not all(joint.continuous[order] for joint in self.continuity):
+                return order
+        return DERIVATIVES
+
+    @property
+    def obeys_fundamental_law(self) -> bool:
+        """Whether s, v and a are continuous all around."""
+        return self.smoothness >= 3
+
+
+def _four(values: Real) -> tuple[float, float, float, float]:
+    s, v, a, j = (float(value) for value in values)
+    return s, v, a, j
