@@ -111,7 +111,9 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         values = function(middle[:, None] + half[:, None] * _NODES)
         size = max(size, float(np.abs(values).max(initial=0.0)))
-        series = values @ _FIT.T
+        # Less the first value of each row, so that a constant has no rounding at all.
+        series = (values - values[:, :1]) @ _FIT.T
+        series[:, 0] += values[:, 0]
         good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size
         if step == HALVINGS:
             good[:] = True

@@ -119,24 +119,23 @@ def polynomial(name: str, *coefficients: float) -> Law:
     return Law(name, polynomial_pieces([0.0, 1.0], [coefficients]))
 
 
-def trapezoidal(name: str, ramp: float) -> Law:
-    """Constant acceleration with linear ramps of length ``ramp`` at both ends of each half (Norton Fig. 8-14)."""
-    flat = 0.5 - 2.0 * ramp
-    peak = 1.0 / (0.5 * (0.5 - ramp))
-    jerk = peak / ramp
-    breaks, row = np.cumsum([0.0, ramp, flat, ramp]), [0.0, 0.0, 0.0, jerk / 6.0]
-    rows = []
-    for span, next_jerk in ((ramp, 0.0), (flat, -jerk), (ramp, 0.0)):
-        rows.append(row)
-        s, v, half_a, sixth_j = row
-        state = (
-            s + span * (v + span * (half_a + span * sixth_j)),
-            v + span * (2.0 * half_a + 3.0 * span * sixth_j),
-            half_a + 3.0 * span * sixth_j,
-        )
-        row = [*state, next_jerk / 6.0]
-    first = polynomial_pieces(breaks, rows)
-    return Law(name, joined([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
+RAMP = 1.0 / 8.0
+"""Length of the linear ramps of the trapezoidal law."""
+
+
+def _trapezoidal() -> Law:
+    """Constant acceleration with linear ramps at both ends of each half (Norton Fig. 8-14)."""
+    flat = 0.5 - 2.0 * RAMP
+    peak = 2.0 / (0.5 - RAMP)
+    jerk = peak / RAMP
+    v, s = 0.5 * peak * RAMP, peak * RAMP**2 / 6.0
+    rows = [
+        [0.0, 0.0, 0.0, jerk / 6.0],
+        [s, v, 0.5 * peak, 0.0],
+        [s + flat * (v + 0.5 * flat * peak), v + flat * peak, 0.5 * peak, -jerk / 6.0],
+    ]
+    first = polynomial_pieces(np.cumsum([0.0, RAMP, flat, RAMP]), rows)
+    return Law("trapezoidal", joined([first, first.reversed().scaled(0.5, -1.0, 1.0)]))
 
 
 def _laws() -> dict[str, Law]:
@@ -151,7 +150,7 @@ def _laws() -> dict[str, Law]:
         sine_constant_cosine("constant_acceleration", 0.0, 0.5, 0.0),
         Law("simple_harmonic", harmonic_piece(1.0, [0.5], (-0.5, pi, cosine))),
         Law("cycloidal", harmonic_piece(1.0, [0.0, 1.0], (-0.5 / pi, 2.0 * pi, 0.0))),
-        trapezoidal("trapezoidal", 1.0 / 8.0),
+        _trapezoidal(),
         sine_constant_cosine("modified_trapezoid", 1.0 / 8.0, 1.0 / 4.0, 1.0 / 8.0),
         sine_constant_cosine("modified_sine", 1.0 / 8.0, 0.0, 3.0 / 8.0),
         sine_constant_cosine("modified_constant_velocity", 1.0 / 16.0, 0.0, 3.0 / 16.0),

@@ -138,11 +138,13 @@ def jerk_segment(knots: ArrayLike, state: tuple[float, float, float], jerk: Arra
 
 def _through(angle: float, conditions: Sequence[Condition], degree: int, knots: Sequence[float]) -> Pieces:
     """Local coefficients of the piecewise polynomial, in the unit of each piece, from one square linear system."""
+    if not conditions:
+        raise DimensionError("conditions", "at least one", [])
     breaks = np.array([0.0, *knots, angle])
     spans = np.diff(breaks)
     terms, count = degree + 1, len(spans)
     matrix, values = np.zeros((terms * count, terms * count)), np.zeros(terms * count)
-    scale = max((abs(c.value) * angle**c.order for c in conditions), default=0.0) or 1.0
+    scale = max(abs(c.value) * angle**c.order for c in conditions) or 1.0
     for row, (at, order, value) in enumerate(conditions):
         if not (0.0 <= at <= angle and math.isfinite(value) and 0 <= order <= degree):
             raise DimensionError(
@@ -161,7 +163,7 @@ def _through(angle: float, conditions: Sequence[Condition], degree: int, knots: 
             row += 1
     size = np.abs(matrix).max(axis=1)
     matrix, values = matrix / size[:, None], values / size
-    if not terms or np.linalg.cond(matrix) > 1.0 / INDEPENDENT:
+    if np.linalg.cond(matrix) > 1.0 / INDEPENDENT:
         raise DimensionError("conditions", "such that they determine one polynomial", [tuple(c) for c in conditions])
     solution = np.linalg.solve(matrix, values)
     solution += np.linalg.solve(matrix, values - matrix @ solution)

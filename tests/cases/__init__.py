@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 HERE = Path(__file__).parent
@@ -55,6 +56,7 @@ class Case:
 
     def check(self, **found: Any) -> None:
         """Compare every expected value with the computed one of the same name."""
+        found |= {f"{name}[{k}]": v for name, values in found.items() if _listed(values) for k, v in enumerate(values)}
         missing = self.expected.keys() - found.keys()
         assert not missing, f"{self.id}: not computed: {sorted(missing)}"
         wrong = {
@@ -63,6 +65,10 @@ class Case:
             if not expected.agrees(found[name])
         }
         assert not wrong, f"{self.id} ({self.source}): found, expected, tolerance: {wrong}"
+
+
+def _listed(values: Any) -> bool:
+    return isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim > 0)
 
 
 @cache
@@ -94,7 +100,24 @@ def _gear_case(row: dict[str, Any]) -> Case:
     return Case(row["id"], row.get("op", row["kind"]), row["source"], row["status"], row["note"], inputs, expected)
 
 
+def _cam_case(row: dict[str, Any]) -> Case:
+    inputs = dict(row["inputs"])
+    values = row["oracle"] if row["status"] == "ocr_suspect" else row["expected"]
+    expected = {}
+    for name, value in values.items():
+        if isinstance(value, list):
+            limits = row["tolerance"][name]
+            limits = limits if isinstance(limits, list) else [limits] * len(value)
+            legible = [k for k, printed in enumerate(row["expected"][name]) if printed is not None]
+            expected |= {f"{name}[{k}]": Expected(value[k], limits[k]) for k in legible}
+        else:
+            expected[name] = Expected(value, row["tolerance"][name])
+    return Case(row["id"], inputs.pop("task"), row["source"], row["status"], row["note"], inputs, expected)
+
+
 def _case(row: dict[str, Any]) -> Case:
+    if "task" in row.get("inputs", {}):
+        return _cam_case(row)
     if "tolerance" not in row:
         return _gear_case(row)
     suspect = row.get("suspect_fields", {})

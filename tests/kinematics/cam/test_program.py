@@ -1,0 +1,254 @@
+"""Programs and segments: what they state, what they refuse, and peaks against fine grids."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kinematics.cam.extremes import extremes, roots
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.program import Program
+from kinematics.cam.segments import (
+    Condition,
+    coefficient_segment,
+    dwell,
+    jerk_segment,
+    knot_segment,
+    law_segment,
+    polynomial_segment,
+    spline_segment,
+)
+from kinematics.errors import DimensionError
+
+TURN = 2.0 * math.pi
+SMOOTH = ["cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567"]
+
+
+@st.composite
+def programs(draw: st.DrawFn) -> Program:
+    """Rises, falls and dwells by any laws of rest to rest, one after the other around the cam."""
+    count = draw(st.integers(2, 6))
+    shares = np.array([draw(st.floats(0.2, 1.0)) for _ in range(count)])
+    angles = TURN * shares / shares.sum()
+    heights = [0.0, *(draw(st.floats(-2.0, 3.0)) for _ in range(count - 1)), 0.0]
+    laws = [draw(st.sampled_from([*SMOOTH, "simple_harmonic", "eighth_power", "trapezoidal"])) for _ in range(count)]
+    return Program(
+        [
+            dwell(angle, start) if start == end else law_segment(LAWS[law], angle, start, end)
+            for angle, law, start, end in zip(angles, laws, heights, heights[1:], strict=False)
+        ]
+    )
+
+
+@settings(max_examples=25)
+@given(programs())
+def test_peaks_bound_a_fine_grid_and_are_attained(program: Program) -> None:
+    angles = np.linspace(0.0, TURN, 4001)
+    for order, peak in enumerate(program.peaks):
+        found = np.array([program.motion(angles)[order], program.motion(angles, before=True)[order]])
+        slack = 1e-9 * (peak.largest + 1e-9)
+        assert found.min() >= peak.least - slack
+        assert found.max() <= peak.greatest + slack
+        for at, value in ((peak.at_least, peak.least), (peak.at_greatest, peak.greatest)):
+            sides = program.motion(at)[order], program.motion(at, before=True)[order]
+            assert min(abs(side - value) for side in sides) <= slack
+
+
+@settings(max_examples=25)
+@given(programs(), st.floats(-20.0, 20.0))
+def test_motion_is_periodic(program: Program, angle: float) -> None:
+    here, there = program.motion(angle % TURN), program.motion(angle)
+    assert np.array(here) == pytest.approx(np.array(there), abs=1e-6)
+
+
+@settings(max_examples=25)
+@given(programs())
+def test_a_joint_says_what_the_motion_does(program: Program) -> None:
+    for joint in program.continuity:
+        assert joint.before == pytest.approx(program.motion(joint.angle, before=True), rel=1e-6, abs=1e-6)
+        assert joint.after == pytest.approx(program.motion(joint.angle), rel=1e-6, abs=1e-6)
+        assert joint.continuous[:2] == (True, True)
+    assert program.smoothness >= 2
+
+
+def double_dwell(law: str) -> Program:
+    quarter = TURN / 4.0
+    rise, fall = law_segment(LAWS[law], quarter, 0.0, 1.0), law_segment(LAWS[law], quarter, 1.0, 0.0)
+    return Program([dwell(quarter, 0.0), rise, dwell(quarter, 1.0), fall])
+
+
+def test_smoothness_of_laws_between_dwells() -> None:
+    expected = {
+        "constant_velocity": 1,
+        "constant_acceleration": 2,
+        "simple_harmonic": 2,
+        "cycloidal": 3,
+        "modified_sine": 3,
+        "polynomial_345": 3,
+        "polynomial_4567": 4,
+    }
+    assert {law: double_dwell(law).smoothness for law in expected} == expected
+
+
+def test_a_jump_within_a_segment_is_listed() -> None:
+    joints = double_dwell("constant_acceleration").continuity
+    assert [joint.segments for joint in joints] == [(0, 1), (1, 1), (1, 2), (2, 3), (3, 3), (3, 0)]
+    assert joints[1].jump[2] == pytest.approx(-8.0 / (TURN / 4.0) ** 2)
+
+
+def test_dwell_alone_moves_nothing() -> None:
+    program = Program([dwell(TURN, 2.0)])
+    assert program.lift == 0.0
+    assert program.smoothness == 4
+    assert [peak.largest for peak in program.peaks] == [2.0, 0.0, 0.0, 0.0]
+
+
+def test_more_than_sixteen_segments() -> None:
+    angle = TURN / 40.0
+    program = Program([law_segment(LAWS["modified_sine"], angle, k % 2, (k + 1) % 2) for k in range(40)])
+    assert program.obeys_fundamental_law
+    assert program.peaks[1].greatest == pytest.approx(4.0 * math.pi / (math.pi + 4.0) / angle, rel=1e-12)
+
+
+def test_polynomial_meets_interior_conditions() -> None:
+    conditions = [
+        Condition(0.0, 0, 0.0),
+        Condition(0.0, 1, 0.0),
+        Condition(0.0, 2, 0.0),
+        Condition(0.9, 0, 4.0),
+        Condition(0.9, 1, 3.0),
+        Condition(2.0, 0, 0.5),
+        Condition(2.0, 1, 0.0),
+        Condition(2.0, 2, 0.0),
+    ]
+    segment = polynomial_segment(2.0, conditions)
+    for at, order, value in conditions:
+        assert segment.pieces.motion(at)[order] == pytest.approx(value, abs=1e-9)
+
+
+def test_spline_meets_its_conditions_with_smooth_knots() -> None:
+    ends = [Condition(at, order, 0.0) for at in (0.0, 3.0) for order in (0, 1, 2)]
+    inner = [Condition(0.7, 0, 1.0), Condition(1.5, 0, 2.0), Condition(1.5, 1, 0.0), Condition(2.2, 0, 1.4)]
+    segment = spline_segment(3.0, ends + inner, 5)
+    for at, order, value in ends + inner:
+        assert segment.pieces.motion(at, before=at == 3.0)[order] == pytest.approx(value, abs=1e-10)
+    knots = segment.pieces.start[1:-1]
+    assert len(knots) == 4
+    before, after = segment.pieces.motion(knots, before=True), segment.pieces.motion(knots)
+    for order in range(4):
+        assert after[order] == pytest.approx(before[order], abs=1e-9)
+
+
+def test_a_spline_through_one_polynomial_is_that_polynomial() -> None:
+    law = LAWS["polynomial_345"]
+    at = np.linspace(0.0, 1.0, 9)
+    conditions = [Condition(float(u), 0, float(law.motion(u).s)) for u in at]
+    segment = spline_segment(1.0, conditions, 5)
+    u = np.linspace(0.0, 1.0, 50)
+    assert segment.pieces.motion(u).s == pytest.approx(law.motion(u).s, abs=1e-12)
+
+
+def test_given_knots_are_used() -> None:
+    conditions = [Condition(0.0, 0, 0.0), Condition(0.4, 0, 1.0), Condition(0.8, 0, 3.0), Condition(1.0, 0, 0.0)]
+    segment = spline_segment(1.0, conditions, 2, knots=[0.5])
+    assert list(segment.pieces.start) == [0.0, 0.5, 1.0]
+
+
+def test_jerk_between_knots_integrates_without_gaps() -> None:
+    knots = np.linspace(0.0, 1.0, 201)
+    law = LAWS["polynomial_345"]
+    # The jerk of 3-4-5 is a parabola; linear pieces of it differ by h²/8 of its curvature.
+    jerk = law.motion(knots).j
+    segment = jerk_segment(knots, (0.0, 0.0, 0.0), np.stack([jerk[:-1], jerk[1:]], axis=1))
+    s, v, a, j = segment.pieces.motion(knots[1:-1])
+    assert j == pytest.approx(jerk[1:-1])
+    assert np.array(segment.pieces.motion(knots[1:-1], before=True).a) == pytest.approx(a, abs=1e-13)
+    assert s == pytest.approx(law.motion(knots[1:-1]).s, abs=1e-3)
+    constant = jerk_segment([0.0, 1.0, 3.0], (1.0, 0.0, 0.0), [6.0, 0.0])
+    assert constant.pieces.motion([1.0, 3.0]).s == pytest.approx([2.0, 20.0])
+    assert v[0] == pytest.approx(law.motion(knots[1]).v, abs=1e-3)
+
+
+def test_norton_coefficients_are_of_the_share_of_the_angle() -> None:
+    segment = coefficient_segment(math.pi, [0, 0, 0, 64, -192, 192, -64])
+    assert segment.pieces.motion(0.5 * math.pi).s == pytest.approx(1.0)
+    assert segment.extremes(0).at_greatest == pytest.approx(0.5 * math.pi)
+
+
+@pytest.mark.parametrize("angles", [(math.pi, math.pi - 1e-6), (TURN, 0.1), (1.0,)])
+def test_angles_that_are_no_turn_are_refused(angles: tuple[float, ...]) -> None:
+    with pytest.raises(DimensionError, match="one turn"):
+        Program([dwell(angle, 0.0) for angle in angles])
+
+
+def test_no_segments_are_refused() -> None:
+    with pytest.raises(DimensionError, match="one turn"):
+        Program([])
+
+
+@pytest.mark.parametrize("angle", [0.0, -1.0, math.nan, math.inf])
+def test_segments_without_an_angle_are_refused(angle: float) -> None:
+    with pytest.raises(DimensionError, match="angle of a segment"):
+        dwell(angle, 0.0)
+
+
+def test_values_that_are_no_numbers_are_refused() -> None:
+    with pytest.raises(DimensionError, match="end"):
+        law_segment(LAWS["cycloidal"], 1.0, 0.0, math.nan)
+    with pytest.raises(DimensionError, match="position"):
+        dwell(1.0, math.inf)
+    with pytest.raises(DimensionError, match="breaks"):
+        knot_segment([0.0, 1.0], [[math.nan]])
+    with pytest.raises(DimensionError, match="first knot"):
+        knot_segment([0.5, 1.0], [[1.0]])
+    with pytest.raises(DimensionError, match="breaks"):
+        knot_segment([0.0, 1.0, 2.0], [[1.0]])
+    with pytest.raises(DimensionError, match="jerk"):
+        jerk_segment([0.0, 1.0], (0.0, 0.0, 0.0), [1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    "conditions",
+    [
+        [Condition(0.0, 0, 0.0), Condition(0.0, 0, 1.0)],
+        [Condition(0.0, 1, 0.0), Condition(1.0, 1, 1.0)],
+        [Condition(0.0, 0, 0.0), Condition(2.0, 0, 1.0)],
+        [Condition(0.0, 0, 0.0), Condition(1.0, 2, 1.0)],
+        [Condition(0.0, 0, math.nan)],
+        [],
+    ],
+)
+def test_conditions_without_one_answer_are_refused(conditions: list[Condition]) -> None:
+    with pytest.raises(DimensionError, match="condition"):
+        polynomial_segment(1.0, conditions)
+
+
+def test_splines_without_one_answer_are_refused() -> None:
+    conditions = [Condition(0.1 * k, 0, 0.0) for k in range(6)]
+    with pytest.raises(DimensionError, match="degree"):
+        spline_segment(1.0, conditions, 6)
+    with pytest.raises(DimensionError, match="knots"):
+        spline_segment(1.0, conditions, 3, knots=[0.5])
+    with pytest.raises(DimensionError, match="conditions"):
+        spline_segment(1.0, conditions, 3, knots=[0.6, 0.7])
+
+
+def test_extremes_of_a_jump_are_its_two_sides() -> None:
+    found = extremes(lambda x: np.where(x < 1.0, x, x - 3.0), [0.0, 1.0, 2.0])
+    assert (found.least, found.greatest) == pytest.approx((-2.0, 1.0))
+    assert (found.at_least, found.at_greatest) == pytest.approx((1.0, 1.0))
+
+
+def test_a_hidden_kink_is_found() -> None:
+    found = extremes(lambda x: -np.abs(x - 0.123456), [0.0, 1.0])
+    assert found.greatest == pytest.approx(0.0, abs=1e-7)
+
+
+def test_roots_of_a_wave() -> None:
+    assert roots(lambda x: np.sin(25.0 * x), [0.1, 3.0]) == pytest.approx(np.arange(1, 24) * math.pi / 25.0, abs=1e-12)
+    assert len(roots(lambda x: 0.0 * x, [0.0, 1.0])) == 0
+    assert len(roots(lambda x: 2.0 + x, [0.0, 1.0])) == 0
