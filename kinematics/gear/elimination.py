@@ -1,0 +1,48 @@
+"""Linear equations with named unknowns, solved exactly over the rationals."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+
+class Elimination:
+    """Gauss–Jordan elimination over the rationals, one equation at a time: reduced rows by their pivot."""
+
+    def __init__(self, unknowns: tuple[str, ...]) -> None:
+        self._unknowns = unknowns
+        self._rows: dict[str, tuple[dict[str, Fraction], Fraction]] = {}
+
+    @property
+    def rank(self) -> int:
+        """How many independent equations there are."""
+        return len(self._rows)
+
+    def add(self, row: dict[str, Fraction], right: Fraction) -> bool:
+        """Take an equation in; False where it contradicts the ones before, which are then kept as they are."""
+        for pivot, (known, value) in self._rows.items():
+            share = row.get(pivot)
+            if share:
+                row, right = _less(row, known, share), right - share * value
+        row = {name: c for name, c in row.items() if c}
+        if not row:
+            return right == 0
+        pivot, lead = next(iter(row.items()))
+        row, right = {name: c / lead for name, c in row.items()}, right / lead
+        for other, (known, value) in self._rows.items():
+            share = known.get(pivot)
+            if share:
+                self._rows[other] = (_less(known, row, share), value - share * right)
+        self._rows[pivot] = (row, right)
+        return True
+
+    def values(self) -> dict[str, Fraction | None]:
+        """The unknowns that the equations determine; None for the others."""
+        found: dict[str, Fraction | None] = dict.fromkeys(self._unknowns)
+        for pivot, (row, right) in self._rows.items():
+            if all(name == pivot or not c for name, c in row.items()):
+                found[pivot] = right
+        return found
+
+
+def _less(row: dict[str, Fraction], other: dict[str, Fraction], share: Fraction) -> dict[str, Fraction]:
+    return {name: row.get(name, Fraction(0)) - share * other.get(name, Fraction(0)) for name in {**row, **other}}

@@ -1,0 +1,174 @@
+"""Speeds of any gear train whose axes may go round: one linear equation a mesh, solved exactly.
+
+Relative to the body that holds both axes, the carrier c, two meshing gears roll on each other (Willis 1841; Norton,
+Sec. 9.8)::
+
+    N1 (ω1 − ωc) = σ N2 (ω2 − ωc)        σ = −1 external, +1 internal mesh
+
+Glossary:
+
+body      what turns as one piece: a shaft with all the gears on it, a carrier, a ring;
+carrier   the body that holds the axes of a mesh; :data:`GROUND` for axes that stand still;
+planet    a body whose axis goes round with its carrier; nothing outside the train can hold or drive it;
+member    a body about the train's own axis: what can be driven, held or taken off;
+freedom   how many speeds can be chosen before all the others follow.
+
+Suns, rings, simple and stepped planets, several rows that share members, ordinary gears and differentials are rows of
+the same list; no arrangement has formulas of its own. Bevel gears fit in: a planet's speed is then about its own axis,
+and the two sides of a differential mesh it with opposite σ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from kinematics.errors import DimensionError
+from kinematics.gear.elimination import Elimination
+
+GROUND = "ground"
+"""The body that never turns."""
+
+EXTERNAL, INTERNAL = -1, 1
+"""Sense of a mesh σ: gears that turn against each other, or together, seen from their carrier."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Two gears in mesh: the bodies that they sit on, the carrier of their axes, their teeth and the sense σ.
+
+    Only the quotient of the tooth numbers matters to the speeds, so that a row known by its train value alone is a mesh
+    of two numbers with that quotient.
+
+    Raises
+    ------
+    DimensionError
+        For tooth numbers below 1, a sense other than ±1, or bodies that are not three different ones.
+    """
+
+    first: str
+    second: str
+    carrier: str
+    first_teeth: int
+    second_teeth: int
+    sense: int = EXTERNAL
+
+    def __post_init__(self) -> None:
+        for name, teeth in (("first_teeth", self.first_teeth), ("second_teeth", self.second_teeth)):
+            if teeth < 1:
+                raise DimensionError(name, "a count of at least 1", teeth)
+        if self.sense not in (EXTERNAL, INTERNAL):
+            raise DimensionError("sense", "+1 or −1", self.sense)
+        bodies = (self.first, self.second, self.carrier)
+        if len(set(bodies)) != 3:
+            raise DimensionError("bodies of a mesh", "three different ones", bodies)
+
+    def equation(self) -> dict[str, int]:
+        """Coefficients by body of the speed equation; its right side is 0."""
+        one, other = self.first_teeth, -self.sense * self.second_teeth
+        return {self.first: one, self.second: other, self.carrier: -one - other}
+
+
+@dataclass(frozen=True)
+class Train:
+    """The meshes of a train, and which of its bodies are planets."""
+
+    meshes: tuple[Mesh, ...]
+    planets: frozenset[str] = frozenset()
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """All bodies but the ground, in the order in which the meshes name them."""
+        named = dict.fromkeys(body for mesh in self.meshes for body in (mesh.first, mesh.second, mesh.carrier))
+        return tuple(body for body in named if body != GROUND)
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The bodies that are not planets."""
+        return tuple(body for body in self.bodies if body not in self.planets)
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """What the known speeds say of the others.
+
+    Attributes
+    ----------
+    values : dict
+        Speed of every body in the unit of the known ones; None where it does not follow from them.
+    freedom : int
+        Freedoms of the train itself, its locks included: 0 for one that cannot turn at all.
+    open : int
+        Speeds that could still be chosen.
+    contradiction : str or None
+        The first known speed, in the order given, that the train and those before it do not allow. It was left out of
+        ``values``.
+    """
+
+    values: dict[str, Fraction | None]
+    freedom: int
+    open: int
+    contradiction: str | None
+
+
+def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[tuple[str, str]] = ()) -> Speeds:
+    """Speeds of all bodies from some of them, as exact fractions.
+
+    Parameters
+    ----------
+    train : Train
+        The meshes.
+    known : mapping
+        Speeds by body, 0 for a body that is held; any number of them.
+    locked : iterable of pairs
+        Bodies that a clutch joins: they turn together.
+
+    Returns
+    -------
+    Speeds
+        With ``open > 0`` where too few speeds were known and ``contradiction`` where they disagree.
+
+    Raises
+    ------
+    DimensionError
+        For a body that the train does not have.
+
+    Examples
+    --------
+    Norton, Example 9-5: sun 40, planet 20, ring 80; arm at −200 rpm, sun at −100 rpm.
+
+    >>> train = Train((Mesh("sun", "planet", "arm", 40, 20), Mesh("planet", "ring", "arm", 20, 80, INTERNAL)))
+    >>> speeds(train, {"arm": -200, "sun": -100}).values["ring"]
+    Fraction(-250, 1)
+    """
+    bodies = train.bodies
+    system = Elimination(bodies)
+    pairs = list(locked)
+    for body in [*known, *(body for pair in pairs for body in pair)]:
+        if body not in bodies and body != GROUND:
+            raise DimensionError("body", f"one of {', '.join(bodies)}", body)
+    for mesh in train.meshes:
+        system.add({body: Fraction(c) for body, c in mesh.equation().items() if body != GROUND}, Fraction(0))
+    for one, other in pairs:
+        locking = {one: Fraction(1), other: Fraction(-1)}
+        system.add({body: c for body, c in locking.items() if body != GROUND}, Fraction(0))
+    freedom = len(bodies) - system.rank
+    contradiction = None
+    for body, speed in known.items():
+        own = {body: Fraction(1)} if body != GROUND else {}
+        if not system.add(own, Fraction(speed)) and contradiction is None:
+            contradiction = body
+    return Speeds(system.values(), freedom, len(bodies) - system.rank, contradiction)
+
+
+def speed_ratio(train: Train, driver: str, driven: str, held: Iterable[str] = ()) -> Fraction | None:
+    """Speed of the driver over that of the driven body, with other bodies held.
+
+    None where the driven body stands still, is free, or the train is locked.
+    """
+    found = speeds(train, {**dict.fromkeys(held, 0), driver: 1})
+    driven_speed = found.values[driven]
+    if found.contradiction is not None or not driven_speed:
+        return None
+    return 1 / driven_speed
