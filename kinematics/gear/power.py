@@ -194,8 +194,8 @@ def _balance(
             row[f"torque {body}"] = Fraction(1)
         if not system.add(row, Fraction(0)):
             return None
-    for body, torque in known.items():
-        if not system.add({f"torque {body}": Fraction(1)}, Fraction(torque)):
+    for body, stated in known.items():
+        if not system.add({f"torque {body}": Fraction(1)}, Fraction(stated)):
             return None
     found = system.values()
     forces = [found[name] for name in meshes]

@@ -1,0 +1,255 @@
+"""Planetary arrangements as descriptions: which gears there are, what they sit on, and which of them mesh.
+
+A new arrangement is one more row of :data:`ARRANGEMENTS`; its speeds, its coaxiality, its assembly, its synthesis and
+its drawing all follow from the row. Names of gears are the keys of ``teeth`` everywhere.
+
+Glossary:
+
+sun, ring     gears about the train's own axis, with external or internal teeth;
+planet        a body on a pin of a carrier, with one gear (simple) or several (stepped);
+planet set    planets of one carrier that hang together; a train has ``planets`` copies of each set around its axis;
+plane         gears of one plane lie in front of each other and must not touch unless they mesh;
+far side      in a bevel differential the side gear beyond the planets, which turns against the near one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from kinematics.errors import DimensionError
+from kinematics.gear.planetary import EXTERNAL, INTERNAL, Mesh, Train
+
+
+@dataclass(frozen=True)
+class GearPlace:
+    """A gear of an arrangement: its body, the planes that it spans, and what its teeth are."""
+
+    name: str
+    body: str
+    planes: tuple[int, ...] = (1,)
+    internal: bool = False
+    far: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Arrangement:
+    """A planetary arrangement.
+
+    Attributes
+    ----------
+    gears : tuple of GearPlace
+        In the order in which tooth numbers are listed.
+    meshes : tuple of pairs of gear names
+        Gears in mesh.
+    carriers : mapping
+        The carrier of every planet.
+    bevel : bool
+        Whether the planets' axes cross the train's axis at a right angle.
+    """
+
+    name: str
+    title: str
+    gears: tuple[GearPlace, ...]
+    meshes: tuple[tuple[str, str], ...]
+    carriers: Mapping[str, str]
+    bevel: bool = False
+    places: dict[str, GearPlace] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "places", {gear.name: gear for gear in self.gears})
+
+    @cached_property
+    def gear_names(self) -> tuple[str, ...]:
+        """Names of the gears."""
+        return tuple(self.places)
+
+    @cached_property
+    def members(self) -> tuple[str, ...]:
+        """Bodies about the train's axis: what can be driven, held or taken off; carriers last."""
+        central = [gear.body for gear in self.gears if gear.body not in self.carriers]
+        return tuple(dict.fromkeys([*central, *self.carriers.values()]))
+
+    @cached_property
+    def planet_sets(self) -> tuple[tuple[str, ...], ...]:
+        """Planets that hang together by meshes between them, set by set."""
+        sets = [[planet] for planet in self.carriers]
+        for one, other in self.meshes:
+            bodies = {self.places[one].body, self.places[other].body}
+            if bodies <= self.carriers.keys():
+                joined = [members for members in sets if bodies & set(members)]
+                sets = [members for members in sets if members not in joined]
+                sets.append([planet for members in joined for planet in members])
+        return tuple(tuple(members) for members in sets)
+
+    def is_planet(self, gear: str) -> bool:
+        """Whether a gear goes round on a pin."""
+        return self.places[gear].body in self.carriers
+
+    def sense(self, one: str, other: str) -> int:
+        """Sense of a mesh: internal teeth, and the far side of a bevel differential, turn the same way."""
+        gears = self.places[one], self.places[other]
+        return INTERNAL if any(gear.internal or gear.far for gear in gears) else EXTERNAL
+
+    def meshing(self, gear: str) -> tuple[str, ...]:
+        """The gears that a gear meshes with."""
+        return tuple(two if gear == one else one for one, two in self.meshes if gear in (one, two))
+
+    def train(self, teeth: Mapping[str, int]) -> Train:
+        """The speed equations for given tooth numbers.
+
+        Raises
+        ------
+        DimensionError
+            Where ``teeth`` does not name exactly the gears of the arrangement.
+        """
+        if set(teeth) != set(self.places):
+            raise DimensionError("teeth", f"for {', '.join(self.places)}", sorted(teeth))
+        meshes = []
+        for one, other in self.meshes:
+            bodies = self.places[one].body, self.places[other].body
+            carrier = next(self.carriers[body] for body in bodies if body in self.carriers)
+            meshes.append(Mesh(*bodies, carrier, teeth[one], teeth[other], self.sense(one, other)))
+        return Train(tuple(meshes), frozenset(self.carriers))
+
+
+def _sun(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
+    return GearPlace(name, body or name, (plane,))
+
+
+def _ring(name: str, plane: int = 1, body: str | None = None) -> GearPlace:
+    return GearPlace(name, body or name, (plane,), internal=True)
+
+
+def _planet(name: str, *planes: int, body: str | None = None) -> GearPlace:
+    return GearPlace(name, body or name, planes or (1,))
+
+
+ARRANGEMENTS: dict[str, Arrangement] = {
+    row.name: row
+    for row in (
+        Arrangement(
+            "simple",
+            "sun, planets and ring in one plane",
+            (_sun("sun"), _planet("planet"), _ring("ring")),
+            (("sun", "planet"), ("planet", "ring")),
+            {"planet": "carrier"},
+        ),
+        Arrangement(
+            "double_planet",
+            "sun and ring joined by pairs of planets, so that both turn the same way past the carrier",
+            (_sun("sun"), _planet("planet_1"), _planet("planet_2"), _ring("ring")),
+            (("sun", "planet_1"), ("planet_1", "planet_2"), ("planet_2", "ring")),
+            {"planet_1": "carrier", "planet_2": "carrier"},
+        ),
+        Arrangement(
+            "stepped",
+            "stepped planets between a sun and a ring",
+            (
+                _sun("sun"),
+                _planet("planet_1", 1, body="planet"),
+                _planet("planet_2", 2, body="planet"),
+                _ring("ring", 2),
+            ),
+            (("sun", "planet_1"), ("planet_2", "ring")),
+            {"planet": "carrier"},
+        ),
+        Arrangement(
+            "stepped_suns",
+            "stepped planets between two suns",
+            (
+                _sun("sun_1"),
+                _planet("planet_1", 1, body="planet"),
+                _planet("planet_2", 2, body="planet"),
+                _sun("sun_2", 2),
+            ),
+            (("sun_1", "planet_1"), ("planet_2", "sun_2")),
+            {"planet": "carrier"},
+        ),
+        Arrangement(
+            "stepped_rings",
+            "stepped planets between two rings",
+            (
+                _ring("ring_1"),
+                _planet("planet_1", 1, body="planet"),
+                _planet("planet_2", 2, body="planet"),
+                _ring("ring_2", 2),
+            ),
+            (("planet_1", "ring_1"), ("planet_2", "ring_2")),
+            {"planet": "carrier"},
+        ),
+        Arrangement(
+            "wolfrom",
+            "a simple set whose planets are stepped to drive a second ring; the carrier is free",
+            (
+                _sun("sun"),
+                _planet("planet_1", 1, body="planet"),
+                _ring("ring_1"),
+                _planet("planet_2", 2, body="planet"),
+                _ring("ring_2", 2),
+            ),
+            (("sun", "planet_1"), ("planet_1", "ring_1"), ("planet_2", "ring_2")),
+            {"planet": "carrier"},
+        ),
+        Arrangement(
+            "ravigneaux",
+            "two suns and a ring on one carrier: the small sun drives short planets, the large one long planets",
+            (
+                _sun("sun_small", 1),
+                _planet("planet_short", 1),
+                _planet("planet_long", 1, 2),
+                _sun("sun_large", 2),
+                _ring("ring", 2),
+            ),
+            (
+                ("sun_small", "planet_short"),
+                ("planet_short", "planet_long"),
+                ("sun_large", "planet_long"),
+                ("planet_long", "ring"),
+            ),
+            {"planet_short": "carrier", "planet_long": "carrier"},
+        ),
+        Arrangement(
+            "two_stage",
+            "two simple sets in line: the first carrier is the second sun, and the rings are one body",
+            (
+                _sun("sun_1"),
+                _planet("planet_1"),
+                _ring("ring_1", 1, "ring"),
+                _sun("sun_2", 2, "carrier_1"),
+                _planet("planet_2", 2),
+                _ring("ring_2", 2, "ring"),
+            ),
+            (("sun_1", "planet_1"), ("planet_1", "ring_1"), ("sun_2", "planet_2"), ("planet_2", "ring_2")),
+            {"planet_1": "carrier_1", "planet_2": "carrier_2"},
+        ),
+        Arrangement(
+            "simpson",
+            "two simple sets with a common sun; the first carrier and the second ring are one body",
+            (
+                _sun("sun_1", 1, "sun"),
+                _planet("planet_1"),
+                _ring("ring_1"),
+                _sun("sun_2", 2, "sun"),
+                _planet("planet_2", 2),
+                _ring("ring_2", 2, "carrier_1"),
+            ),
+            (("sun_1", "planet_1"), ("planet_1", "ring_1"), ("sun_2", "planet_2"), ("planet_2", "ring_2")),
+            {"planet_1": "carrier_1", "planet_2": "carrier_2"},
+        ),
+        Arrangement(
+            "bevel_differential",
+            "two side gears and bevel planets between them",
+            (
+                GearPlace("side_1", "side_1", (1,)),
+                GearPlace("planet", "planet", (2,)),
+                GearPlace("side_2", "side_2", (3,), far=True),
+            ),
+            (("side_1", "planet"), ("planet", "side_2")),
+            {"planet": "carrier"},
+            bevel=True,
+        ),
+    )
+}
+"""Every known arrangement by its name."""

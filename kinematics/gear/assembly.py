@@ -1,0 +1,222 @@
+"""Whether the gears of a planetary arrangement fit together: coaxiality, phases of the teeth, room between gears.
+
+Lengths are in modules; places around the train are exact fractions of a turn.
+
+Phases. A planet whose pin stands at θ turns, itself turned by α, meshes there only where a tooth meets a space. With
+β = θ − α and the first planet at θ = α = 0, a gear of z teeth on the planet demands (all modulo 1)::
+
+    z β ≡ −S θ    against a sun of S teeth (or the near side of a bevel differential)
+    z β ≡ +R θ    against a ring of R teeth (or the far side)
+    z₁ β₁ + z₂ β₂ ≡ 0    against another planet
+
+One β must serve all gears of a body: that is the assembly condition, (S + R) θ whole for a simple set (Norton, Sec.
+9.8; Müller, Die Umlaufgetriebe, 2nd ed. 1998, Sec. 35, for stepped planets).
+"""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from kinematics.gear.arrangements import Arrangement
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM
+
+
+class Gap(NamedTuple):
+    """Room between two gears of one plane that do not mesh, in modules; negative where they overlap."""
+
+    one: str
+    other: str
+    room: float
+
+
+def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, list[Fraction]]:
+    """For each planet the distances from the axis that its suns and rings ask of its pin, in modules.
+
+    Coaxial: all of one planet are equal. For a bevel differential they are the pitch radii of the side gears.
+    """
+    found: dict[str, list[Fraction]] = {planet: [] for planet in arrangement.carriers}
+    for planet, own, central in _central_meshes(arrangement):
+        if arrangement.bevel:
+            twice = teeth[central]
+        elif arrangement.places[central].internal:
+            twice = teeth[central] - teeth[own]
+        else:
+            twice = teeth[central] + teeth[own]
+        found[planet].append(Fraction(twice, 2))
+    return found
+
+
+def is_coaxial(arrangement: Arrangement, teeth: Mapping[str, int]) -> bool:
+    """Whether every pin has one distance from the axis, a positive one, and meshing planets reach each other."""
+    return pins(arrangement, teeth) is not None
+
+
+def pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, complex] | None:
+    """Pins of the first copy of every planet, in modules; the first of each set on the positive real axis.
+
+    None where the gears are not coaxial or two meshing planets cannot reach each other.
+    """
+    distances = {planet: set(asked) for planet, asked in pin_distances(arrangement, teeth).items()}
+    if any(len(asked) != 1 or min(asked) <= 0 for asked in distances.values()):
+        return None
+    radius = {planet: float(min(asked)) for planet, asked in distances.items()}
+    found: dict[str, complex] = {}
+    for members in arrangement.planet_sets:
+        found[members[0]] = complex(radius[members[0]])
+        for planet in members[1:]:
+            placed = _beside(arrangement, teeth, radius, found, planet)
+            if placed is None:
+                return None
+            found[planet] = placed
+    return found
+
+
+def _beside(
+    arrangement: Arrangement,
+    teeth: Mapping[str, int],
+    radius: Mapping[str, float],
+    placed: Mapping[str, complex],
+    planet: str,
+) -> complex | None:
+    """Pin of a planet that meshes with one already placed, ahead of it around the axis."""
+    for one, other in arrangement.meshes:
+        bodies = {arrangement.places[gear].body: gear for gear in (one, other)}
+        neighbour = next((body for body in bodies if body in placed and planet in bodies), None)
+        if neighbour is not None:
+            apart = 0.5 * (teeth[one] + teeth[other])
+            near, far = radius[neighbour], radius[planet]
+            cosine = (near * near + far * far - apart * apart) / (2.0 * near * far)
+            if abs(cosine) > 1.0:
+                return None
+            return cmath.rect(far, cmath.phase(placed[neighbour]) + math.acos(cosine))
+    raise AssertionError("the planets of a set hang together by meshes")
+
+
+def fits_at(arrangement: Arrangement, teeth: Mapping[str, int], members: Sequence[str], turn: Fraction) -> bool:
+    """Whether a further copy of a planet set fits between the gears, ``turn`` of a full turn after the first.
+
+    Decided by trying every tooth of every planet, in exact arithmetic.
+    """
+    demands: dict[str, list[tuple[int, Fraction]]] = {planet: [] for planet in members}
+    for planet, own, central in _central_meshes(arrangement):
+        if planet in demands:
+            sense = arrangement.sense(own, central)
+            demands[planet].append((teeth[own], sense * teeth[central] * turn))
+    between = [
+        (arrangement.places[one].body, teeth[one], arrangement.places[other].body, teeth[other])
+        for one, other in arrangement.meshes
+        if {arrangement.places[one].body, arrangement.places[other].body} <= set(members)
+    ]
+    carried = [gear.body for gear in arrangement.gears]
+    choices = []
+    for planet in members:
+        (count, phase), *others = demands[planet]
+        # Of a planet with one gear only z β counts, the same for every tooth.
+        tried = count if carried.count(planet) > 1 else 1
+        turned = [(phase + tooth) / count for tooth in range(tried)]
+        choices.append([beta for beta in turned if all(_whole(z * beta - demand) for z, demand in others)])
+    if not between:
+        return all(choices)
+    for combination in itertools.product(*choices):
+        beta = dict(zip(members, combination, strict=True))
+        if all(_whole(z_one * beta[one] + z_two * beta[two]) for one, z_one, two, z_two in between):
+            return True
+    return False
+
+
+def _whole(value: Fraction) -> bool:
+    return value.denominator == 1
+
+
+def gaps(
+    arrangement: Arrangement,
+    teeth: Mapping[str, int],
+    turns: Mapping[str, Sequence[Fraction]],
+    addendum: float = FULL_DEPTH_ADDENDUM,
+) -> list[Gap]:
+    """Room between all gears of a plane that do not mesh, copies of planets included, in modules.
+
+    Parameters
+    ----------
+    arrangement, teeth
+        Coaxial gears.
+    turns : mapping
+        Places of the copies of each planet's set, in turns from the first.
+    addendum : float
+        Tip circles lie this many modules beyond the pitch circles, also those of rings whose teeth are shorter.
+
+    Returns
+    -------
+    list of Gap
+        The least for each pair of gear names; empty where nothing can touch.
+    """
+    placed = pins(arrangement, teeth)
+    assert placed is not None
+    if arrangement.bevel:
+        return _bevel_gaps(arrangement, teeth, turns, addendum)
+    rooms: dict[tuple[str, str], float] = {}
+
+    def note(one: str, other: str, room: float) -> None:
+        rooms[one, other] = min(room, rooms.get((one, other), math.inf))
+
+    tip = {gear: 0.5 * teeth[gear] + addendum for gear in arrangement.gear_names}
+    moving = [gear for gear in arrangement.gear_names if arrangement.is_planet(gear)]
+    for k, one in enumerate(moving):
+        body = arrangement.places[one].body
+        for central in arrangement.gear_names:
+            if central in moving or not _share_plane(arrangement, one, central) or one in arrangement.meshing(central):
+                continue
+            ring_tip = 0.5 * teeth[central] - addendum
+            reach = abs(placed[body]) + tip[one]
+            internal = arrangement.places[central].internal
+            note(one, central, ring_tip - reach if internal else abs(placed[body]) - tip[one] - tip[central])
+        for other in moving[k:]:
+            if not _share_plane(arrangement, one, other):
+                continue
+            mate = arrangement.places[other].body
+            for here, there in itertools.product(turns[body], turns[mate]):
+                same_copy = here == there
+                if same_copy and (body == mate or one in arrangement.meshing(other)):
+                    continue
+                ahead = cmath.exp(2j * math.pi * float(there - here))
+                note(one, other, abs(placed[mate] * ahead - placed[body]) - tip[one] - tip[other])
+    return [Gap(*pair, room) for pair, room in rooms.items()]
+
+
+def _bevel_gaps(
+    arrangement: Arrangement, teeth: Mapping[str, int], turns: Mapping[str, Sequence[Fraction]], addendum: float
+) -> list[Gap]:
+    """Room between bevel planets where their large ends come nearest: in the planes that halve the angles between pins.
+
+    The pitch circle of a planet's large end lies at the side gear's pitch radius from the axis.
+    """
+    found = []
+    for planet, side, *_ in ((own, central) for _, own, central in _central_meshes(arrangement)):
+        cone = math.atan2(teeth[planet], teeth[side])
+        places = sorted(turns[arrangement.places[planet].body])
+        between = [float(b - a) for a, b in zip(places, [*places[1:], places[0] + 1], strict=True) if len(places) > 1]
+        for share in between:
+            if share < 0.5:
+                half = 0.5 * teeth[side] * math.tan(math.pi * share)
+                found.append(Gap(planet, planet, 2.0 * (half - 0.5 * teeth[planet] - addendum * math.cos(cone))))
+        break
+    return found
+
+
+def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
+    """(planet, its gear, the sun or ring) for every mesh between a planet and a gear about the axis."""
+    found = []
+    for one, other in arrangement.meshes:
+        for own, central in ((one, other), (other, one)):
+            if arrangement.is_planet(own) and not arrangement.is_planet(central):
+                found.append((arrangement.places[own].body, own, central))
+    return found
+
+
+def _share_plane(arrangement: Arrangement, one: str, other: str) -> bool:
+    return bool(set(arrangement.places[one].planes) & set(arrangement.places[other].planes))
