@@ -78,11 +78,11 @@ def stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real, Real
     points, values : float, shape (m,)
         At the breaks the limits from within each piece.
     """
-    middle, half, series, owner = _fit(function, np.asarray(breaks, dtype=np.float64))
+    low, high, series, owner = _fit(function, np.asarray(breaks, dtype=np.float64))
     signs = (-1.0) ** np.arange(DEGREE + 1)
     row, root = _roots(_differentiated(series))
-    inner = middle[row] + half[row] * root
-    points = np.concatenate([middle - half, inner, middle + half])
+    inner = _within(low[row], high[row], root)
+    points = np.concatenate([low, inner, high])
     at_inner = (series[row] * np.cos(np.arange(DEGREE + 1) * np.arccos(root)[:, None])).sum(axis=1)
     values = np.concatenate([series @ signs, at_inner, series.sum(axis=1)])
     order = np.lexsort((np.concatenate([owner, owner[row], owner]), points))
@@ -94,15 +94,15 @@ def roots(function: Function, breaks: ArrayLike) -> Real:
 
     Where the function vanishes on a whole piece nothing is reported for it. A double root may appear twice.
     """
-    middle, half, series, _ = _fit(function, np.asarray(breaks, dtype=np.float64))
+    low, high, series, _ = _fit(function, np.asarray(breaks, dtype=np.float64))
     row, root = _roots(series)
-    points = middle[row] + half[row] * root
+    points = _within(low[row], high[row], root)
     size = np.abs(series).max(initial=0.0)
     return np.sort(points[np.abs(function(points)) <= 1e-9 * size]) if len(points) else points
 
 
 def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np.int64]]:
-    """Middles, half lengths and Chebyshev series of pieces so small that the series hold to rounding."""
+    """Ends and Chebyshev series of parts so small that the series hold to rounding, and the piece each is part of."""
     low, high = breaks[:-1], breaks[1:]
     owner = np.arange(len(low))
     done: list[tuple[Real, Real, Real, NDArray[np.int64]]] = []
@@ -117,15 +117,19 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
         good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size
         if step == HALVINGS:
             good[:] = True
-        done.append((middle[good], half[good], series[good], owner[good]))
+        done.append((low[good], high[good], series[good], owner[good]))
         bad = ~good
         if not bad.any():
             break
-        low = np.concatenate([low[bad], middle[bad]])
-        high = np.concatenate([middle[bad], high[bad]])
+        low, high = np.concatenate([low[bad], middle[bad]]), np.concatenate([middle[bad], high[bad]])
         owner = np.concatenate([owner[bad], owner[bad]])
-    middles, halves, fits, owners = (np.concatenate(parts) for parts in zip(*done, strict=True))
-    return middles, halves, fits, owners
+    lows, highs, fits, owners = (np.concatenate(parts) for parts in zip(*done, strict=True))
+    return lows, highs, fits, owners
+
+
+def _within(low: Real, high: Real, root: Real) -> Real:
+    """Points of pieces from roots in [−1, 1]; rounding does not carry them over an end."""
+    return np.clip(0.5 * (low + high) + 0.5 * (high - low) * root, low, high)
 
 
 def _differentiated(series: Real) -> Real:

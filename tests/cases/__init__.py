@@ -102,7 +102,7 @@ def _gear_case(row: dict[str, Any]) -> Case:
 
 def _cam_case(row: dict[str, Any]) -> Case:
     inputs = dict(row["inputs"])
-    values = row["oracle"] if row["status"] == "ocr_suspect" else row["expected"]
+    values = row.get("oracle", row["expected"])
     expected = {}
     for name, value in values.items():
         if isinstance(value, list):

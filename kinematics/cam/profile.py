@@ -1,0 +1,252 @@
+"""The radial cam that gives a follower its program: pitch curve, profile, cutter path and what they must satisfy.
+
+Everything is in the cam's own frame, see :mod:`follower`. The curve at a distance along the outward normal of the pitch
+curve is the path of a roller or cutter of another size: −roller_radius gives the profile, cutter_radius − roller_radius
+the cutter's centre. Where the pitch curve's radius of curvature is convex and not larger than the roller's, the profile
+has a cusp or is undercut (Norton §8.7); a flat face asks for ρ = h + d²h/dα² > 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.extremes import Extremes, extremes
+from kinematics.cam.follower import (
+    Flat,
+    Follower,
+    OscillatingFlat,
+    OscillatingRoller,
+    TranslatingFlat,
+    TranslatingRoller,
+)
+from kinematics.cam.program import TURN, Program
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+Rotation = Literal["ccw", "cw"]
+
+
+@dataclass(frozen=True, eq=False)
+class Cam:
+    """A cam: its program, its follower and the sense in which it turns.
+
+    Raises
+    ------
+    DimensionError
+        A program that carries the follower over the cam's centre or the arm over the line of centres, or turns a flat
+        face as fast as the cam.
+    """
+
+    program: Program
+    follower: Follower
+    rotation: Rotation = "ccw"
+
+    def __post_init__(self) -> None:
+        if self.rotation not in ("ccw", "cw"):
+            raise DimensionError("rotation", "ccw or cw", self.rotation)
+        s, v = self.program.peaks[:2]
+        low, high = self.follower.span
+        if not low < s.least <= s.greatest < high:
+            raise DimensionError("displacement", f"between {low} and {high} for this follower", (s.least, s.greatest))
+        if isinstance(self.follower, OscillatingFlat):
+            rate = v.greatest if self.follower.sense == 1 else -v.least
+            if not rate < 1.0:
+                raise DimensionError("velocity of a flat face's arm", "less than the cam's (1 rad/rad)", rate)
+
+    @property
+    def size(self) -> float:
+        """Prime radius of a roller's cam, base radius of a flat face's: the unit of its lengths."""
+        follower = self.follower
+        if isinstance(follower, TranslatingFlat | OscillatingFlat):
+            return follower.base_radius
+        return follower.prime_radius
+
+    @property
+    def roller_radius(self) -> float:
+        """0 for a flat face."""
+        follower = self.follower
+        return follower.roller_radius if isinstance(follower, TranslatingRoller | OscillatingRoller) else 0.0
+
+    def offset_curve(self, angle: ArrayLike, distance: float = 0.0) -> Complex:
+        """Points at a distance along the outward normal: of the pitch curve for a roller, of the profile for a face.
+
+        Parameters
+        ----------
+        angle : array_like
+            Cam angles at which the follower stands there.
+        distance : float
+            0 gives the curve itself.
+        """
+        theta = np.asarray(angle, dtype=np.float64)
+        z, normal = self._curve(theta)
+        return self._mirrored(z + distance * normal)
+
+    def pitch_curve(self, angle: ArrayLike) -> Complex:
+        """Centres of the roller; for a flat face the contact points, which are the profile."""
+        return self.offset_curve(angle)
+
+    def profile(self, angle: ArrayLike) -> Complex:
+        """Contact points."""
+        return self.offset_curve(angle, -self.roller_radius)
+
+    def outer_wall(self, angle: ArrayLike) -> Complex:
+        """The other wall of the groove of a form-closed cam, on the far side of the roller."""
+        return self.offset_curve(angle, self.roller_radius)
+
+    def cutter_path(self, angle: ArrayLike, cutter_radius: float) -> Complex:
+        """Centres of a cutter or grinding wheel that touches the profile where the follower does."""
+        return self.offset_curve(angle, cutter_radius - self.roller_radius)
+
+    def normal(self, angle: ArrayLike) -> Complex:
+        """Outward unit normals at the contact points."""
+        return self._mirrored(self._curve(np.asarray(angle, dtype=np.float64))[1])
+
+    def pressure_angle(self, angle: ArrayLike) -> Real:
+        """Between the contact force and the follower's motion, radians; positive in a rise without offset."""
+        return self.follower.pressure_angle(self.program.motion(angle))
+
+    def pitch_curvature(self, angle: ArrayLike) -> Real:
+        """Curvature of the pitch curve, positive where convex; for a flat face that of the profile."""
+        follower, motion = self.follower, self.program.motion(angle)
+        if isinstance(follower, TranslatingFlat | OscillatingFlat):
+            return _inverse(follower.face(motion).radius)
+        return follower.pitch_curvature(motion)
+
+    def profile_radius(self, angle: ArrayLike) -> Real:
+        """Radius of curvature of the profile: positive convex, negative concave, infinite at an inflection.
+
+        Under a roller it is ρ − roller_radius with ρ of the pitch curve; where ρ is positive and that is not, the
+        profile is undercut.
+        """
+        return _inverse(self.pitch_curvature(angle)) - self.roller_radius
+
+    @cached_property
+    def pressure_angle_extremes(self) -> Extremes:
+        """Exact extremes of the pressure angle, radians."""
+        return extremes(
+            lambda angle: self.follower.pressure_angle(self.program.pieces.motion(angle)), self.program.breaks
+        )
+
+    @cached_property
+    def pitch_curvature_extremes(self) -> Extremes:
+        """Exact extremes of a roller's pitch curvature: the greatest belongs to the least convex radius."""
+        follower = self.follower
+        if isinstance(follower, TranslatingFlat | OscillatingFlat):
+            raise DimensionError("follower", "a roller; a flat face has radius_extremes", type(follower).__name__)
+        return extremes(lambda angle: follower.pitch_curvature(self.program.pieces.motion(angle)), self.program.breaks)
+
+    @cached_property
+    def radius_extremes(self) -> Extremes:
+        """Exact extremes of the profile's radius of curvature under a flat face; not above zero is undercut."""
+        flat = self._flat()
+        return extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
+
+    @cached_property
+    def reach_extremes(self) -> Extremes:
+        """Exact extremes of the contact's place on a flat face: its width is their difference."""
+        flat = self._flat()
+        return extremes(lambda angle: flat.reach(self.program.pieces.motion(angle)), self.program.breaks)
+
+    @cached_property
+    def least_convex_radius(self) -> float:
+        """Smallest radius of curvature of the convex parts: of the pitch curve, or of a flat face's profile.
+
+        Infinite where a roller's pitch curve is nowhere convex, which no closed one is.
+        """
+        if isinstance(self.follower, TranslatingFlat | OscillatingFlat):
+            return self.radius_extremes.least
+        greatest = self.pitch_curvature_extremes.greatest
+        return 1.0 / greatest if greatest > 0.0 else math.inf
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the profile has a cusp or runs back on itself somewhere: no cam can give this motion."""
+        return self.least_convex_radius <= self.roller_radius * (1.0 + POINTED)
+
+    @cached_property
+    def largest_cutter(self) -> float:
+        """Radius of the largest cutter that reaches every concave part; infinite where the profile is convex."""
+        if isinstance(self.follower, TranslatingFlat | OscillatingFlat):
+            return math.inf
+        least = self.pitch_curvature_extremes.least
+        return -1.0 / least + self.roller_radius if least < 0.0 else math.inf
+
+    def _flat(self) -> Flat:
+        if not isinstance(self.follower, TranslatingFlat | OscillatingFlat):
+            raise DimensionError("follower", "flat-faced", type(self.follower).__name__)
+        return self.follower
+
+    def _curve(self, theta: Real) -> tuple[Complex, Complex]:
+        """Trace or contact points and outward normals, for a cam that turns clockwise."""
+        motion, follower = self.program.motion(theta), self.follower
+        if isinstance(follower, TranslatingFlat | OscillatingFlat):
+            face = follower.face(motion)
+            normal = np.exp(1j * (theta + face.normal))
+            return normal * (face.h + 1j * face.h1), normal
+        turn, trace = np.exp(1j * theta), follower.trace(motion)
+        tangent = trace.p1 + 1j * trace.p
+        return turn * trace.p, -1j * turn * tangent / np.abs(tangent)
+
+    def _mirrored(self, points: Complex) -> Complex:
+        return np.conj(points) if self.rotation == "ccw" else points
+
+
+POINTED = 1e-9
+"""Share of the roller radius by which the pitch curve's must be larger: at equality the profile has a cusp."""
+
+
+def even_angles(count: int) -> Real:
+    """Cam angles of equal steps once around, 0 included, a turn not."""
+    return np.arange(count, dtype=np.float64) * (TURN / count)
+
+
+def chordal_angles(cam: Cam, tolerance: float, distance: float = 0.0) -> Real:
+    """Cam angles such that chords between an offset curve's points stay within a tolerance of it.
+
+    The sagitta of a chord is measured at its middle angle and halved steps are taken until it is small enough; joints
+    of the program are always among the angles.
+
+    Parameters
+    ----------
+    tolerance : float
+        Greatest sagitta, a length; at least 1e-9 of the cam's size.
+    distance : float
+        Which offset curve: 0 the pitch curve, −roller_radius the profile.
+    """
+    if not (math.isfinite(tolerance) and tolerance >= 1e-9 * cam.size):
+        raise DimensionError("chordal tolerance", f"at least {1e-9 * cam.size}", tolerance)
+    angles: Real = np.unique(np.concatenate([cam.program.breaks, even_angles(FEWEST_CHORDS), [TURN]]))
+    while True:
+        low, high = angles[:-1], angles[1:]
+        middle = 0.5 * (low + high)
+        a, m, b = (cam.offset_curve(at, distance) for at in (low, middle, high))
+        chord = b - a
+        length = np.abs(chord)
+        off = np.abs(((m - a) * np.conj(chord)).imag) / np.where(length > 0.0, length, 1.0)
+        sagitta = np.where(length > 1e-12 * cam.size, off, np.abs(m - a))
+        coarse = (sagitta > tolerance) & (high - low > SHORTEST_STEP)
+        if not coarse.any():
+            return angles[:-1]
+        angles = np.sort(np.concatenate([angles, middle[coarse]]))
+
+
+FEWEST_CHORDS = 24
+"""Chords that a chordal path starts from, so that a bend and its counterbend are not taken for a straight line."""
+
+SHORTEST_STEP = 1e-7
+"""Radians below which a chord is not halved any more: the curve has a corner there."""
+
+
+def _inverse(values: Real) -> Real:
+    """1/x with infinity for zero."""
+    infinite: Real = np.full(values.shape, np.inf)
+    np.divide(1.0, values, out=infinite, where=values != 0.0)
+    return infinite
