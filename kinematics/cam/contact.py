@@ -1,0 +1,396 @@
+"""What a finished profile does: the follower is laid against it, from its points alone.
+
+Nothing here knows the program or how the profile was made. A curve of the fifth degree runs through each six
+neighbouring points, over the length of the chords. At each cam angle every point of the curve that the follower could
+touch asks for a displacement; the follower stands at the greatest of them, because at any smaller one the cam would
+be inside it. So a point elsewhere on the cam that is in the way is found, and so is a hollow too narrow for the roller.
+With P the point in the ground's frame, C the pivot's distance, D = |P − C| and β the angle of P at the pivot:
+
+    translating roller    x = P_x + √(r² − (P_y − e)²)
+    oscillating roller    ψ = β + arccos((L² + D² − r²)/(2 L D))
+    translating face      x = P_x
+    oscillating face      ψ = β + arcsin(f/D)
+
+The pressure angle is measured between the curve's normal and the motion of the follower's point there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
+from kinematics.cam.profile import Rotation
+from kinematics.errors import DimensionError, ShapeError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FEWEST = 16
+"""Points of the smallest profile that can be called a curve."""
+
+STENCIL = 6
+"""Points that a local curve runs through: its own two and two on each side."""
+
+NARROW = 4.0
+"""Chords that a roller's radius must span, so that points of the profile lie on both sides of its contact."""
+
+CUSP = math.pi / 3.0
+"""Turn between neighbouring chords that no sound profile shows: at a cusp the next chord runs back."""
+
+TRANSLATING_ROLLER, OSCILLATING_ROLLER, TRANSLATING_FACE, OSCILLATING_FACE = range(4)
+
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+NARROWINGS = 42
+"""Steps of the golden section: 1e-9 of the chord, whose square is below rounding."""
+
+
+class ContactMotion(NamedTuple):
+    """Where the follower stands at each cam angle; NaN where it touches nothing.
+
+    ``s`` its displacement, ``point`` the contact in the cam's frame, ``pressure_angle`` without its sign and
+    ``radius`` of curvature of the profile there, positive where convex.
+    """
+
+    s: Real
+    point: Complex
+    pressure_angle: Real
+    radius: Real
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Whether there is a contact."""
+        return np.isfinite(self.s)
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """A closed profile through points in the cam's frame.
+
+    Parameters
+    ----------
+    points : complex, shape (n,)
+        In order around the cam, either way, the first not repeated at the end.
+
+    Raises
+    ------
+    ShapeError
+        Fewer than 16 points.
+    DimensionError
+        A point that is not finite, or two neighbours at one place.
+    """
+
+    points: Complex
+
+    def __post_init__(self) -> None:
+        if self.points.ndim != 1 or len(self.points) < FEWEST:
+            raise ShapeError(points=self.points.shape)
+        if not np.isfinite(self.points).all() or not (self._chords > 0.0).all():
+            raise DimensionError("profile points", "finite and different from their neighbours", self.points)
+
+    @cached_property
+    def _chords(self) -> Real:
+        return np.asarray(np.abs(np.roll(self.points, -1) - self.points))
+
+    @cached_property
+    def _curves(self) -> Complex:
+        """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
+        n = len(self.points)
+        index = (np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)) % n
+        along = np.zeros((n, STENCIL))
+        chords = self._chords
+        for k in range(STENCIL):
+            for step in range(2, k) if k > 2 else range(k, 2):
+                sign = 1.0 if k > 2 else -1.0
+                along[:, k] += sign * chords[index[:, step]]
+        along /= chords[:, None]
+        powers = along[:, :, None] ** np.arange(STENCIL)
+        values = self.points[index]
+        solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
+        return np.asarray(solved[..., 0] + 1j * solved[..., 1])
+
+    @property
+    def turns_ccw(self) -> bool:
+        """Whether the points run counter-clockwise."""
+        following = np.roll(self.points, -1)
+        return bool((np.conj(self.points) * following).imag.sum() > 0.0)
+
+    def curvature(self, per_chord: int = 4) -> Real:
+        """Curvature of the profile at equal shares of every chord, positive where convex; shape (n · per_chord,)."""
+        share = np.arange(per_chord) / per_chord
+        first, second = _derivatives(self._curves[:, None, :], share)
+        sign = 1.0 if self.turns_ccw else -1.0
+        return np.asarray(sign * (np.conj(first) * second).imag / np.abs(first) ** 3).reshape(-1)
+
+    @cached_property
+    def sharpest_turn(self) -> float:
+        """Greatest angle between neighbouring chords, radians."""
+        chord = np.roll(self.points, -1) - self.points
+        return float(np.abs(np.angle(chord * np.conj(np.roll(chord, 1)))).max())
+
+    @property
+    def cusped(self) -> bool:
+        """Whether the profile runs back on itself at a point, as an undercut one does."""
+        return self.sharpest_turn > CUSP
+
+    @cached_property
+    def crossings(self) -> Complex:
+        """Points where the profile crosses itself; none on a sound cam."""
+        p = self.points
+        found = np.empty(len(p), dtype=np.complex128)
+        return found[: _crossings(p, found)]
+
+    def follow(self, follower: Follower, angle: ArrayLike, rotation: Rotation = "ccw") -> ContactMotion:
+        """Lay a follower against the profile.
+
+        Parameters
+        ----------
+        follower : Follower
+            Its dimensions; the prime or base radius says where its displacement is zero.
+        angle : array_like
+            Cam angles of any shape, as :class:`~kinematics.cam.profile.Cam` counts them.
+        rotation : {"ccw", "cw"}
+            The way the cam turns.
+
+        Raises
+        ------
+        DimensionError
+            A roller so small that it fits between the points, other than a knife edge.
+        """
+        theta = np.asarray(angle, dtype=np.float64)
+        kind, sizes, zero = _dimensions(follower)
+        mirrored = rotation == "ccw"
+        curves = np.conj(self._curves) if mirrored else self._curves
+        flipped = getattr(follower, "sense", 1) == -1
+        roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
+        if roller and 0.0 < sizes[2] < NARROW * self._chords.max():
+            raise DimensionError("roller radius", f"0 or at least {NARROW * self._chords.max()}", sizes[2])
+        values: Real = np.empty(theta.size)
+        shares: Real = np.empty(theta.size)
+        pieces = np.empty(theta.size, dtype=np.int64)
+        flat = np.ascontiguousarray(theta.reshape(-1))
+        if roller and sizes[2] == 0.0:
+            _edge(np.ascontiguousarray(curves), flat, kind, sizes, flipped, values, pieces, shares)
+        else:
+            _lay(np.ascontiguousarray(curves), flat, kind, sizes, flipped, values, pieces, shares)
+        values = values.reshape(theta.shape)
+        local, share = curves[pieces.reshape(theta.shape)], shares.reshape(theta.shape)
+        point = _value(local, share)
+        first, second = _derivatives(local, share)
+        valid = np.isfinite(values)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            orientation = 1.0 if self.turns_ccw != mirrored else -1.0
+            bend = orientation * (np.conj(first) * second).imag
+            radius = np.where(valid, np.abs(first) ** 3 / bend, np.nan)
+            normal = -1j * orientation * first / np.abs(first)
+            ground = normal * np.exp(-1j * theta)
+            direction = _direction(follower, values, point * np.exp(-1j * theta))
+            pressure = np.where(valid, np.abs(np.angle(ground * np.conj(direction))), np.nan)
+        point = np.where(valid, point, np.nan)
+        return ContactMotion(values - zero, np.conj(point) if mirrored else point, pressure, radius)
+
+
+def _dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], float]:
+    """The kind, its three lengths for the kernels, and its coordinate at zero displacement."""
+    if isinstance(follower, TranslatingRoller):
+        return TRANSLATING_ROLLER, (follower.offset, 0.0, follower.roller_radius), follower.height
+    if isinstance(follower, OscillatingRoller):
+        sizes = (follower.arm, follower.pivot_distance, follower.roller_radius)
+        return OSCILLATING_ROLLER, sizes, follower.start_angle
+    if isinstance(follower, TranslatingFlat):
+        return TRANSLATING_FACE, (0.0, 0.0, 0.0), follower.base_radius
+    return OSCILLATING_FACE, (0.0, follower.pivot_distance, follower.face_offset), follower.start_angle
+
+
+def _direction(follower: Follower, value: Real, contact: Complex) -> Complex:
+    """Unit vector, in the ground's frame, of the motion of the roller's centre or of the face's point in contact."""
+    if isinstance(follower, TranslatingRoller | TranslatingFlat):
+        return np.ones_like(contact)
+    turn = -1j * follower.sense
+    if isinstance(follower, OscillatingFlat):
+        arm = contact - follower.pivot_distance
+        return np.asarray(turn * arm / np.abs(arm))
+    return np.asarray(-turn * np.exp(turn * value))
+
+
+def _value(curves: Complex, share: Real) -> Complex:
+    result = curves[..., STENCIL - 1]
+    for k in range(STENCIL - 2, -1, -1):
+        result = result * share + curves[..., k]
+    return result
+
+
+def _derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
+    """First and second derivative of the local curves by τ."""
+    powers = np.arange(STENCIL)
+    first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
+    second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
+    return _value(first, share), _value(second, share)
+
+
+@njit(cache=True, nogil=True)
+def _stand(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> float:
+    """The follower's coordinate when it touches (x, y), −∞ where it cannot."""
+    if kind == TRANSLATING_FACE:
+        return x
+    if kind == TRANSLATING_ROLLER:
+        across = y - sizes[0]
+        square = sizes[2] * sizes[2] - across * across
+        return x + math.sqrt(square) if square >= 0.0 else -math.inf
+    dx = sizes[1] - x
+    distance = math.hypot(dx, y)
+    beta = math.atan2(y, dx)
+    if kind == OSCILLATING_FACE:
+        share = sizes[2] / distance
+        return beta + math.asin(share) if abs(share) <= 1.0 else -math.inf
+    share = (sizes[0] * sizes[0] + distance * distance - sizes[2] * sizes[2]) / (2.0 * sizes[0] * distance)
+    return beta + math.acos(share) if abs(share) <= 1.0 else -math.inf
+
+
+@njit(cache=True, nogil=True)
+def _at(curves: Complex, piece: int, share: float, turn: complex, flipped: bool) -> tuple[float, float]:
+    """A point of the profile in the ground's frame."""
+    z = curves[piece, STENCIL - 1]
+    for k in range(STENCIL - 2, -1, -1):
+        z = z * share + curves[piece, k]
+    z *= turn
+    return z.real, -z.imag if flipped else z.imag
+
+
+@njit(cache=True, nogil=True)
+def _along(
+    curves: Complex, base: int, t: float, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
+) -> float:
+    """The coordinate asked for at t chords from the point ``base``, −1 ≤ t ≤ 1."""
+    n = curves.shape[0]
+    piece, share = (base, t) if t >= 0.0 else ((base - 1) % n, t + 1.0)
+    x, y = _at(curves, piece, share, turn, flipped)
+    return _stand(x, y, kind, sizes)
+
+
+@njit(cache=True, nogil=True)
+def _lay(
+    curves: Complex,
+    angles: Real,
+    kind: int,
+    sizes: tuple[float, float, float],
+    flipped: bool,
+    values: Real,
+    pieces: NDArray[np.int64],
+    shares: Real,
+) -> None:
+    """Greatest coordinate over the profile: every local maximum over the points is closed in by golden section."""
+    n = curves.shape[0]
+    asked = np.empty(n)
+    for i in range(angles.size):
+        turn = complex(math.cos(angles[i]), -math.sin(angles[i]))
+        for k in range(n):
+            z = curves[k, 0] * turn
+            asked[k] = _stand(z.real, -z.imag if flipped else z.imag, kind, sizes)
+        best, where, share = -math.inf, 0, 0.0
+        for k in range(n):
+            here = asked[k]
+            if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
+                continue
+            low, high = -1.0, 1.0
+            left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+            at_left = _along(curves, k, left, turn, flipped, kind, sizes)
+            at_right = _along(curves, k, right, turn, flipped, kind, sizes)
+            for _ in range(NARROWINGS):
+                if at_left < at_right:
+                    low, left, at_left = left, right, at_right
+                    right = low + GOLDEN * (high - low)
+                    at_right = _along(curves, k, right, turn, flipped, kind, sizes)
+                else:
+                    high, right, at_right = right, left, at_left
+                    left = high - GOLDEN * (high - low)
+                    at_left = _along(curves, k, left, turn, flipped, kind, sizes)
+            found, t = (at_left, left) if at_left > at_right else (at_right, right)
+            if here > found:
+                found, t = here, 0.0
+            if found > best:
+                best = found
+                where, share = (k, t) if t >= 0.0 else ((k - 1) % n, t + 1.0)
+        values[i] = best if best > -math.inf else math.nan
+        pieces[i], shares[i] = where, share
+
+
+@njit(cache=True, nogil=True)
+def _off(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> tuple[float, float]:
+    """How far a point is from the path of a knife edge, and the coordinate of the edge at its foot there."""
+    if kind == TRANSLATING_ROLLER:
+        return y - sizes[0], x
+    dx = sizes[1] - x
+    return math.hypot(dx, y) - sizes[0], math.atan2(y, dx)
+
+
+@njit(cache=True, nogil=True)
+def _edge(
+    curves: Complex,
+    angles: Real,
+    kind: int,
+    sizes: tuple[float, float, float],
+    flipped: bool,
+    values: Real,
+    pieces: NDArray[np.int64],
+    shares: Real,
+) -> None:
+    """A knife edge: the farthest crossing of its path with the profile."""
+    n = curves.shape[0]
+    for i in range(angles.size):
+        turn = complex(math.cos(angles[i]), -math.sin(angles[i]))
+        best, where, share = -math.inf, 0, 0.0
+        for k in range(n):
+            a, _ = _off(*_at(curves, k, 0.0, turn, flipped), kind, sizes)
+            b, _ = _off(*_at(curves, k, 1.0, turn, flipped), kind, sizes)
+            if (a > 0.0) == (b > 0.0):
+                continue
+            low, high = 0.0, 1.0
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                m, _ = _off(*_at(curves, k, middle, turn, flipped), kind, sizes)
+                if (m > 0.0) == (a > 0.0):
+                    low = middle
+                else:
+                    high = middle
+            _, found = _off(*_at(curves, k, low, turn, flipped), kind, sizes)
+            if found > best:
+                best, where, share = found, k, low
+        values[i] = best if best > -math.inf else math.nan
+        pieces[i], shares[i] = where, share
+
+
+@njit(cache=True, nogil=True)
+def _crossings(points: Complex, found: Complex) -> int:
+    """Crossings of chords that are no neighbours, as many as there is room for."""
+    n = points.size
+    count = 0
+    for i in range(n):
+        a, b = points[i], points[(i + 1) % n]
+        left, right = min(a.real, b.real), max(a.real, b.real)
+        low, high = min(a.imag, b.imag), max(a.imag, b.imag)
+        for k in range(i + 2, n):
+            if i == 0 and k == n - 1:
+                continue
+            c, d = points[k], points[(k + 1) % n]
+            if max(c.real, d.real) < left or min(c.real, d.real) > right:
+                continue
+            if max(c.imag, d.imag) < low or min(c.imag, d.imag) > high:
+                continue
+            u, v, w = b - a, d - c, c - a
+            area = u.real * v.imag - u.imag * v.real
+            if area == 0.0:
+                continue
+            s = (w.real * v.imag - w.imag * v.real) / area
+            t = (w.real * u.imag - w.imag * u.real) / area
+            if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0 and count < found.size:
+                found[count] = a + s * u
+                count += 1
+    return count
