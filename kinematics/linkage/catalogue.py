@@ -7,6 +7,8 @@ fixed pivots, A, B, C, D moving pivots, P the coupler point. Angles are radians,
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -287,13 +289,13 @@ SIXBAR_LINKS: dict[str, dict[str, tuple[str, ...]]] = {
 """Links of the sixbars of Watt's and Stephenson's chains, with the names of their joints."""
 
 
-def sixbar(kind: str, joints: dict[str, ArrayLike], input: str = "input") -> Mechanism:
+def sixbar(kind: str, joints: Mapping[str, ArrayLike], input: str = "input") -> Mechanism:
     """A sixbar by the positions of its joints; ``kind`` is a key of :data:`SIXBAR_LINKS`, P may be left out.
 
     ``input`` is any link that is pinned to the ground.
     """
     links = {name: tuple(j for j in listed if j in joints) for name, listed in SIXBAR_LINKS[kind].items()}
-    return Mechanism(joints, links, input)
+    return Mechanism(dict(joints), links, input)
 
 
 ASSEMBLY = {"open": OPEN, "crossed": CROSSED}

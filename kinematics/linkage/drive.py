@@ -1,43 +1,30 @@
 """Driving a mechanism: positions, velocities, accelerations and jerks of every link and joint, closure by closure.
 
-The work is done in unit coordinates: origin at the reference position of the first ground joint, unit the size of the
-mechanism, so that tolerances are relative and digits are not lost to a far origin.
+Here inputs and assemblies are put in rows for the compiled sweep (:mod:`drive_kernels`), and what it fills is named.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.linkage.closures import RECENT, Decomposition, Step, decompose
-from kinematics.linkage.fourbar import ON_TOGGLE, one_shape, require
-from kinematics.linkage.jets import Jet, RealJet, angle_of, product, solve_angle, turn
-from kinematics.linkage.mechanism import GROUND, Complex, Mechanism, Real, Slide
-from kinematics.linkage.triads import follow, loop_equations, rates
+from kinematics.linkage import drive_kernels as kernels
+from kinematics.linkage.closures import RECENT, decompose
+from kinematics.linkage.fourbar import one_shape, require
+from kinematics.linkage.mechanism import Mechanism, Real
+from kinematics.linkage.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
+from kinematics.linkage.triads import Loops, Track, loop_equations, rates
+
+Jet = NDArray[np.complex128]
+"""Complex jet, shape (n, ...) with n from 1 to 4: value, velocity, acceleration and jerk, or the first few of them."""
+
+RealJet = NDArray[np.float64]
+"""Real jet, shape (n, ...) with n from 1 to 4."""
 
 Mask = NDArray[np.bool_]
-Signs = NDArray[np.int64]
-
-AT_LIMIT = 16 * ON_TOGGLE
-"""A margin this far below zero counts as zero, so that a mechanism exists at its own limits: a limit is known to the
-rounding of an angle, which the margin's rate, up to some ten in unit coordinates, multiplies."""
-
-
-class Pose(NamedTuple):
-    """A link in motion: jets of its rotation φ from the reference, of e^{iφ}, and of where the origin has gone."""
-
-    rotation: RealJet
-    unit: Jet
-    shift: Jet
-
-    def carry(self, point: Complex) -> Jet:
-        """Jet of a point of the link, given in the reference configuration; a trailing axis stands for the inputs."""
-        moved: Jet = self.unit * point[..., None] + self.shift
-        return moved
 
 
 @dataclass(frozen=True)
@@ -63,7 +50,9 @@ class MechanismMotion:
         transmission angle there; its sign changes from assembly to assembly.
     margins : dict of str to float, shape (2,) + S + (N,), or (1,) + S + (N,) without derivatives
         For each closure: a smooth function that is positive where it exists, zero at its limit and negative beyond, and
-        its rate; NaN where the closures before it do not exist.
+        its rate; NaN where the closures before it do not exist. Where two links or a link and a slide close, it is the
+        square of the sine; where a known joint slides in the link, |q − p|² − r² in unit coordinates, with q − p from
+        the link's pin to that joint and r the line's distance from the pin.
     """
 
     valid: Mask
@@ -74,61 +63,6 @@ class MechanismMotion:
     slides: dict[str, RealJet]
     sines: dict[str, Real]
     margins: dict[str, Real]
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Unit coordinates of a mechanism: origin and size, shape S, and the joints and slides in them."""
-
-    origin: Complex
-    size: Real
-    joints: dict[str, Complex]
-    lines: dict[int, Complex]
-
-
-@lru_cache(maxsize=RECENT)
-def unit_frame(mechanism: Mechanism) -> Frame:
-    """The mechanism's unit coordinates."""
-    ground = mechanism.links[GROUND]
-    origin = mechanism.joints[ground[0]] if ground else next(iter(mechanism.joints.values()))
-    spread = np.stack([np.abs(z - origin) for z in mechanism.joints.values()])
-    size = spread.max(axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    joints = {name: np.asarray((z - origin) / size) for name, z in mechanism.joints.items()}
-    lines = {k: np.asarray((s.point - origin) / size) for k, s in enumerate(mechanism.slides)}
-    return Frame(np.asarray(origin), size, joints, lines)
-
-
-def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs, ...]:
-    """The reference's choice at every closure, shape S each: +1 or −1; +1 where the reference is at a limit."""
-    frame = unit_frame(mechanism)
-    signs = []
-    for step in steps:
-        if not step.has_two_solutions:
-            signs.append(np.ones(mechanism.shape, np.int64))
-            continue
-        k = _reference_k(frame, mechanism, step)
-        signs.append(np.where(k.imag < 0.0, -1, 1))
-    return tuple(signs)
-
-
-def _check_arms(frame: Frame, step: Step) -> None:
-    """Refuse a link that has no length between the joints by which it closes: any rotation would do."""
-    arms = {"RRR": [(step.link, step.pin), (step.other, step.other_pin)], "RRP": [(step.link, step.pin)]}
-    arms["carried"] = arms["RRP"]
-    for link, pin in arms.get(step.kind, []):
-        length = np.abs(frame.joints[step.joint] - frame.joints[pin])
-        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > 0.0)
-
-
-def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
-    pin = frame.joints[step.pin]
-    if step.kind == "RRR":
-        return np.asarray(np.conj(frame.joints[step.joint] - pin) * (frame.joints[step.other_pin] - pin))
-    assert step.slide is not None
-    normal = 1j * np.exp(1j * step.slide.angle)
-    arm = frame.joints[step.joint] - pin
-    return np.asarray(normal * np.conj(arm) if step.kind == "RRP" else np.conj(normal) * arm)
 
 
 def drive(
@@ -173,186 +107,83 @@ def drive(
         For inputs that do not broadcast.
     """
     require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
-    return _Drive(mechanism, decompose(mechanism), input, (speed, acceleration, jerk)[:order], signs).run()
+    program = program_of(mechanism)
+    chosen = assembly_signs(mechanism, program.steps) if signs is None else signs
+    count = len(program.steps)
+    require("signs", f"{count} arrays", np.asarray(len(chosen)), np.bool_(len(chosen) == count))
+    for sign in chosen:
+        require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
+    q = np.asarray(input, np.float64)
+    require("input", "finite", q, ~np.isinf(q))
+    given = (q, *(np.asarray(rate, np.float64) for rate in (speed, acceleration, jerk)[:order]))
+    shape = one_shape(
+        designs=(*mechanism.shape, 1),
+        signs=(*one_shape(**{f"sign {n}": np.shape(sign) for n, sign in enumerate(chosen)}), 1),
+        **{f"input rate {n}" if n else "input": rate.shape for n, rate in enumerate(given)},
+    )
+    inputs = np.empty((order + 1, *shape))
+    for n, values in enumerate(given):
+        inputs[n, ...] = values
+    designs = shape[:-1]
+    rows = np.ones((len(program.rows), *designs), np.int64)
+    for n, sign in enumerate(chosen):
+        rows[n, ...] = sign
+    own = np.broadcast_to(np.arange(len(program.frame)).reshape(mechanism.shape), designs).ravel()
+    return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
 
 
-class _Drive:
-    """One run through the closures: what is known so far, as poses and joints in unit coordinates."""
-
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        decomposition: Decomposition,
-        input: ArrayLike,
-        rates: tuple[ArrayLike, ...],
-        signs: tuple[Signs, ...] | None,
-    ) -> None:
-        self.mechanism, self.steps = mechanism, () if decomposition.left else decomposition.steps
-        self.dyadic = not decomposition.left
-        self.signs = assembly_signs(mechanism, self.steps) if signs is None else signs
-        count = len(self.signs)
-        require("signs", f"{len(self.steps)} arrays", np.asarray(count), np.bool_(count == len(self.steps)))
-        for sign in self.signs:
-            require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
-        self.frame = unit_frame(mechanism)
-        for step in self.steps:
-            _check_arms(self.frame, step)
-        q = np.asarray(input, np.float64)
-        require("input", "finite", q, ~np.isinf(q))
-        given = [np.asarray(rate, np.float64) for rate in rates]
-        shape = one_shape(
-            designs=(*mechanism.shape, 1),
-            signs=(*np.broadcast_shapes(*(np.shape(s) for s in self.signs)), 1),
-            input=q.shape,
-            **{f"rate {n}": rate.shape for n, rate in enumerate(given, start=1)},
-        )
-        self.shape = shape
-        self.input = np.stack([np.broadcast_to(x, shape) for x in (q, *given)])
-        self.length = len(self.input)
-        self.poses: dict[str, Pose] = {}
-        self.points: dict[str, Jet] = {}
-        self.sines: dict[str, Real] = {}
-        self.margins: dict[str, Real] = {}
-
-    def run(self) -> MechanismMotion:
-        still = np.zeros((self.length, *self.shape), np.complex128)
-        unmoved = still.copy()
-        unmoved[0] = 1.0
-        self._know(GROUND, Pose(still.real, unmoved, still))
-        self._know_input()
-        for step, sign in zip(self.steps, self.signs, strict=True):
-            getattr(self, f"_{step.kind}")(step, np.asarray(sign)[..., None])
-        if not self.dyadic:
-            self._follow_loops()
-        valid = np.all([np.isfinite(p[0]) for p in self.points.values()], axis=0)
-        smooth = valid & np.all([np.isfinite(p).all(axis=0) for p in self.points.values()], axis=0)
-        return self._result(valid, smooth)
-
-    def _know(self, link: str, pose: Pose) -> None:
-        self.poses[link] = pose
-        for joint in self.mechanism.links[link]:
-            if joint not in self.points:
-                self.points[joint] = pose.carry(self.frame.joints[joint])
-
-    def _know_input(self) -> None:
-        mechanism = self.mechanism
-        moved = self.input.copy()
-        moved[0] -= mechanism.reference_input[..., None]
-        if mechanism.driven_by_slide:
-            slide = next(s for s in mechanism.slides if s.joint == mechanism.input and s.link == GROUND)
-            along = np.exp(1j * slide.angle)[..., None] / self.frame.size[..., None]
-            point = moved * along
-            point[0] += self.frame.joints[mechanism.input][..., None]
-            self.points[mechanism.input] = point
-        else:
-            self._turn(mechanism.input, mechanism.input_pivot, moved)
-
-    def _turn(self, link: str, pin: str, rotation: RealJet) -> None:
-        """A link that turns by ``rotation`` about a known pin."""
-        unit = turn(rotation)
-        shift = self.points[pin] - unit * self.frame.joints[pin][..., None]
-        self._know(link, Pose(rotation, unit, shift))
-
-    def _follow_loops(self) -> None:
-        """All links of a class III mechanism, design by design."""
-        mechanism = self.mechanism
-        order = [link for link in mechanism.links if link not in (GROUND, mechanism.input)]
-        rotations = np.full((len(order), self.length, *self.shape), np.nan)
-        turned = self.input.copy()
-        turned[0] -= mechanism.reference_input[..., None]
-        for design in np.ndindex(*self.shape[:-1]):
-            own = design[len(design) - len(mechanism.shape) :]
-            index = tuple(n if size > 1 else 0 for n, size in zip(own, mechanism.shape, strict=True))
-            loops = loop_equations(mechanism, {name: complex(z[index]) for name, z in self.frame.joints.items()})
-            here = turned[(slice(None), *design)]
-            angles = follow(loops, here[0])
-            rotations[(slice(None), 0, *design)] = angles
-            if self.length > 1:
-                found = rates(loops, here[0], angles, here[1:])
-                rotations[(slice(None), slice(1, self.length), *design)] = np.moveaxis(found, 0, 1)
-        unknown = list(order)
-        while unknown:
-            link = next(w for w in unknown if any(joint in self.points for joint in mechanism.links[w]))
-            pin = next(joint for joint in mechanism.links[link] if joint in self.points)
-            self._turn(link, pin, rotations[order.index(link)])
-            unknown.remove(link)
-
-    def _gear(self, step: Step, _sign: Signs) -> None:
-        self._turn(step.link, step.pin, step.ratio * self.poses[step.other].rotation)
-
-    def _carried(self, step: Step, _sign: Signs) -> None:
-        self._turn_towards(step.link, step.pin, step.joint)
-
-    def _turn_towards(self, link: str, pin: str, joint: str) -> None:
-        """A link on two known joints."""
-        reference = self.frame.joints[joint] - self.frame.joints[pin]
-        rotation = angle_of((self.points[joint] - self.points[pin]) / reference[..., None])
-        self._turn(link, pin, rotation)
-
-    def _RRP(self, step: Step, sign: Signs) -> None:
-        assert step.slide is not None
-        pose, normal, on_line = self._line(step.slide)
-        arm = (self.frame.joints[step.joint] - self.frame.joints[step.pin])[..., None]
-        normals = pose.unit * normal
-        gap = pose.carry(on_line) - self.points[step.pin]
-        self._close(step, normals * np.conj(arm), product(np.conj(normals), gap).real, sign)
-
-    def _RPR(self, step: Step, sign: Signs) -> None:
-        assert step.slide is not None
-        index = self.mechanism.slides.index(step.slide)
-        normal = (1j * np.exp(1j * step.slide.angle))[..., None]
-        on_line = self.frame.lines[index] - self.frame.joints[step.pin]
-        reach = (np.conj(normal) * on_line[..., None]).real
-        r = np.zeros((self.length, *self.shape))
-        r[0] = reach
-        self._close(step, np.conj(normal) * (self.points[step.joint] - self.points[step.pin]), r, sign)
-
-    def _RRR(self, step: Step, sign: Signs) -> None:
-        first = (self.frame.joints[step.joint] - self.frame.joints[step.pin])[..., None]
-        second = (self.frame.joints[step.joint] - self.frame.joints[step.other_pin])[..., None]
-        base = self.points[step.other_pin] - self.points[step.pin]
-        r = product(base, np.conj(base)).real / 2.0
-        r[0] += (np.abs(first) - np.abs(second)) * (np.abs(first) + np.abs(second)) / 2.0
-        self._close(step, np.conj(first) * base, r, sign)
-        self._turn_towards(step.other, step.other_pin, step.joint)
-        # sin of the angle between the two links: the base's part of |k| is not the force's
-        with np.errstate(divide="ignore", invalid="ignore"):
-            self.sines[step.link] = self.sines[step.link] * np.abs(base[0]) / np.abs(second)
-
-    def _close(self, step: Step, k: Jet, r: RealJet, sign: Signs) -> None:
-        angle = solve_angle(k, r, sign, AT_LIMIT)
-        self.sines[step.link], self.margins[step.link] = angle.sine, angle.margin
-        self._turn(step.link, step.pin, angle.rotation)
-
-    def _line(self, slide: Slide) -> tuple[Pose, Complex, Complex]:
-        index = self.mechanism.slides.index(slide)
-        return self.poses[slide.link], (1j * np.exp(1j * slide.angle))[..., None], self.frame.lines[index]
-
-    def _result(self, valid: Mask, smooth: Mask) -> MechanismMotion:
-        mechanism, size, origin = self.mechanism, self.frame.size[..., None], self.frame.origin[..., None]
-        known = np.stack([valid, smooth, smooth, smooth][: self.length])
-        joints = {}
-        for name in mechanism.joints:
-            point = self.points[name] * size
-            point[0] += origin
-            joints[name] = np.where(known, point, np.complex128(complex(np.nan, np.nan)))
-        angles = {}
-        for link, pose in self.poses.items():
-            if link == GROUND:
-                continue
-            angle = pose.rotation.copy()
-            angle[0] += mechanism.link_angle(link)[..., None]
-            angles[link] = np.where(known, angle, np.nan)
-        slides = {}
-        for k, slide in enumerate(mechanism.slides):
-            pose, _, on_line = self._line(slide)
-            along = np.exp(1j * slide.angle)[..., None]
-            offset = self.points[slide.joint] - pose.carry(on_line)
-            travel = product(np.conj(pose.unit * along), offset).real * size
-            name = slide.joint if sum(s.joint == slide.joint for s in mechanism.slides) == 1 else f"{slide.joint}_{k}"
-            slides[name] = np.where(known, travel, np.nan)
-        sines = {link: np.where(valid, sine, np.nan) for link, sine in self.sines.items()}
-        return MechanismMotion(valid, smooth, self.input, angles, joints, slides, sines, self.margins)
+def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
+    """Sweep, and name what comes out."""
+    length, *shape = inputs.shape
+    flat = len(own), shape[-1]
+    moved = np.ascontiguousarray(inputs.reshape(length, *flat).swapaxes(0, 1))
+    moved[:, 0] -= mechanism.reference_input.ravel()[own, None]
+    given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
+    points = np.empty((len(mechanism.joints), length, *flat), np.complex128)
+    angles = np.empty((len(program.links), length, *flat))
+    travels = np.empty((len(mechanism.slides), length, *flat))
+    sines = np.empty((len(program.closing), *flat))
+    margins = np.empty((len(program.closing), min(length, 2), *flat))
+    masks = np.empty((2, *flat), np.bool_)
+    kernels.drive(*program[4:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
+    slide_names = [s.joint for s in mechanism.slides]
+    for k, name in enumerate(slide_names):
+        if slide_names.count(name) > 1:
+            slide_names[k] = f"{name}_{k}"
+    valid, smooth = masks.reshape(2, *shape)
+    return MechanismMotion(
+        valid,
+        smooth,
+        inputs,
+        dict(zip(program.links[1:], angles[1:].reshape(-1, length, *shape), strict=True)),
+        dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True)),
+        dict(zip(slide_names, travels.reshape(-1, length, *shape), strict=True)),
+        dict(zip(program.closing, sines.reshape(-1, *shape), strict=True)),
+        dict(zip(program.closing, margins.reshape(-1, margins.shape[1], *shape), strict=True)),
+    )
 
 
-__all__ = ["Frame", "MechanismMotion", "Pose", "assembly_signs", "decompose", "drive", "unit_frame"]
+def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) -> Real:
+    """Rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
+    designs, length, count = moved.shape
+    given = np.full((len(program.links), designs, length, count), np.nan)
+    for design in range(designs):
+        loops, track = _track(mechanism, int(own[design]))
+        numbers = [program.links.index(link) for link in loops.links]
+        rotation = moved[design, 0]
+        angles = track.at(rotation)
+        given[numbers, design, 0] = angles
+        if length > 1:
+            given[numbers, design, 1:] = np.moveaxis(rates(loops, rotation, angles, moved[design, 1:]), 0, 1)
+    return given
+
+
+@lru_cache(maxsize=RECENT)
+def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
+    """The loops of one design of a class III mechanism and what is known of their solutions."""
+    joints = program_of(mechanism).joints[design]
+    loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
+    return loops, Track(loops)
+
+
+__all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "unit_frame"]

@@ -26,11 +26,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage.jets import SINGULAR, turn
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Indices = NDArray[np.int64]
 
 STALLED = 1e-13
 """A certified step below this, radians, means a toggle: its distance is some hundred times as large, 1e-10 or less."""
@@ -39,9 +39,15 @@ CONVERGED = 1e-14
 """Newton's correction, radians, at which a position counts as solved."""
 
 
-STEPS_A_POSITION = 1000
-"""Certified steps at most, on average, to each position: links of very different lengths need more than can be waited
-for, and what lies beyond is then given as not reached."""
+MOST_NODES = 100_000
+"""Certified steps at most: links of very different lengths need more than can be waited for, and what lies beyond is
+then given as not reached."""
+
+NODES_AT_ONCE = 256
+"""Steps between two looks at how far the track has come."""
+
+LOST = 1e-12
+"""Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
 
 NEWTON_STEPS = 20
 """Steps at most; from inside the ball three or four do."""
@@ -106,28 +112,68 @@ def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
     )
 
 
-def follow(loops: Loops, rotation: Real) -> Real:
-    """Rotations of the unknown links for input rotations from the reference; NaN beyond a toggle.
+class Track:
+    """The solutions of one design's loops along its input, as far as they have been asked for.
 
-    Parameters
-    ----------
-    loops : Loops
-        Of one design; at input rotation 0 all rotations are 0.
-    rotation : float, shape (N,)
-        Input rotations, radians, in any order, not reduced by full turns.
-
-    Returns
-    -------
-    float, shape (links, N)
+    Certified steps from the reference are kept: each *node* is an input rotation with its solution, and has the next
+    node at the end of its certified step. Whatever lies between is Newton's method away from a node.
     """
-    rotation = np.asarray(rotation, np.float64)
-    found = np.full((len(loops.links), len(rotation)), np.nan)
-    for side in (1.0, -1.0):
-        chosen = np.flatnonzero(side * rotation >= 0.0)
-        order = chosen[np.argsort(side * rotation[chosen])]
-        solved = _follow(loops.coefficients, loops.by_input, loops.fixed, rotation[order])
-        found[:, order] = solved.T
-    return found
+
+    def __init__(self, loops: Loops) -> None:
+        self._loops = loops
+        self._sides = {side: _Side(loops, side) for side in (1.0, -1.0)}
+
+    def at(self, rotation: Real) -> Real:
+        """Rotations of the unknown links for input rotations from the reference; NaN beyond a toggle.
+
+        Parameters
+        ----------
+        rotation : float, shape (N,)
+            Input rotations, radians, in any order, not reduced by full turns.
+
+        Returns
+        -------
+        float, shape (links, N)
+        """
+        found = np.full((len(self._loops.links), len(rotation)), np.nan)
+        for sign, side in self._sides.items():
+            chosen = np.flatnonzero(sign * rotation >= 0.0)
+            if len(chosen):
+                found[:, chosen] = side.at(rotation[chosen])
+        return found
+
+
+class _Side:
+    """The nodes of a track in one sense of rotation; the input is counted positive in it."""
+
+    def __init__(self, loops: Loops, sign: float) -> None:
+        self._equations = loops.coefficients, loops.by_input, loops.fixed
+        self._sign = sign
+        self._nodes, self._reach = np.zeros(1), np.zeros(1)
+        self._angles = np.zeros((1, len(loops.links)))
+        self._ended = False
+        self._reach[0] = _reach(*self._equations, 0.0, self._angles[0])
+
+    def at(self, rotation: Real) -> Real:
+        ahead = self._sign * rotation
+        self._extend(float(ahead.max()))
+        node = np.searchsorted(self._nodes, ahead, side="right") - 1
+        found = np.full((len(rotation), self._angles.shape[1]), np.nan)
+        _near(*self._equations, self._sign * self._nodes, self._reach, self._angles, node, rotation, found)
+        return found.T
+
+    def _extend(self, target: float) -> None:
+        while not self._ended and self._nodes[-1] + self._reach[-1] < target:
+            if len(self._nodes) > MOST_NODES:
+                self._ended = True
+                return
+            nodes, reach = np.empty(NODES_AT_ONCE), np.empty(NODES_AT_ONCE)
+            angles = np.empty((NODES_AT_ONCE, self._angles.shape[1]))
+            nodes[0], reach[0], angles[0] = self._nodes[-1], self._reach[-1], self._angles[-1]
+            count, self._ended = _march(*self._equations, self._sign, target, nodes, reach, angles)
+            self._nodes = np.concatenate([self._nodes, nodes[1:count]])
+            self._reach = np.concatenate([self._reach, reach[1:count]])
+            self._angles = np.concatenate([self._angles, angles[1:count]])
 
 
 def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real:
@@ -135,78 +181,137 @@ def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real
 
     ``input_rates`` holds the input's speed, acceleration and jerk, or the first n of them, shape (n, N).
     """
-    u = np.exp(1j * angles)
-    z = turn(np.concatenate([rotation[None], input_rates]))
-    jacobian = np.moveaxis(_real(loops.coefficients[:, :, None] * (1j * u)[None]), -1, 0)
-    norms = np.linalg.norm(jacobian, axis=(1, 2))
-    with np.errstate(invalid="ignore"):
-        determinant = np.linalg.det(np.where(np.isfinite(jacobian), jacobian / norms[:, None, None], 0.0))
-    sound = np.abs(determinant) > SINGULAR**2
-    safe = np.where(sound[:, None, None], jacobian, np.eye(jacobian.shape[-1]))
-    out = np.full((len(input_rates), *angles.shape), np.nan)
-    w = np.zeros_like(angles)
-    alpha = np.zeros_like(angles)
-    for order in range(len(input_rates)):
-        known = loops.by_input[:, None] * z[order + 1]
-        if order == 1:
-            known = known + loops.coefficients @ (u * -(w**2))
-        if order == 2:
-            known = known + loops.coefficients @ (u * (-3.0 * w * alpha - 1j * w**3))
-        right = np.concatenate([known.real, known.imag]).T
-        solved = np.linalg.solve(safe, -np.where(sound[:, None], right, 0.0)[..., None])[..., 0].T
-        out[order] = np.where(sound, solved, np.nan)
-        if order == 0:
-            w = solved
-        elif order == 1:
-            alpha = solved
+    out = np.empty((len(input_rates), *angles.shape))
+    _rates(loops.coefficients, loops.by_input, rotation, angles, input_rates, out)
     return out
 
 
-def _real(rows: Complex) -> Real:
-    """Complex rows as real ones, real parts first."""
-    return np.concatenate([rows.real, rows.imag])
+@njit(cache=True, nogil=True)
+def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> float:
+    """The certified step at a solution; 0 where the equations are singular."""
+    links = len(phi)
+    value, inverse = np.empty(links), np.empty((links, links))
+    _evaluate(c, k, fixed, phi, at, value, inverse)
+    return _certified(c, k, inverse) if np.isfinite(_invert(inverse)) else 0.0
 
 
 @njit(cache=True, nogil=True)
-def _follow(c: Complex, k: Complex, fixed: Complex, rotation: Real) -> Real:
-    loops, links = c.shape
-    found = np.full((len(rotation), links), np.nan)
-    phi = np.zeros(links)
-    at = 0.0
-    value = np.empty(2 * loops)
-    inverse = np.empty((links, links))
-    slope = np.empty(2 * loops)
-    budget = STEPS_A_POSITION * len(rotation) + 10 * STEPS_A_POSITION
-    for target in range(len(rotation)):
-        while at != rotation[target] or target == 0:
-            budget -= 1
-            if budget < 0:
-                return found
+def _march(
+    c: Complex, k: Complex, fixed: Complex, sign: float, target: float, nodes: Real, reach: Real, angles: Real
+) -> tuple[int, bool]:
+    """Nodes until the target is passed, the first of them known: how many, and whether a toggle has ended them."""
+    links = c.shape[1]
+    phi, value = angles[0].copy(), np.empty(links)
+    inverse, slope = np.empty((links, links)), np.empty(links)
+    for n in range(1, len(nodes)):
+        step = reach[n - 1]
+        if step < STALLED:
+            return n, True
+        if nodes[n - 1] + step >= target:
+            return n, False
+        at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
+        _evaluate(c, k, fixed, phi, at, value, inverse)
+        _invert(inverse)
+        _newton(c, k, fixed, phi, at, to, value, inverse, slope)
+        nodes[n], angles[n] = nodes[n - 1] + step, phi
+        # Newton's last inverse is that of the solution but for a correction of rounding size.
+        reach[n] = _certified(c, k, inverse) if np.isfinite(inverse).all() else 0.0
+    return len(nodes), False
+
+
+@njit(cache=True, nogil=True)
+def _near(
+    c: Complex,
+    k: Complex,
+    fixed: Complex,
+    nodes: Real,
+    reach: Real,
+    angles: Real,
+    node: Indices,
+    rotation: Real,
+    found: Real,
+) -> None:
+    """Solutions at rotations within the certified steps of their nodes; those beyond stay as they are."""
+    links = c.shape[1]
+    value, slope, inverse = np.empty(links), np.empty(links), np.empty((links, links))
+    for n in range(len(rotation)):
+        at = nodes[node[n]]
+        if not abs(rotation[n] - at) <= reach[node[n]]:
+            continue
+        phi = found[n]
+        phi[:] = angles[node[n]]
+        if rotation[n] != at:
             _evaluate(c, k, fixed, phi, at, value, inverse)
-            certified = _certified(c, k, inverse) if np.isfinite(_invert(inverse)) else 0.0
-            step = rotation[target] - at
-            if abs(step) > certified:
-                if certified < STALLED:
-                    return found
-                step = math.copysign(certified, step)
-                next_at = at + step
+            _invert(inverse)
+            _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope)
+
+
+@njit(cache=True, nogil=True)
+def _newton(
+    c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, to: float, value: Real, inverse: Real, slope: Real
+) -> None:
+    """Move a solution at one input to another within its certified step; ``inverse`` is J⁻¹ before and after."""
+    loops = len(k)
+    turned = 1j * complex(math.cos(at), math.sin(at)) * (to - at)
+    for row in range(loops):
+        slope[row] = (k[row] * turned).real
+        slope[row + loops] = (k[row] * turned).imag
+    _subtract(phi, inverse, slope)
+    for _ in range(NEWTON_STEPS):
+        _evaluate(c, k, fixed, phi, to, value, inverse)
+        _invert(inverse)
+        if _subtract(phi, inverse, value) < CONVERGED:
+            break
+
+
+@njit(cache=True, nogil=True)
+def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, out: Real) -> None:
+    """Solve the differentiated loops, order by order: J φ⁽ⁿ⁾ = −(what the lower orders give)."""
+    loops, links = c.shape
+    value, inverse, right = np.empty(links), np.empty((links, links)), np.empty(links)
+    phi, solved = np.empty(links), np.empty((3, links))
+    none = np.zeros(loops, np.complex128)
+    for n in range(len(rotation)):
+        for link in range(links):
+            phi[link] = angles[link, n]
+        _evaluate(c, k, none, phi, rotation[n], value, inverse)
+        largest = 0.0
+        for row in range(links):
+            total = 0.0
+            for col in range(links):
+                total += abs(inverse[row, col])
+            largest = max(largest, total)
+        sound = _invert(inverse) * largest < 1.0 / LOST
+        w1 = given[0, n]
+        w2 = given[1, n] if len(given) > 1 else 0.0
+        w3 = given[2, n] if len(given) > 2 else 0.0
+        z = complex(math.cos(rotation[n]), math.sin(rotation[n]))
+        for order in range(len(given)):
+            if order == 0:
+                turned = 1j * w1 * z
+            elif order == 1:
+                turned = complex(-w1 * w1, w2) * z
             else:
-                next_at = rotation[target]
-            turned = 1j * complex(math.cos(at), math.sin(at)) * step
+                turned = complex(-3.0 * w1 * w2, w3 - w1**3) * z
             for row in range(loops):
-                slope[row] = (k[row] * turned).real
-                slope[row + loops] = (k[row] * turned).imag
-            _subtract(phi, inverse, slope)
-            at = next_at
-            for _ in range(NEWTON_STEPS):
-                _evaluate(c, k, fixed, phi, at, value, inverse)
-                _invert(inverse)
-                if _subtract(phi, inverse, value) < CONVERGED:
-                    break
-            if at == rotation[target]:
-                break
-        found[target] = phi
-    return found
+                total_z = k[row] * turned
+                for link in range(links):
+                    u = complex(math.cos(phi[link]), math.sin(phi[link]))
+                    if order == 1:
+                        total_z += c[row, link] * u * -(solved[0, link] ** 2)
+                    elif order == 2:
+                        total_z += (
+                            c[row, link]
+                            * u
+                            * complex(-3.0 * solved[0, link] * solved[1, link], -(solved[0, link] ** 3))
+                        )
+                right[row], right[row + loops] = total_z.real, total_z.imag
+            for link in range(links):
+                total = 0.0
+                for col in range(links):
+                    total -= inverse[link, col] * right[col]
+                solved[order, link] = total
+                out[order, link, n] = total if sound else np.nan
 
 
 @njit(cache=True, nogil=True)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage import fourbar, slider_crank
+from kinematics.linkage import catalogue, fourbar, slider_crank
 from kinematics.linkage.circuits import input_limits, stays_on_branch
 from kinematics.linkage.classification import barker_type
+from kinematics.linkage.drive import drive
 from kinematics.linkage.transmission import transmission_extremes
 
 
@@ -26,3 +27,6 @@ def warm_up() -> None:
     slider_crank.positions(slider, angles)
     slider_crank.coupler_points(slider, angles)
     slider_crank.motion(slider, angles)
+    drive(catalogue.fourbar(linkage, 0.0), angles)
+    stephenson_2 = {"O2": 0.0, "O4": 4.0, "A": 0.3 + 1j, "C": 0.8 + 0.6j, "B": 1.5 + 3j, "D": 3.0 + 2.2j, "E": 4.2 + 2j}
+    drive(catalogue.sixbar("stephenson_2", stephenson_2), angles)

@@ -1,0 +1,356 @@
+"""Driving a mechanism as a compiled sweep over designs × inputs: the closures of :mod:`closures`, one after the other.
+
+A mechanism comes as a *program*: rows of integers that say which link follows by which closure and which joints it
+makes known. At each position the kernel keeps, of every joint and of every link's rotation φ, e^{iφ} and shift, the
+value and the first derivatives (a jet), and goes through the rows.
+
+Every closure is Re(e^{−iφ} k) = r. With d = sign · √(|k|² − r²) it is solved by e^{iφ} = k (r − i d) / |k|², without an
+angle; those are taken at the end. The derivatives follow from differentiating the equation:
+
+    Re(e^{−iφ} k') + φ' d = r',
+    Re(e^{−iφ} (k'' − 2iφ'k' − φ'²k)) + φ'' d = r'',
+    Re(e^{−iφ} (k''' − 3iφ'k'' − 3(iφ'' + φ'²)k' + (iφ'³ − 3φ'φ'')k)) + φ''' d = r'''.
+
+A closure's *margin* is the jet of |k|² − r², which changes sign at its limits, in a scale of its own: by |b|² for RRP
+and by |b|² c² for RRR it is the square of the sine. Where k vanishes beside its *reach* (|b|; 1 for RPR) any φ solves
+the equation, or none does: the closure says nothing, and there is no solution to give.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage.kernels import ON_TOGGLE
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Mask = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+
+GEAR, CARRIED, RRP, RPR, RRR, GIVEN = range(6)
+"""Closures by number; GIVEN is a link whose rotation is handed in (class III, solved by :mod:`triads`)."""
+
+KIND, LINK, PIN, JOINT, OTHER, OTHER_PIN, SLIDE, CLOSING = range(8)
+"""Columns of a program. CLOSING counts the closures that have two solutions; −1 elsewhere."""
+
+SINGULAR = 1e-7
+"""Sine below which derivatives are undefined: a limit itself is known to the square root of rounding only."""
+
+COINCIDENT = 1e-13
+"""A share of its reach below which the vector that gives a link its direction has none: only rounding is left."""
+
+AT_LIMIT = 16.0 * ON_TOGGLE
+"""A margin this far below zero counts as zero, so that a mechanism exists at its own limits: a limit is known to the
+rounding of an angle, which the margin's rate, up to some ten in unit coordinates, multiplies."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def drive(
+    program: Rows,
+    ratios: Real,
+    gives: Rows,
+    joints: Complex,
+    lines: Complex,
+    line_angles: Real,
+    link_angles: Real,
+    frame: Complex,
+    slides: Rows,
+    driver: Rows,
+    own: Rows,
+    signs: Rows,
+    moved: Real,
+    given: Real,
+    points: Complex,
+    angles: Real,
+    travels: Real,
+    sines: Real,
+    margins: Real,
+    masks: Mask,
+) -> None:
+    """Fill ``margins`` and ``sines``, and, unless ``points`` has no rows, all the others; ``masks`` are valid, smooth.
+
+    M mechanisms, D designs (mechanisms with their signs), N inputs, n the length of a jet.
+
+    program : (steps, 8), ratios : (steps,), gives : (links, 1 + joints): how many joints a link makes known, and
+    which. joints, lines, line_angles, link_angles : (M, count) in unit coordinates.
+    frame : (M, 2), origin and size. slides : (slides, 2), joint and link. driver : the input link (or −1), its pin (or
+    the input slide's joint), and the input slide. own : (D,), which mechanism. signs : (steps, D). moved :
+    (D, n, N), input from the reference. given : (links, D, n, N), rotations of GIVEN links. Link 0 is the ground.
+    """
+    length = moved.shape[1]
+    count_links, count_joints, count_rows = gives.shape[0], joints.shape[1], program.shape[0]
+    x = np.zeros((count_joints, 4), np.complex128)
+    rotation = np.zeros((count_links, 4))
+    turned = np.zeros(count_links, np.bool_)  # whose rotation is known itself, not only e^{iφ}
+    unit = np.zeros((count_links, 4), np.complex128)
+    shift = np.zeros((count_links, 4), np.complex128)
+    k, r, base = np.zeros(4, np.complex128), np.zeros(4), np.zeros(4, np.complex128)
+    arms, directions = np.zeros((count_rows, 2), np.complex128), np.zeros(count_rows, np.complex128)
+    lengths = np.zeros((count_rows, 2))
+    reaches, norms = np.zeros(count_rows), np.zeros(count_rows)
+    unit[0, 0] = 1.0
+    turned[0] = True
+    for design in range(moved.shape[0]):
+        m = own[design]
+        origin, size = frame[m, 0], frame[m, 1].real
+        place, line, along = joints[m], lines[m], line_angles[m]
+        for n in range(1, gives[0, 0] + 1):
+            x[gives[0, n], 0] = place[gives[0, n]]
+        _reference(program, place, line, along, arms, directions, lengths, reaches, norms)
+        for at in range(moved.shape[2]):
+            if driver[0] < 0:
+                joint, angle = driver[1], along[driver[2]]
+                for n in range(length):
+                    x[joint, n] = moved[design, n, at] * complex(math.cos(angle), math.sin(angle)) / size
+                x[joint, 0] += place[joint]
+            else:
+                for n in range(length):
+                    rotation[driver[0], n] = moved[design, n, at]
+                turned[driver[0]] = True
+                _pose(driver[0], driver[1], place, gives, rotation, turned, unit, shift, x, length)
+            for row in range(count_rows):
+                step = program[row]
+                kind, link, pin, joint = step[KIND], step[LINK], step[PIN], step[JOINT]
+                other, other_pin, closing = step[OTHER], step[OTHER_PIN], step[CLOSING]
+                if kind == GEAR:
+                    if not turned[other]:
+                        rotation[other, 0] = math.atan2(unit[other, 0].imag, unit[other, 0].real)
+                    for n in range(length):
+                        rotation[link, n] = ratios[row] * rotation[other, n]
+                    turned[link] = True
+                elif kind == CARRIED:
+                    _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
+                elif kind == GIVEN:
+                    for n in range(length):
+                        rotation[link, n] = given[link, design, n, at]
+                    turned[link] = True
+                elif kind == RRP:
+                    normal = directions[row]
+                    on_line = line[step[SLIDE]]
+                    for n in range(length):
+                        k[n] = unit[other, n] * normal * arms[row, 0].conjugate()
+                        base[n] = unit[other, n] * on_line + shift[other, n] - x[pin, n]
+                    for n in range(length):
+                        r[n] = 0.0
+                        for j in range(n + 1):
+                            r[n] += _binomial(n, j) * ((unit[other, j] * normal).conjugate() * base[n - j]).real
+                elif kind == RPR:
+                    normal = directions[row].conjugate()
+                    for n in range(length):
+                        k[n] = normal * (x[joint, n] - x[pin, n])
+                        r[n] = 0.0
+                    r[0] = (normal * arms[row, 0]).real
+                else:
+                    for n in range(length):
+                        base[n] = x[other_pin, n] - x[pin, n]
+                        k[n] = arms[row, 0].conjugate() * base[n]
+                    for n in range(length):
+                        r[n] = 0.0
+                        for j in range(n + 1):
+                            r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
+                    r[0] += (lengths[row, 0] - lengths[row, 1]) * (lengths[row, 0] + lengths[row, 1]) / 2.0
+                if closing >= 0:
+                    reach, norm = reaches[row], norms[row]
+                    sign = signs[row, design]
+                    sine = _close(k, r, reach, norm, sign, rotation, unit, link, margins, closing, design, at, length)
+                    if kind == RRR:
+                        # sine of the angle between the two links: the base's part of |k| is not the force's
+                        sine *= _abs(base[0]) / lengths[row, 1]
+                    sines[closing, design, at] = sine
+                _pose(link, pin, place, gives, rotation, turned, unit, shift, x, length)
+                if kind == RRR:
+                    _towards(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
+                    _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
+            if not len(points):
+                continue
+            valid, smooth = True, True
+            for joint in range(count_joints):
+                valid = valid and np.isfinite(x[joint, 0])
+                for n in range(1, length):
+                    smooth = smooth and np.isfinite(x[joint, n])
+            smooth = smooth and valid
+            masks[0, design, at], masks[1, design, at] = valid, smooth
+            for link in range(1, count_links):
+                if not turned[link]:
+                    rotation[link, 0] = math.atan2(unit[link, 0].imag, unit[link, 0].real)
+            for n in range(length):
+                known = smooth if n else valid
+                for joint in range(count_joints):
+                    points[joint, n, design, at] = x[joint, n] * size if known else complex(np.nan, np.nan)
+                for link in range(1, count_links):
+                    angles[link, n, design, at] = rotation[link, n] if known else np.nan
+                for slide in range(slides.shape[0]):
+                    travels[slide, n, design, at] = np.nan
+                    if known:
+                        travels[slide, n, design, at] = size * _travel(
+                            x, unit, shift, slides[slide, 0], slides[slide, 1], line[slide], along[slide], n
+                        )
+            for joint in range(count_joints):
+                points[joint, 0, design, at] += origin
+            for link in range(1, count_links):
+                angles[link, 0, design, at] += link_angles[m, link]
+            if not valid:
+                for closing in range(sines.shape[0]):
+                    sines[closing, design, at] = np.nan
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _reference(
+    program: Rows,
+    place: Complex,
+    line: Complex,
+    along: Real,
+    arms: Complex,
+    directions: Complex,
+    lengths: Real,
+    reaches: Real,
+    norms: Real,
+) -> None:
+    """What stays the same at all inputs: by row, the vectors from the pins to the joint, and the slide's normal."""
+    for row in range(len(program)):
+        kind, pin, joint, slide = program[row, KIND], program[row, PIN], program[row, JOINT], program[row, SLIDE]
+        if kind in (GEAR, GIVEN):
+            continue
+        arms[row, 0] = (line[slide] if kind == RPR else place[joint]) - place[pin]
+        if kind == RRR:
+            arms[row, 1] = place[joint] - place[program[row, OTHER_PIN]]
+        lengths[row, 0], lengths[row, 1] = abs(arms[row, 0]), abs(arms[row, 1])
+        reaches[row], norms[row] = lengths[row, 0], lengths[row, 0] ** 2
+        if kind == RPR:
+            reaches[row], norms[row] = 1.0, 1.0
+        elif kind == RRR:
+            norms[row] *= lengths[row, 1] ** 2
+        if slide >= 0:
+            directions[row] = complex(-math.sin(along[slide]), math.cos(along[slide]))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _abs(z: complex) -> float:
+    """|z| of numbers near one, where nothing overflows."""
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _binomial(n: int, k: int) -> float:
+    """n over k for n up to 3."""
+    if k == 0 or k == n:
+        return 1.0
+    return float(n)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _travel(
+    x: Complex, unit: Complex, shift: Complex, joint: int, link: int, line: complex, angle: float, n: int
+) -> float:
+    """Derivative n of where a joint stands along a line fixed in a link."""
+    direction = complex(math.cos(angle), math.sin(angle))
+    total = 0.0
+    for j in range(n + 1):
+        offset = x[joint, n - j] - (unit[link, n - j] * line + shift[link, n - j])
+        total += _binomial(n, j) * ((unit[link, j] * direction).conjugate() * offset).real
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _pose(
+    link: int,
+    pin: int,
+    place: Complex,
+    gives: Rows,
+    rotation: Real,
+    turned: Mask,
+    unit: Complex,
+    shift: Complex,
+    x: Complex,
+    length: int,
+) -> None:
+    """From a link's rotation (or e^{iφ} and its rates) and its known pin: the shift, and the joints it makes known."""
+    if turned[link]:
+        unit[link, 0] = complex(math.cos(rotation[link, 0]), math.sin(rotation[link, 0]))
+    u = unit[link, 0]
+    if length > 1:
+        w = rotation[link, 1]
+        unit[link, 1] = 1j * w * u
+        if length > 2:
+            alpha = rotation[link, 2]
+            unit[link, 2] = complex(-w * w, alpha) * u
+            if length > 3:
+                unit[link, 3] = complex(-3.0 * w * alpha, rotation[link, 3] - w * w * w) * u
+    for n in range(length):
+        shift[link, n] = x[pin, n] - unit[link, n] * place[pin]
+    for j in range(1, gives[link, 0] + 1):
+        joint = gives[link, j]
+        for n in range(length):
+            x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _towards(
+    link: int, pin: int, joint: int, arm: complex, rotation: Real, unit: Complex, x: Complex, length: int
+) -> None:
+    """e^{iφ} of a link on two known joints, and the rates of φ, from the line between the joints."""
+    line = x[joint, 0] - x[pin, 0]
+    turned = line * arm.conjugate()
+    unit[link, 0] = turned / _abs(turned)
+    if length > 1:
+        inverse = line.conjugate() / (line.real * line.real + line.imag * line.imag)
+        first = (x[joint, 1] - x[pin, 1]) * inverse
+        rotation[link, 1] = first.imag
+        if length > 2:
+            second = (x[joint, 2] - x[pin, 2]) * inverse
+            rotation[link, 2] = (second - first * first).imag
+            if length > 3:
+                third = (x[joint, 3] - x[pin, 3]) * inverse
+                rotation[link, 3] = (third - 3.0 * first * second + 2.0 * first * first * first).imag
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _close(
+    k: Complex,
+    r: Real,
+    reach: float,
+    norm: float,
+    sign: int,
+    rotation: Real,
+    unit: Complex,
+    link: int,
+    margins: Real,
+    closing: int,
+    design: int,
+    at: int,
+    length: int,
+) -> float:
+    """Solve a closure: e^{iφ} and the rates of φ, margin and its rate; returns the sine that vanishes at its limit."""
+    square = k[0].real * k[0].real + k[0].imag * k[0].imag
+    size = math.sqrt(square)
+    excess = (size - r[0]) * (size + r[0])
+    exists = size > COINCIDENT * reach and excess >= -AT_LIMIT * square
+    margins[closing, 0, design, at] = excess / norm
+    if length > 1:
+        margins[closing, 1, design, at] = 2.0 * ((k[0].conjugate() * k[1]).real - r[0] * r[1]) / norm
+    if not exists:
+        unit[link, 0] = complex(np.nan, np.nan)
+        for n in range(1, length):
+            rotation[link, n] = np.nan
+        return np.nan
+    root, along = math.sqrt(max(excess, 0.0)), min(max(r[0], -size), size)
+    # Re(e^{−iφ} k) = r and Im(e^{−iφ} k) = sign · root
+    u = k[0] * complex(along, -sign * root) / square
+    unit[link, 0] = u
+    if length > 1:
+        e = u.conjugate()
+        scale = 1.0 / (sign * root) if root > SINGULAR * size and size > SINGULAR * reach else np.nan
+        w = (r[1] - (e * k[1]).real) * scale
+        rotation[link, 1] = w
+        if length > 2:
+            alpha = (r[2] - (e * (k[2] - 2j * w * k[1] - w * w * k[0])).real) * scale
+            rotation[link, 2] = alpha
+            if length > 3:
+                third = k[3] - 3j * w * k[2] - 3.0 * complex(w * w, alpha) * k[1]
+                third += complex(-3.0 * w * alpha, w * w * w) * k[0]
+                rotation[link, 3] = (r[3] - (e * third).real) * scale
+    return float(sign * root / size)
