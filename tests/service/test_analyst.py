@@ -13,7 +13,6 @@ from service.analyst import THREADS, Analyst, Busy, TooLong
 def ready(monkeypatch):
     monkeypatch.setattr(analyst, "warm_up", lambda: None)
     monkeypatch.setattr(analyst.gc, "freeze", lambda: None)
-    monkeypatch.setattr(analyst, "LONGEST_S", 0.2)
     made = Analyst()
     made.start(after=lambda: True)
     return made
@@ -26,7 +25,8 @@ def test_what_is_returned_or_raised_comes_back(ready):
     assert asyncio.run(ready.call(divmod, 9, 2)) == (4, 1), "the threads live on"
 
 
-def test_nobody_waits_for_ever(ready):
+def test_nobody_waits_for_ever(ready, monkeypatch):
+    monkeypatch.setattr(analyst, "LONGEST_S", 0.2)
     end, begun = threading.Event(), threading.Semaphore(0)
 
     def work():
@@ -43,6 +43,7 @@ def test_nobody_waits_for_ever(ready):
     found = asyncio.run(ask())
     assert [type(error) for error in found] == [TooLong] * THREADS + [Busy]
     end.set()
+    monkeypatch.undo()
     assert asyncio.run(ready.call(divmod, 7, 2)) == (3, 1)
 
 
