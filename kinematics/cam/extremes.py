@@ -34,6 +34,12 @@ NEAR_REAL = 1e-4
 """Imaginary part up to which an eigenvalue is taken as a real root. A root too many costs one value of the function,
 a double root that is split by rounding lies within the square root of it."""
 
+NEAR_ROOT = 1e-9
+"""Value, relative to the largest, up to which a real eigenvalue is a root and not the real part of a pair."""
+
+SAME = 1e-12
+"""Distance of one root found twice, relative to the whole interval."""
+
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _FIT = np.cos(np.outer(np.arange(DEGREE + 1), np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)))
 _FIT *= 2.0 / (DEGREE + 1)
@@ -89,16 +95,19 @@ def stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real, Real
     return points[order], values[order]
 
 
-def roots(function: Function, breaks: ArrayLike) -> Real:
+def roots(function: Function, breaks: Real) -> Real:
     """Every root of a function that is smooth between breaks, ascending; a jump through zero at a break is none.
 
     Where the function vanishes on a whole piece nothing is reported for it. A double root may appear twice.
     """
-    low, high, series, _ = _fit(function, np.asarray(breaks, dtype=np.float64))
+    low, high, series, _ = _fit(function, breaks)
     row, root = _roots(series)
     points = _within(low[row], high[row], root)
     size = np.abs(series).max(initial=0.0)
-    return np.sort(points[np.abs(function(points)) <= 1e-9 * size]) if len(points) else points
+    found = np.sort(points[np.abs(function(points)) <= NEAR_ROOT * size]) if len(points) else points
+    # A root where two halves of a piece meet is found in both.
+    apart = np.diff(found) > SAME * float(breaks[-1] - breaks[0])
+    return found[np.append(True, apart)] if len(found) else found
 
 
 def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np.int64]]:

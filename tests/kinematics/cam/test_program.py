@@ -249,6 +249,8 @@ def test_a_hidden_kink_is_found() -> None:
 
 
 def test_roots_of_a_wave() -> None:
-    assert roots(lambda x: np.sin(25.0 * x), [0.1, 3.0]) == pytest.approx(np.arange(1, 24) * math.pi / 25.0, abs=1e-12)
-    assert len(roots(lambda x: 0.0 * x, [0.0, 1.0])) == 0
-    assert len(roots(lambda x: 2.0 + x, [0.0, 1.0])) == 0
+    assert roots(lambda x: np.sin(25.0 * x), np.array([0.1, 1.7, 3.0])) == pytest.approx(
+        np.arange(1, 24) * math.pi / 25.0, abs=1e-12
+    )
+    assert len(roots(lambda x: 0.0 * x, np.array([0.0, 1.0]))) == 0
+    assert len(roots(lambda x: 2.0 + x, np.array([0.0, 1.0]))) == 0
