@@ -1,0 +1,81 @@
+"""Cylindrical (barrel) cams: a groove around a cylinder moves a roller along the cylinder's axis.
+
+The groove's pitch curve, unrolled, is x = R θ, y = s(θ) (Norton §8.1; Rao §5.1): its slope is the pressure angle,
+tan φ = v/R, and its curvature a R/(R² + v²)^{3/2}, since x″ = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.extremes import Extremes, extremes
+from kinematics.cam.pieces import Motion
+from kinematics.cam.program import Program
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class BarrelCam:
+    """A barrel cam with a translating roller.
+
+    Parameters
+    ----------
+    program : Program
+        Displacement along the axis.
+    radius : float
+        Of the cylinder on which the roller's middle runs.
+    roller_radius : float
+        Half the groove's width; 0 for a thin pin.
+    """
+
+    program: Program
+    radius: float
+    roller_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.radius) and self.radius > 0.0):
+            raise DimensionError("cylinder radius", "positive", self.radius)
+        if not (math.isfinite(self.roller_radius) and self.roller_radius >= 0.0):
+            raise DimensionError("roller radius", "at least 0", self.roller_radius)
+
+    def pressure_angle(self, angle: ArrayLike) -> Real:
+        """Radians, positive in a rise."""
+        return np.asarray(np.arctan(self.program.motion(angle).v / self.radius))
+
+    def pitch_curve(self, angle: ArrayLike) -> Complex:
+        """Unrolled: along the circumference the real part, along the axis the imaginary one."""
+        theta = np.asarray(angle, dtype=np.float64)
+        return np.asarray(self.radius * theta + 1j * self.program.motion(theta).s)
+
+    def wall(self, angle: ArrayLike, side: int) -> Complex:
+        """A wall of the groove, unrolled: on the side (1) to which the follower rises or the other (−1)."""
+        theta = np.asarray(angle, dtype=np.float64)
+        tangent = self.radius + 1j * self.program.motion(theta).v
+        return np.asarray(self.pitch_curve(theta) + side * self.roller_radius * 1j * tangent / np.abs(tangent))
+
+    @cached_property
+    def pressure_angle_extremes(self) -> Extremes:
+        """Exact extremes of the pressure angle."""
+        return extremes(lambda angle: np.arctan(self.program.pieces.motion(angle).v / self.radius), self.program.breaks)
+
+    @cached_property
+    def least_radius(self) -> float:
+        """Smallest radius of curvature of the unrolled pitch curve; infinite for a straight one."""
+        worst = extremes(lambda angle: self._curvature(self.program.pieces.motion(angle)), self.program.breaks).largest
+        return 1.0 / worst if worst > 0.0 else math.inf
+
+    @property
+    def undercut(self) -> bool:
+        """Whether a wall of the groove has a cusp: the roller is as large as the least radius."""
+        return self.least_radius <= self.roller_radius
+
+    def _curvature(self, motion: Motion) -> Real:
+        return np.asarray(motion.a * self.radius / np.hypot(self.radius, motion.v) ** 3)

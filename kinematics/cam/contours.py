@@ -1,0 +1,291 @@
+"""Cams of specified contour: eccentric circles, circular arcs and straight flanks under a translating follower.
+
+The contour is given and the motion follows (Rao, *Kinematics of Machinery*, §5.7). With γ the angle from the slide to
+the centre of an arc of radius ρ at a distance E from the cam's centre, a roller of radius r on a slide at an offset e
+stands at
+
+    x = E cos γ ± √((ρ ± r)² − (E sin γ − e)²),      + convex, − hollow,
+
+on a straight flank at x = (h + r − e sin β)/cos β with β the angle of its normal and h its distance, and a flat face on
+an arc at x = E cos γ + ρ. The nose points along the +x axis of the cam, so that the follower is at its highest at
+cam angle 0; conventions are those of :mod:`follower`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.follower import TranslatingFlat, TranslatingRoller
+from kinematics.cam.pieces import Motion
+from kinematics.cam.profile import Rotation
+from kinematics.cam.program import TURN
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+TANGENT = 1e-9
+"""Share of the base radius by which the ends of neighbouring parts may miss each other."""
+
+
+class Arc(NamedTuple):
+    """A circular arc: its centre and radius, negative where it is hollow; from the outward normal's angle on."""
+
+    centre: complex
+    radius: float
+    start: float
+
+
+class Flank(NamedTuple):
+    """A straight flank with the given angle of its outward normal, at a distance from the cam's centre."""
+
+    distance: float
+    start: float
+
+
+@dataclass(frozen=True)
+class SpecifiedContour:
+    """A closed contour of arcs and flanks that are tangent to their neighbours.
+
+    Parameters
+    ----------
+    base_radius : float
+        Of the base circle, from which displacements are counted.
+    parts : tuple of Arc or Flank
+        Counter-clockwise around the cam; the outward normal of each at its start is that of the one before at its end.
+    """
+
+    base_radius: float
+    parts: tuple[Arc | Flank, ...]
+
+    def __post_init__(self) -> None:
+        for k, part in enumerate(self.parts):
+            before, after = self._end(k - 1), self._end(k)
+            if isinstance(part, Arc):
+                off = abs(part.centre + part.radius * np.exp(1j * part.start) - before)
+            else:
+                normal = np.exp(-1j * part.start)
+                turn = np.exp(1j * self.parts[(k + 1) % len(self.parts)].start) * normal - 1.0
+                ends = np.array([before * normal, after * normal]).real - part.distance
+                off = max(np.abs(ends).max(), abs(turn) * self.base_radius)
+            if not off <= TANGENT * self.base_radius:
+                raise DimensionError("contour", "of parts that are tangent to their neighbours", (k, float(off)))
+
+    @property
+    def joints(self) -> Complex:
+        """Where each part begins, shape (parts,)."""
+        return np.array([self._end(k - 1) for k in range(len(self.parts))])
+
+    @property
+    def least_radius(self) -> float:
+        """Smallest convex radius of curvature."""
+        return min(part.radius for part in self.parts if isinstance(part, Arc) and part.radius > 0.0)
+
+    def points(self, count: int) -> Complex:
+        """Points along the contour, about ``count`` of them, every joint included."""
+        found: list[NDArray[Any]] = []
+        lengths = [abs(self._length(k)) for k in range(len(self.parts))]
+        for k, part in enumerate(self.parts):
+            number = max(2, round(count * lengths[k] / sum(lengths)))
+            share = np.arange(number) / number
+            if isinstance(part, Arc):
+                angle = part.start + share * self._turn(k)
+                found.append(part.centre + part.radius * np.exp(1j * angle))
+            else:
+                found.append(self._end(k - 1) + share * (self._end(k) - self._end(k - 1)))
+        return np.concatenate(found)
+
+    def breaks(self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation = "ccw") -> Real:
+        """Cam angles between which the follower stays on one part, ascending from 0 to 2π."""
+        starts = np.mod(self._starts(follower, rotation)[0], TURN)
+        return np.unique(np.concatenate([[0.0], starts, [TURN]]))
+
+    def motion(
+        self, follower: TranslatingRoller | TranslatingFlat, angle: ArrayLike, rotation: Rotation = "ccw"
+    ) -> Motion:
+        """s, v, a, j of the follower at cam angles, per radian.
+
+        s is counted from the base circle: zero where a roller's centre is on the prime circle.
+
+        Raises
+        ------
+        DimensionError
+            A prime or base radius that does not belong to this contour, or a roller too large, or a face, for a hollow.
+        """
+        own = follower.base_radius if isinstance(follower, TranslatingFlat) else follower.prime_radius
+        roller = 0.0 if isinstance(follower, TranslatingFlat) else follower.roller_radius
+        if abs(own - self.base_radius - roller) > TANGENT * self.base_radius:
+            raise DimensionError("prime or base radius", f"{self.base_radius + roller} for this contour", own)
+        theta = np.asarray(angle, dtype=np.float64)
+        starts, parts = self._starts(follower, rotation)
+        order = np.argsort(np.mod(starts, TURN))
+        index = order[np.searchsorted(np.mod(starts, TURN)[order], np.mod(theta, TURN), side="right") - 1]
+        result = np.zeros((4, *theta.shape))
+        for k, part in enumerate(parts):
+            here = index == k
+            if here.any():
+                result[:, here] = _on(part, follower, theta[here])
+        return Motion(*result)
+
+    def _starts(
+        self, follower: TranslatingRoller | TranslatingFlat, rotation: Rotation
+    ) -> tuple[Real, tuple[Arc | Flank, ...]]:
+        """Cam angles at which the follower comes to each part, and the parts, for a cam that turns clockwise."""
+        contour = self if rotation == "cw" else self._mirrored()
+        normals = np.array([part.start for part in contour.parts])
+        if isinstance(follower, TranslatingFlat):
+            if any(isinstance(part, Arc) and part.radius <= 0.0 for part in self.parts):
+                raise DimensionError("contour under a flat face", "nowhere hollow", self.parts)
+            arcs = [k for k, part in enumerate(contour.parts) if isinstance(part, Arc)]
+            return normals[arcs], tuple(contour.parts[k] for k in arcs)
+        hollows = [-part.radius for part in self.parts if isinstance(part, Arc) and part.radius < 0.0]
+        if hollows and follower.roller_radius >= min(hollows):
+            raise DimensionError("roller radius", f"less than the hollow's, {min(hollows)}", follower.roller_radius)
+        centre = contour.joints + follower.roller_radius * np.exp(1j * normals)
+        return np.angle(centre) - np.arcsin(follower.offset / np.abs(centre)), contour.parts
+
+    def _mirrored(self) -> SpecifiedContour:
+        parts: list[Arc | Flank] = []
+        for k in range(len(self.parts) - 1, -1, -1):
+            part = self.parts[k]
+            end = -(part.start + self._turn(k))
+            parts.append(
+                Arc(part.centre.conjugate(), part.radius, end) if isinstance(part, Arc) else Flank(part[0], end)
+            )
+        return SpecifiedContour(self.base_radius, tuple(parts))
+
+    def _turn(self, k: int) -> float:
+        """Angle through which the normal turns on a part; negative on a hollow, a whole turn on a single arc."""
+        part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
+        if isinstance(part, Flank):
+            return 0.0
+        turn = (following.start - part.start) % TURN
+        if part.radius < 0.0:
+            return turn - TURN if turn > 0.0 else 0.0
+        return turn or TURN
+
+    def _end(self, k: int) -> complex:
+        """Where a part ends: an arc where its normal is the next part's, a flank where the next arc begins."""
+        part, following = self.parts[k], self.parts[(k + 1) % len(self.parts)]
+        if isinstance(part, Flank):
+            if isinstance(following, Flank):
+                raise DimensionError("contour", "without two flanks in a row, which have no common tangent", k)
+            part = following
+        return complex(part.centre + part.radius * np.exp(1j * following.start))
+
+    def _length(self, k: int) -> float:
+        part = self.parts[k]
+        if isinstance(part, Arc):
+            return part.radius * self._turn(k)
+        return abs(self._end(k) - self._end(k - 1))
+
+
+def eccentric_circle(radius: float, eccentricity: float) -> SpecifiedContour:
+    """A circle that turns about a point off its centre; its base circle is the inscribed one about that point."""
+    if not (math.isfinite(radius) and 0.0 <= eccentricity < radius):
+        raise DimensionError("eccentricity", f"at least 0 and less than the radius {radius}", eccentricity)
+    return SpecifiedContour(radius - eccentricity, (Arc(complex(eccentricity), radius, 0.0),))
+
+
+def tangent_cam(base_radius: float, nose_radius: float, nose_distance: float) -> SpecifiedContour:
+    """Straight flanks tangent to the base circle and to a nose whose centre is at a distance (Rao §5.7)."""
+    _check_nose(base_radius, nose_radius, nose_distance)
+    normal = math.acos((base_radius - nose_radius) / nose_distance)
+    nose, base = complex(nose_distance), 0j
+    return SpecifiedContour(
+        base_radius,
+        (
+            Arc(nose, nose_radius, -normal),
+            Flank(base_radius, normal),
+            Arc(base, base_radius, normal),
+            Flank(base_radius, -normal),
+        ),
+    )
+
+
+def circular_arc_cam(
+    base_radius: float, nose_radius: float, nose_distance: float, flank_radius: float
+) -> SpecifiedContour:
+    """Flanks that are arcs tangent to the base circle and to the nose; a negative flank radius is hollow.
+
+    The flank's centre is at flank_radius − base_radius from the cam's centre and flank_radius − nose_radius from the
+    nose's.
+    """
+    _check_nose(base_radius, nose_radius, nose_distance)
+    to_base, to_nose = abs(flank_radius - base_radius), abs(flank_radius - nose_radius)
+    closes = abs(to_base - to_nose) < nose_distance < to_base + to_nose
+    convex = flank_radius > max(base_radius, nose_radius)
+    if not (math.isfinite(flank_radius) and closes and (convex or flank_radius < 0.0)):
+        raise DimensionError("flank radius", "such that the flank is tangent to base circle and nose", flank_radius)
+    # Angle at the cam's centre between the nose and the flank's centre.
+    cosine = (to_base**2 + nose_distance**2 - to_nose**2) / (2.0 * to_base * nose_distance)
+    angle = math.acos(cosine)
+    centre = to_base * complex(math.cos(angle), -math.sin(angle) if convex else math.sin(angle))
+    outward = 1.0 if convex else -1.0
+    at_nose = float(np.angle(outward * (nose_distance - centre)))
+    at_base = float(np.angle(-outward * centre))
+    nose = complex(nose_distance)
+    return SpecifiedContour(
+        base_radius,
+        (
+            Arc(nose, nose_radius, -at_nose),
+            Arc(centre, flank_radius, at_nose),
+            Arc(0j, base_radius, at_base),
+            Arc(centre.conjugate(), flank_radius, -at_base),
+        ),
+    )
+
+
+def flank_radius_of(base_radius: float, nose_radius: float, nose_distance: float, half_action: float) -> float:
+    """Radius of the flanks of a circular-arc cam whose rise takes an angle, radians; infinite for a tangent cam.
+
+    The base circle ends at the half action angle from the nose, where the flank is tangent to it.
+    """
+    _check_nose(base_radius, nose_radius, nose_distance)
+    if not 0.0 < half_action < math.pi:
+        raise DimensionError("half action angle", "between 0 and π", half_action)
+    along = nose_distance * math.cos(half_action)
+    top = base_radius**2 + nose_distance**2 - nose_radius**2 - 2.0 * base_radius * along
+    bottom = 2.0 * (base_radius - nose_radius - along)
+    return top / bottom if bottom != 0.0 else math.inf
+
+
+def _check_nose(base_radius: float, nose_radius: float, nose_distance: float) -> None:
+    if not (math.isfinite(base_radius) and base_radius > 0.0):
+        raise DimensionError("base radius", "positive", base_radius)
+    if not (math.isfinite(nose_radius) and nose_radius > 0.0):
+        raise DimensionError("nose radius", "positive", nose_radius)
+    if not (math.isfinite(nose_distance) and nose_distance > abs(base_radius - nose_radius)):
+        expected = f"more than {abs(base_radius - nose_radius)}, so that the nose is outside the base circle"
+        raise DimensionError("distance of the nose's centre", expected, nose_distance)
+
+
+def _on(part: Arc | Flank, follower: TranslatingRoller | TranslatingFlat, theta: Real) -> Real:
+    """s, v, a, j on one part; dγ/dθ = dβ/dθ = −1."""
+    if isinstance(part, Flank):
+        # Under a flat face a flank is passed in an instant, and no angle comes here.
+        assert isinstance(follower, TranslatingRoller), "a flat face stays on no flank"
+        beta, h, e = part.start - theta, part.distance + follower.roller_radius, follower.offset
+        sec, tan = 1.0 / np.cos(beta), np.tan(beta)
+        s = h * sec - e * tan - follower.height
+        v = -h * sec * tan + e * sec**2
+        a = h * sec * (tan**2 + sec**2) - 2.0 * e * sec**2 * tan
+        j = -h * sec * tan * (tan**2 + 5.0 * sec**2) + e * sec**2 * (4.0 * tan**2 + 2.0 * sec**2)
+        return np.stack([s, v, a, j])
+    reach, gamma = abs(part.centre), float(np.angle(part.centre)) - theta
+    p, q1 = reach * np.cos(gamma), -reach * np.cos(gamma)
+    p1 = reach * np.sin(gamma)
+    if isinstance(follower, TranslatingFlat):
+        return np.stack([p + part.radius - follower.base_radius, p1, -p, -p1])
+    radius, q = part.radius + follower.roller_radius, p1 - follower.offset
+    q2, q3 = -p1, p
+    w = math.copysign(1.0, radius) * np.sqrt(radius**2 - q**2)
+    w1 = -q * q1 / w
+    w2 = -(q1**2 + q * q2 + w1**2) / w
+    w3 = -(3.0 * q1 * q2 + q * q3 + 3.0 * w1 * w2) / w
+    return np.stack([p + w - follower.height, p1 + w1, -p + w2, -p1 + w3])
