@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
+from service.render import blocks
+from service.render.blocks import GAP, ROW, SIZE, SMALL, Block, block_start, value_at
 from service.render.fourbar import Scene
 from service.render.numbers import NONE, angle, length, small
-from service.render.svg import Element, clean, element, line, shortened, text, text_width
-from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT, PALE
+from service.render.svg import Element, clean, element, line, text, text_width
+from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT
 from synthesis.designs import Check, LinkageDesign
 from synthesis.problems import MotionProblem
-
-ROW, HEADING, GAP = 18.0, 24.0, 16.0
-"""Heights of a row and of a block's heading, and the space after a block, pixels."""
-
-SIZE, SMALL = 11.5, 10.5
-"""Font sizes of rows, and of the targets with their many columns, pixels."""
 
 DEGREES = frozenset({"transmission_angle", "min_transmission_angle"})
 """Checks whose value is an angle."""
@@ -32,9 +27,6 @@ GRASHOF = {
     "rocker_rocker": "rocker-rocker",
     "change_point": "change point",
 }
-
-Block = Callable[[float, float, float], tuple[Element, float]]
-"""Draws itself at left, top and width; returns its element and the y below it."""
 
 
 def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
@@ -65,11 +57,11 @@ def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     ]
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = _block(f"Dimensions ({unit})", left, top, width)
+        block, y = block_start(f"Dimensions ({unit})", left, top, width)
         for link, name, value in rows:
             y += ROW
             block.add(_swatch(link, left, y - 4.0) if link else None, text(left + 34.0, y, name, SIZE, fill=INK))
-            block.add(_value(left + width, y, value, left + 34.0 + text_width(name, SIZE)))
+            block.add(value_at(left + width, y, value, left + 34.0 + text_width(name, SIZE)))
         return block, y + GAP
 
     return draw
@@ -95,7 +87,7 @@ def targets(design: LinkageDesign, problem: MotionProblem, scene: Scene, unit: s
         rows.append((cells, note))
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = _block("Targets", left, top, width)
+        block, y = block_start("Targets", left, top, width)
 
         def write(cells: list[str], colour: str) -> None:
             for cell, share, before in zip(cells, shares, (0.0, *shares), strict=False):
@@ -118,22 +110,7 @@ def targets(design: LinkageDesign, problem: MotionProblem, scene: Scene, unit: s
 
 def checks(design: LinkageDesign) -> Block:
     """Every check with a mark, its value and its limit."""
-
-    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        verdict = "all passed" if design.verification.passed else "not all passed"
-        block, y = _block(f"Checks: {verdict}", left, top, width)
-        for check in design.verification.checks:
-            y += ROW
-            measure = _measure(check)
-            room = width - 22.0 - text_width(measure, SIZE) - 8.0
-            words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
-            row = element("g", _mark(check.passed, left + 8.0, y - 4.0), data_check=clean(check.name))
-            row.add(text(left + 22.0, y, words, SIZE, fill=INK))
-            row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
-            block.add(row)
-        return block, y + GAP
-
-    return draw
+    return blocks.checks(design.verification, _written)
 
 
 def metrics(design: LinkageDesign, unit: str) -> Block:
@@ -150,57 +127,17 @@ def metrics(design: LinkageDesign, unit: str) -> Block:
         ("quality", length(found.quality, digits=3)),
     ]
 
-    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = _block("Metrics", left, top, width)
-        for name, value in rows:
-            y += ROW
-            block.add(
-                text(left, y, name, SIZE, fill=INK), _value(left + width, y, value, left + text_width(name, SIZE))
-            )
-        return block, y + GAP
-
-    return draw
+    return blocks.rows("Metrics", rows)
 
 
 def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def _block(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
-    """A block with its heading and rule; the y from which rows are counted."""
-    base = top + HEADING - 9.0
-    rule = line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
-    title = text(left, base, heading, 12.5, font_weight="bold", fill=INK)
-    return element("g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()), top + HEADING - 2.0
-
-
-def _value(right: float, y: float, value: str, after: float) -> Element:
-    """A value at the right end of a row, in smaller type where it would touch the row's name."""
-    width = text_width(value, SIZE)
-    size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
-    return text(right, y, value, size, text_anchor="end", fill=INK)
-
-
-def _measure(check: Check) -> str:
-    """Value and limit of a check; their order tells whether the limit is the least or the most allowed."""
-    if check.value is None:
-        return ""
-
-    def written(value: float) -> str:
-        if check.name in DEGREES:
-            return angle(value, 2)
-        return length(value, digits=4) if check.name in LENGTHS else small(value)
-
-    if check.limit is None:
-        return written(check.value)
-    return f"{written(check.value)}  (limit {written(check.limit)})"
-
-
-def _mark(passed: bool, x: float, y: float) -> Element:
-    """A tick or a cross, drawn, so that no font decides about it."""
-    colour = OUTPUT if passed else "#b3261e"
-    shape = f"M{x - 5:.1f} {y:.1f}l3.5 4l6.5 -8.5" if passed else f"M{x - 4:.1f} {y - 4:.1f}l8 8m0 -8l-8 8"
-    return element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())
+def _written(check: Check, value: float) -> str:
+    if check.name in DEGREES:
+        return angle(value, 2)
+    return length(value, digits=4) if check.name in LENGTHS else small(value)
 
 
 def _swatch(link: str, left: float, y: float) -> Element:
