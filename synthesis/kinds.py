@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
 
 from pydantic import Discriminator, Tag, TypeAdapter
 
-from synthesis.designs import MotionResult, Result
-from synthesis.problems import MotionProblem, StatedProblem
+from synthesis.designs import GearTrainResult, MotionResult, Result
+from synthesis.problems import GearTrainProblem, MotionProblem, StatedProblem
 
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
@@ -27,6 +27,7 @@ class Kind(NamedTuple):
 
 KINDS: dict[str, Kind] = {
     "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
+    "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
 }
 """Every kind of problem by its name."""
 

@@ -5,6 +5,18 @@ is the designs and how they were found. One module a kind of problem, and one fo
 """
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
+from synthesis.designs.gear_train import (
+    GearTrainDesign,
+    GearTrainMechanism,
+    GearTrainMetrics,
+    GearTrainResult,
+    GearTrainSearch,
+    Idler,
+    MeshGeometry,
+    ParetoTrain,
+    Ratio,
+    Stage,
+)
 from synthesis.designs.linkage import (
     CouplerPoint,
     FixedPivots,
@@ -28,15 +40,25 @@ __all__ = [
     "FourbarLinks",
     "FourbarMechanism",
     "GearPair",
+    "GearTrainDesign",
+    "GearTrainMechanism",
+    "GearTrainMetrics",
+    "GearTrainResult",
+    "GearTrainSearch",
+    "Idler",
     "Link",
     "LinkageDesign",
     "LinkageMetrics",
+    "MeshGeometry",
     "MotionResult",
+    "ParetoTrain",
     "Point",
+    "Ratio",
     "Result",
     "Search",
     "Skeleton",
     "Slide",
+    "Stage",
     "Target",
     "Verification",
 ]

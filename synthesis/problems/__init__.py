@@ -19,6 +19,7 @@ from synthesis.problems.base import (
     StatedProblem,
     Statement,
 )
+from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
 from synthesis.problems.motion import CouplerVector, DyadChoices, MotionProblem, Position
 
@@ -30,6 +31,7 @@ __all__ = [
     "CouplerVector",
     "DyadChoices",
     "Flag",
+    "GearTrainProblem",
     "Interval",
     "LengthLimits",
     "LinkageProblem",
@@ -41,4 +43,6 @@ __all__ = [
     "Region",
     "StatedProblem",
     "Statement",
+    "StockedGear",
+    "TeethRange",
 ]

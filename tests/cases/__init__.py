@@ -28,10 +28,12 @@ class Expected:
 
     def agrees(self, found: Any) -> bool:
         """Whether a computed value (or list of values) is the expected one within the printed precision."""
-        if isinstance(self.value, list):
-            same_length = len(found) == len(self.value)
-            return same_length and all(self._near(f, v) for f, v in zip(found, self.value, strict=True))
-        return self._near(found, self.value)
+        return self._agree(found, self.value)
+
+    def _agree(self, found: Any, value: Any) -> bool:
+        if isinstance(value, list):
+            return len(found) == len(value) and all(self._agree(f, v) for f, v in zip(found, value, strict=True))
+        return self._near(found, value)
 
     def _near(self, found: Any, value: Any) -> bool:
         if self.tolerance is None or isinstance(value, str | bool):

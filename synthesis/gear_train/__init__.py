@@ -1,0 +1,1 @@
+"""Ordinary gear trains for a speed ratio: exhaustive search in exact arithmetic."""

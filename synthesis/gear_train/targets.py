@@ -1,0 +1,249 @@
+"""Exact target ratios: rational numbers, and products with π, e and square roots.
+
+A target is stated as a JSON number or as text in a small grammar::
+
+    target    =  ["-" | "+"] factor { ("*" | "/") factor }
+    factor    =  number | constant | number constant
+    constant  =  "pi" | "e" | "sqrt(" number ")"
+    number    =  digits ["." digits]
+
+so ``127/50``, ``3.14159265358979``, ``pi/2``, ``3pi/2``, ``2*sqrt(2)``; after "/" a factor is a number or a constant
+alone, because ``1/3pi`` means two things. Text is kept exact. A JSON number is taken as the
+shortest decimal that denotes it, which is the decimal that was written. Nothing is evaluated as code.
+
+A target is q · π^a · e^b · √r with rational q and r. It is compared with rational ratios without rounding: its
+enclosure between two rational numbers is narrowed until the comparison is decided. A target that equals the rational
+number cannot be told apart by narrowing; that happens for a = b = 0 only if r is a square, which is found exactly.
+Otherwise the number is irrational, as far as mathematics knows: √r, π^a √r and e^b √r are; of products of powers of
+both π and e it is not known, and :data:`DEEPEST` bits count as equality there.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, lru_cache
+
+LONGEST = 120
+"""Characters of a statement at most; more is an attack."""
+
+SMALLEST, LARGEST = Fraction(1, 10**9), Fraction(10**9)
+"""Ratios beyond are typing errors; the same limit as for all numbers."""
+
+DEEPEST = 1 << 14
+"""Bits at which a narrowing ends; two numbers of some hundred digits that differ are told apart long before."""
+
+CLEARLY = 1e-14
+"""Floats of two numbers that differ by more than this share are in the order of the numbers: some forty roundings."""
+
+_SIZE = 64
+"""Bits of the first enclosure."""
+
+_NUMBER = r"\d+(?:\.\d+)?|\.\d+"
+_TOKEN = re.compile(rf"\s*(?:({_NUMBER})|(pi|e)(?![a-z])|sqrt\(\s*({_NUMBER})\s*\)|([*/]))", re.ASCII)
+
+
+class TargetSyntaxError(ValueError):
+    """A text that is no target; the message says what was expected."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """The positive number ``factor`` · π^``pi`` · e^``e`` · √``radicand``."""
+
+    factor: Fraction
+    pi: int = 0
+    e: int = 0
+    radicand: Fraction = Fraction(1)
+
+    @property
+    def rational(self) -> Fraction | None:
+        """The number itself where it is rational."""
+        return self.factor if self.pi == self.e == 0 and self.radicand == 1 else None
+
+    @lru_cache(maxsize=256)  # noqa: B019  (values, not owners: equal targets share their bounds)
+    def enclosure(self, bits: int) -> tuple[Fraction, Fraction]:
+        """Lower and upper bound, about 2^-bits of the number apart."""
+        low = high = self.factor
+        for bounds, power in ((_pi, self.pi), (_e, self.e)):
+            below, above = (Fraction(bound, 1 << bits) for bound in bounds(bits))
+            if power < 0:
+                below, above = above, below
+            low, high = low * below**power, high * above**power
+        if self.radicand != 1:
+            scale = 1 << (2 * bits)
+            floor = math.isqrt(self.radicand.numerator * self.radicand.denominator * scale)
+            unit = self.radicand.denominator << bits
+            low, high = low * Fraction(floor, unit), high * Fraction(floor + 1, unit)
+        return low, high
+
+    def compared(self, ratio: Fraction) -> int:
+        """Sign of target − ratio, decided in exact arithmetic."""
+        apart = self.parts()[0] - float(ratio)
+        if abs(apart) > CLEARLY * float(ratio):
+            return 1 if apart > 0.0 else -1
+        if self.rational is not None:
+            return (self.rational > ratio) - (self.rational < ratio)
+        bits = _SIZE
+        while bits <= DEEPEST:
+            low, high = self.enclosure(bits)
+            if low > ratio:
+                return 1
+            if high < ratio:
+                return -1
+            bits *= 4
+        return 0
+
+    def nearer(self, one: Fraction, other: Fraction) -> int:
+        """−1 where ``one`` lies nearer to the target than ``other``, +1 where it lies farther, 0 where equally near."""
+        if one == other:
+            return 0
+        low, high = min(one, other), max(one, other)
+        if self.compared(low) <= 0:
+            nearest = low
+        elif self.compared(high) >= 0:
+            nearest = high
+        else:
+            side = self.compared((low + high) / 2)
+            if side == 0:
+                return 0
+            nearest = low if side < 0 else high
+        return -1 if nearest == one else 1
+
+    def within(self, ratio: Fraction, tolerance: Fraction) -> bool:
+        """Whether |ratio − target| ≤ tolerance × target."""
+        over = self.compared(ratio / (1 + tolerance)) >= 0
+        return over and (tolerance >= 1 or self.compared(ratio / (1 - tolerance)) <= 0)
+
+    def relative_error(self, ratio: Fraction) -> float:
+        """Ratio / target − 1, correct to all digits of a float."""
+        if self.rational is not None:
+            return float(ratio / self.rational - 1)
+        bits = 4 * _SIZE
+        while True:
+            low, high = (ratio / bound - 1 for bound in reversed(self.enclosure(bits)))
+            if (low > 0 or high < 0) and abs(high - low) <= abs(low) / (1 << 60):
+                return float(low)
+            if bits >= DEEPEST:
+                return 0.0
+            bits *= 4
+
+    @lru_cache(maxsize=256)  # noqa: B019
+    def parts(self) -> tuple[float, float]:
+        """The number as an unevaluated sum of two floats, good to 2^-105 of it."""
+        if self.rational is not None:
+            value = self.rational
+        else:
+            low, high = self.enclosure(4 * _SIZE)
+            value = (low + high) / 2
+        head = float(value)
+        return head, float(value - Fraction(head))
+
+    def __float__(self) -> float:
+        return self.parts()[0]
+
+
+def parse_target(stated: float | str) -> tuple[int, Target]:
+    """Sign and size of a stated ratio.
+
+    Raises
+    ------
+    TargetSyntaxError
+        For a text outside the grammar, zero, or a size beyond 1e-9 ... 1e9.
+    """
+    if isinstance(stated, str):
+        sign, target = _parse(stated)
+    else:
+        value = decimal(stated)
+        sign, target = (-1 if value < 0 else 1), Target(abs(value))
+    if target.factor == 0:
+        raise TargetSyntaxError("a ratio must not be zero")
+    if target.compared(SMALLEST) < 0 or target.compared(LARGEST) > 0:
+        raise TargetSyntaxError("a ratio must be between 1e-9 and 1e9 in size")
+    return sign, target
+
+
+def decimal(number: float) -> Fraction:
+    """A JSON number as the decimal that was written: the shortest that denotes the same float."""
+    return Fraction(repr(number))
+
+
+def _parse(text: str) -> tuple[int, Target]:
+    if len(text) > LONGEST:
+        raise TargetSyntaxError(f"expected at most {LONGEST} characters")
+    body = text.strip().lower()
+    sign = -1 if body.startswith("-") else 1
+    body = body[1:] if body[:1] in ("-", "+") else body
+    factor, radicand, powers = Fraction(1), Fraction(1), {"pi": 0, "e": 0}
+    place, direction, due, joins = 0, 1, True, False
+    while place < len(body.rstrip()):
+        token = _TOKEN.match(body, place)
+        if token is None or (due and token[4]):
+            raise _unexpected(body, place)
+        place = token.end()
+        number, constant, root, operator = token.groups()
+        if operator:
+            direction, due, joins = (1 if operator == "*" else -1), True, False
+            continue
+        if not (due or (joins and number is None)):
+            raise _unexpected(body, token.start())
+        if constant:
+            powers[constant] += direction
+        elif Fraction(number or root) == 0:
+            raise TargetSyntaxError("a ratio must not be zero" if direction > 0 else "division by zero")
+        elif number:
+            factor *= Fraction(number) ** direction
+        else:
+            radicand *= Fraction(root) ** direction
+        due, joins = False, number is not None and direction > 0
+    if due:
+        raise _unexpected(body, place)
+    whole, left = _root(radicand)
+    return sign, Target(factor * whole, powers["pi"], powers["e"], left)
+
+
+def _unexpected(body: str, place: int) -> TargetSyntaxError:
+    found = f"{body[place:].strip()[:12]!r}" if body[place:].strip() else "the end"
+    return TargetSyntaxError(
+        f"expected numbers, pi, e or sqrt(number) joined by * or /, such as 127/50 or pi/2; got {found}"
+    )
+
+
+def _root(radicand: Fraction) -> tuple[Fraction, Fraction]:
+    """√radicand as (rational, what is left under the root)."""
+    up, down = math.isqrt(radicand.numerator), math.isqrt(radicand.denominator)
+    if Fraction(up * up, down * down) == radicand:
+        return Fraction(up, down), Fraction(1)
+    return Fraction(1), radicand
+
+
+@cache
+def _pi(bits: int) -> tuple[int, int]:
+    """⌊π 2^bits⌋ or a unit less, and a bound above: Machin's π = 16 atan(1/5) − 4 atan(1/239)."""
+    guard = 32
+    unit = 1 << (bits + guard)
+    value = 16 * _atan_of_inverse(5, unit) - 4 * _atan_of_inverse(239, unit)
+    return (value >> guard) - 1, (value >> guard) + 2
+
+
+def _atan_of_inverse(n: int, unit: int) -> int:
+    total, power, k = 0, unit // n, 0
+    while power:
+        total += (-power if k % 2 else power) // (2 * k + 1)
+        power //= n * n
+        k += 1
+    return total
+
+
+@cache
+def _e(bits: int) -> tuple[int, int]:
+    """Bounds of e 2^bits by its series."""
+    guard = 32
+    term, total, k = 1 << (bits + guard), 0, 0
+    while term:
+        total += term
+        k += 1
+        term //= k
+    return (total >> guard) - 1, (total >> guard) + 2

@@ -1,0 +1,260 @@
+"""The answers to gear-train problems: demands, reasons, idlers, and the independence of the verification."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from synthesis.designs import GearTrainMechanism, GearTrainResult, Idler, Ratio, Stage
+from synthesis.dispatch import solve
+from synthesis.gear_train.verification import verify
+from synthesis.kinds import parse_problem
+from synthesis.problems import GearTrainProblem
+
+
+def solved(**fields: Any) -> GearTrainResult:
+    result = solve(parse_problem({"kind": "gear_train", **fields}), lambda fraction, message: None)
+    assert isinstance(result, GearTrainResult)
+    assert result.search.complete
+    assert all(design.verification.passed for design in result.designs)
+    return result
+
+
+def meshes(result: GearTrainResult, number: int = 0) -> list[tuple[int, int]]:
+    return [(stage.driver, stage.driven) for stage in result.designs[number].mechanism.stages]
+
+
+def test_the_planted_train_is_found() -> None:
+    ratio = Fraction(53 * 71 * 89, 17 * 29 * 37)
+    result = solved(ratio=f"{ratio.numerator}/{ratio.denominator}", max_stages=3, teeth={"min": 17, "max": 90})
+    best = result.designs[0]
+    assert best.mechanism.ratio.numerator == -ratio.numerator
+    assert best.metrics.relative_error == 0.0
+    assert best.metrics.hunting_tooth
+    assert result.search.ties == 1
+
+
+def test_an_idler_turns_the_direction() -> None:
+    result = solved(ratio=-70, max_stages=2, teeth={"min": 12, "max": 150})
+    best = result.designs[0].mechanism
+    assert best.ratio == Ratio(numerator=-70, denominator=1, value=-70.0)
+    assert len(best.stages) == 2
+    assert len(best.idlers) == 1
+    same = solved(ratio=70, max_stages=2, teeth={"min": 12, "max": 150}, direction="same")
+    assert same.designs[0].mechanism.idlers == []
+    assert same.designs[0].mechanism.ratio.value == 70.0
+
+
+def test_an_idler_keeps_the_demands_on_meshes() -> None:
+    result = solved(
+        ratio=-6,
+        max_stages=2,
+        teeth={"min": 12, "max": 60},
+        hunting_tooth="require",
+        interference="refuse",
+        max_designs=40,
+    )
+    for design in result.designs:
+        assert design.metrics.hunting_tooth
+        assert not any(mesh.interferes for mesh in design.metrics.meshes)
+        assert len(design.metrics.meshes) == len(design.mechanism.stages) + len(design.mechanism.idlers)
+
+
+def test_an_idler_comes_from_the_stock() -> None:
+    result = solved(ratio=3, direction="same", max_stages=1, stock=[20, 60, 33])
+    assert result.designs[0].mechanism.idlers == [Idler(stage=1, teeth=33)]
+
+
+def test_reverted_with_modules_of_its_stages() -> None:
+    """Rao, Solved Problem 8.5: 20:50 and 25:35 are coaxial if the modules are as 6:7."""
+    result = solved(ratio="7/2", max_stages=2, stock=[20, 50, 25, 35], reverted=True, module=[6.0, 7.0], tolerance=0)
+    best = result.designs[0]
+    assert {(s.driver, s.driven, s.module) for s in best.mechanism.stages} == {(20, 50, 6.0), (25, 35, 7.0)}
+    assert best.metrics.centre_distances == [210.0, 210.0]
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"ratio": 1e6, "max_stages": 3}, "out of reach"),
+        ({"ratio": 1000, "max_stages": 3, "max_stage_ratio": 5.0}, "0.008 to 125"),
+        ({"ratio": 3, "stock": [20]}, "stock of 1 gears is too small"),
+        ({"ratio": 3, "direction": "same", "max_stages": 1, "stock": [20, 60]}, "too small"),
+        ({"ratio": 3, "stock": [20, 61], "tolerance": 0.001}, "20:61, has a relative error of 0.0167"),
+        ({"ratio": -6, "max_stages": 2, "reverted": True}, "allow three stages"),
+        ({"ratio": 2, "stock": [20, 40], "hunting_tooth": "require"}, "no two gears"),
+        (
+            {"ratio": 2, "max_stages": 1, "teeth": {"min": 12, "max": 40}, "max_total_teeth": 30, "tolerance": 0.0},
+            "beyond",
+        ),
+    ],
+)
+def test_what_cannot_be_is_told_with_the_reason(fields: dict[str, Any], reason: str) -> None:
+    result = solved(**fields)
+    assert result.designs == []
+    assert result.search.complete
+    assert reason in result.summary
+
+
+def test_a_reverted_ratio_in_a_gap() -> None:
+    """Every reverted train is farther off than the tolerance: shown by listing them all."""
+    ratio, tolerance = Fraction("2.03"), Fraction("0.0001")
+    trains = [
+        Fraction(b * (total - c), a * c)
+        for total in range(24, 37)
+        for a in range(12, 19)
+        for c in range(12, 19)
+        if 12 <= (b := total - a) <= 18 and 12 <= total - c <= 18
+    ]
+    nearest = min(abs(train / ratio - 1) for train in trains)
+    result = solved(ratio="2.03", max_stages=2, teeth={"min": 12, "max": 18}, reverted=True, tolerance=1e-4)
+    assert nearest > tolerance
+    assert result.designs == []
+    assert result.search.least_error == pytest.approx(float(nearest), rel=1e-12)
+
+
+def test_hunting_teeth_are_preferred_among_ties() -> None:
+    plain = solved(ratio=6, max_stages=2, max_designs=30)
+    hunting = solved(ratio=6, max_stages=2, max_designs=30, hunting_tooth="prefer")
+    assert not plain.designs[0].metrics.hunting_tooth
+    assert all(design.metrics.hunting_tooth for design in hunting.designs)
+    assert all(design.metrics.relative_error == 0.0 for design in hunting.designs)
+
+
+def test_the_pareto_set_is_one() -> None:
+    result = solved(ratio="pi", max_stages=3, teeth={"min": 12, "max": 60})
+    sizes = [train.size for train in result.pareto]
+    errors = [abs(train.relative_error) for train in result.pareto]
+    assert sizes == sorted(set(sizes))
+    assert errors == sorted(set(errors), reverse=True)
+    assert errors[-1] == abs(result.designs[0].metrics.relative_error) == result.search.least_error
+    assert errors[0] <= 0.01
+
+
+def test_a_number_is_the_decimal_that_was_written() -> None:
+    result = solved(ratio=2.54, max_stages=1, teeth={"min": 12, "max": 130}, tolerance=0)
+    assert meshes(result) == [(50, 127)]
+
+
+def test_teeth_without_a_range_are_sound() -> None:
+    result = solved(ratio="pi", max_stages=2)
+    gears = [n for design in result.designs for s in design.mechanism.stages for n in (s.driver, s.driven)]
+    assert min(gears) >= 18
+    assert not any(mesh.interferes or mesh.undercut for design in result.designs for mesh in design.metrics.meshes)
+
+
+def test_a_shift_is_suggested_and_not_applied() -> None:
+    result = solved(ratio=5, max_stages=1, teeth={"min": 12, "max": 60}, tolerance=0, rank_by="size")
+    mesh = result.designs[0].metrics.meshes[0]
+    assert (mesh.driver, mesh.driven, mesh.interferes) == (12, 60, True)
+    assert mesh.suggested_shift is not None
+    assert mesh.suggested_shift.driver == pytest.approx(1.0 - 6.0 * math.sin(math.radians(20.0)) ** 2)
+    assert mesh.suggested_shift.driven == -mesh.suggested_shift.driver
+    assert mesh.centre_distance == 36.0
+
+
+BASE = {"kind": "gear_train", "ratio": 6, "max_stages": 2, "teeth": {"min": 12, "max": 60}}
+GOOD = GearTrainMechanism(
+    stages=[Stage(driver=20, driven=40, module=1.0), Stage(driver=20, driven=60, module=1.0)],
+    ratio=Ratio(numerator=6, denominator=1, value=6.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "fields", "check"),
+    [
+        ({"ratio": Ratio(numerator=7, denominator=1, value=7.0)}, {}, "ratio"),
+        ({"ratio": Ratio(numerator=-6, denominator=1, value=-6.0)}, {}, "ratio"),
+        ({"ratio": Ratio(numerator=6, denominator=1, value=6.1)}, {}, "ratio"),
+        ({"stages": [Stage(driver=20, driven=40, module=1.0), Stage(driver=20, driven=61, module=1.0)]}, {}, "ratio"),
+        ({}, {"ratio": "6.001", "tolerance": 1e-4}, "ratio_error"),
+        ({}, {"ratio": "pi", "tolerance": 0.9}, "ratio_error"),
+        ({}, {"direction": "opposite"}, "direction"),
+        ({}, {"max_stages": 1}, "stages"),
+        ({}, {"teeth": {"min": 12, "max": 59}}, "teeth"),
+        ({}, {"teeth": {"min": 21, "max": 60}}, "teeth"),
+        ({}, {"teeth": None, "stock": [20, 40, 60]}, "stock"),
+        ({}, {"max_stage_ratio": 2.9}, "stage_ratio"),
+        ({}, {"max_total_teeth": 139}, "total_teeth"),
+        ({}, {"reverted": True}, "coaxial"),
+        ({}, {"hunting_tooth": "require"}, "hunting_tooth"),
+    ],
+)
+def test_verification_tells_a_wrong_train(change: dict[str, Any], fields: dict[str, Any], check: str) -> None:
+    stated = {name: value for name, value in {**BASE, **fields}.items() if value is not None}
+    problem = GearTrainProblem.model_validate(stated)
+    sound = verify(GearTrainProblem.model_validate(BASE), GOOD)
+    assert sound is not None
+    assert sound.verification.passed
+    found = verify(problem, GOOD.model_copy(update=change))
+    assert found is not None
+    assert check in [c.name for c in found.verification.checks if not c.passed]
+
+
+def test_verification_sees_interference() -> None:
+    stages = [Stage(driver=12, driven=36, module=1.0), Stage(driver=20, driven=40, module=1.0)]
+    problem = GearTrainProblem.model_validate({**BASE, "interference": "refuse"})
+    found = verify(problem, GOOD.model_copy(update={"stages": stages}))
+    assert found is not None
+    assert [c.name for c in found.verification.checks if not c.passed] == ["interference"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "path"),
+    [
+        ({"ratio": -6, "direction": "same"}, "/direction"),
+        ({"module": 1.0, "diametral_pitch": 10.0}, "/diametral_pitch"),
+        ({"stock": [20, 30]}, "/stock"),
+        ({"reverted": True, "max_stages": 1}, "/reverted"),
+        ({"teeth": [{"min": 12}, {"min": 12}]}, "/teeth"),
+        ({"teeth": {"max": 15}}, "/teeth/max"),
+        ({"teeth": [{"min": 12}, {"min": 12}, {"max": 12}, {"min": 12}]}, "/teeth/2/max"),
+        ({"module": [1.0]}, "/module"),
+        ({"module": [1.0, 1.0], "reverted": True}, "/module"),
+        ({"module": [1.0, 1.000000000001], "reverted": True}, "/module"),
+        ({"max_stages": 4, "teeth": {"min": 12, "max": 400}}, "/teeth"),
+        ({"max_stages": 4, "teeth": {"min": 12, "max": 500}, "reverted": True}, "/teeth"),
+    ],
+)
+def test_contradictions_are_told_by_field(fields: dict[str, Any], path: str) -> None:
+    problem = GearTrainProblem.model_validate({**BASE, **fields})
+    assert path in [contradiction.path for contradiction in problem.contradictions()]
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"ratio": 0},
+        {"ratio": "2*"},
+        {"ratio": 1e10},
+        {"ratio": True},
+        {"ratio": None},
+        {"teeth": {"min": 30, "max": 20}},
+        {"teeth": {"min": 2, "max": 20}},
+        {"stock": []},
+        {"stock": [20, 5000]},
+        {"max_stages": 5},
+        {"tolerance": -0.1},
+        {"max_stage_ratio": 0.5},
+        {"pressure_angle": 5.0},
+    ],
+)
+def test_ill_formed_statements_are_refused(fields: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        GearTrainProblem.model_validate({**BASE, **fields})
+
+
+def test_wide_ranges_stay_exact() -> None:
+    """Products beyond 2⁵³ never occur, and beyond 2³¹ nothing wraps round."""
+    ratio = Fraction(1999 * 1997, 1987 * 1993)
+    teeth = [{"min": 1980, "max": 2000}] * 4
+    result = solved(ratio=f"{ratio.numerator}/{ratio.denominator}", max_stages=2, teeth=teeth)
+    assert {frozenset((s.driver, s.driven) for s in d.mechanism.stages) for d in result.designs[:1]} <= {
+        frozenset({(1987, 1999), (1993, 1997)}),
+        frozenset({(1987, 1997), (1993, 1999)}),
+    }
+    assert result.designs[0].metrics.relative_error == 0.0
