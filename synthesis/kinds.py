@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
 
 from pydantic import Discriminator, Tag, TypeAdapter
 
-from synthesis.designs import GearTrainResult, MotionResult, Result
-from synthesis.problems import GearTrainProblem, MotionProblem, StatedProblem
+from synthesis.designs import GearTrainResult, MotionResult, PlanetaryResult, Result
+from synthesis.problems import GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
 
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
@@ -28,6 +28,9 @@ class Kind(NamedTuple):
 KINDS: dict[str, Kind] = {
     "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
+    "planetary_train": Kind(
+        PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"
+    ),
 }
 """Every kind of problem by its name."""
 

@@ -96,6 +96,20 @@ class Arrangement:
         """The gears that a gear meshes with."""
         return tuple(two if gear == one else one for one, two in self.meshes if gear in (one, two))
 
+    def central_meshes(self, planet: str) -> tuple[tuple[str, str], ...]:
+        """(gear of a planet, sun or ring that it meshes with), for every such mesh of one planet."""
+        pairs = [pair for one, other in self.meshes for pair in ((one, other), (other, one))]
+        return tuple((own, mate) for own, mate in pairs if self.places[own].body == planet and not self.is_planet(mate))
+
+    def independent_gears(self, planets: tuple[str, ...]) -> tuple[str, ...]:
+        """Gears of a planet set whose teeth can be chosen; coaxiality gives the others, a sun or ring a further mesh.
+
+        Suns and rings come first, and the planets that have more of them: most conditions are on these.
+        """
+        order = sorted(planets, key=lambda body: -len(self.central_meshes(body)))
+        central = [self.central_meshes(planet)[0][1] for planet in order]
+        return (*central, *(gear.name for planet in order for gear in self.gears if gear.body == planet))
+
     def train(self, teeth: Mapping[str, int]) -> Train:
         """The speed equations for given tooth numbers.
 

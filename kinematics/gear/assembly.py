@@ -210,12 +210,7 @@ def _bevel_gaps(
 
 def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
     """(planet, its gear, the sun or ring) for every mesh between a planet and a gear about the axis."""
-    found = []
-    for one, other in arrangement.meshes:
-        for own, central in ((one, other), (other, one)):
-            if arrangement.is_planet(own) and not arrangement.is_planet(central):
-                found.append((arrangement.places[own].body, own, central))
-    return found
+    return [(planet, *pair) for planet in arrangement.carriers for pair in arrangement.central_meshes(planet)]
 
 
 def _share_plane(arrangement: Arrangement, one: str, other: str) -> bool:

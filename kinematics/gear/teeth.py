@@ -76,7 +76,9 @@ def inverse_involute(value: float) -> float:
 
 @dataclass(frozen=True)
 class Gear:
-    """A spur gear. ``addendum``, ``dedendum`` and ``shift`` are shares of the module.
+    """A spur gear; ``addendum``, ``dedendum`` and ``shift`` are shares of the module.
+
+    ``teeth`` is whole, or the equivalent number of a bevel or helical gear.
 
     Raises
     ------
@@ -84,7 +86,7 @@ class Gear:
         For teeth, module, angle or depths that no gear has.
     """
 
-    teeth: int
+    teeth: float
     module: float
     pressure_angle: float = PRESSURE_ANGLE
     addendum: float = FULL_DEPTH_ADDENDUM

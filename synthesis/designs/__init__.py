@@ -31,6 +31,15 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import MotionResult
+from synthesis.designs.planetary_train import (
+    MeshContact,
+    ParetoPlanetaryTrain,
+    PlanetaryDesign,
+    PlanetaryMechanism,
+    PlanetaryMetrics,
+    PlanetaryResult,
+    PlanetPlaces,
+)
 
 __all__ = [
     "Answer",
@@ -49,9 +58,16 @@ __all__ = [
     "Link",
     "LinkageDesign",
     "LinkageMetrics",
+    "MeshContact",
     "MeshGeometry",
     "MotionResult",
+    "ParetoPlanetaryTrain",
     "ParetoTrain",
+    "PlanetPlaces",
+    "PlanetaryDesign",
+    "PlanetaryMechanism",
+    "PlanetaryMetrics",
+    "PlanetaryResult",
     "Point",
     "Ratio",
     "Result",

@@ -22,6 +22,11 @@ from synthesis.problems.base import (
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
 from synthesis.problems.motion import CouplerVector, DyadChoices, MotionProblem, Position
+from synthesis.problems.planetary_train import (
+    PlanetaryProblem,
+    PlanetaryTeeth,
+    ToothRange,
+)
 
 __all__ = [
     "Constraints",
@@ -37,6 +42,8 @@ __all__ = [
     "LinkageProblem",
     "MotionProblem",
     "Number",
+    "PlanetaryProblem",
+    "PlanetaryTeeth",
     "Point",
     "Position",
     "PositiveNumber",
@@ -45,4 +52,5 @@ __all__ = [
     "Statement",
     "StockedGear",
     "TeethRange",
+    "ToothRange",
 ]

@@ -1,0 +1,1 @@
+"""Planetary trains for a speed ratio: every combination of tooth numbers, in exact integers."""

@@ -1,0 +1,70 @@
+"""Which pairs of gears mesh soundly, for whole arrays of tooth numbers; lengths are in half modules.
+
+Standard full-depth teeth at their standard distance. With base radii z cos φ the line of action is tangent to both; an
+external tip circle z + 2 must stay inside √(z² cos² φ + (z₁ + z₂)² sin² φ). A ring's teeth are shortened as far as they
+would dig into the planet's flank: its addendum is the smaller of 1 and (R − √(R² cos² φ + (R − P)² sin² φ))/2, which
+leaves the contact ratio to be watched (Norton, Sec. 9.2–9.5; Colbourne 1987, ch. 8, for tips that foul).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+ADDENDUM_STEP = 1e-6
+"""Shortened addenda are whole multiples of this: written with six digits they still do not interfere."""
+
+ROUNDING = 1e-12
+"""A tip this share of its limit beyond it is on it."""
+
+
+def external_sound(one: Real, other: Real, angle: float) -> Mask:
+    """Whether neither of two external gears digs into the other."""
+    squared, span = np.sin(angle) ** 2, (one + other) ** 2
+    limits = [np.sqrt(z * z * (1.0 - squared) + span * squared) for z in (one, other)]
+    return np.asarray(
+        (one + 2.0 <= limits[0] * (1.0 + ROUNDING)) & (other + 2.0 <= limits[1] * (1.0 + ROUNDING)), np.bool_
+    )
+
+
+def external_contact(one: Real, other: Real, angle: float) -> Real:
+    """Contact ratio of two external gears."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    tips = [np.sqrt((z + 2.0) ** 2 - (z * cosine) ** 2) for z in (one, other)]
+    return np.asarray((tips[0] + tips[1] - (one + other) * sine) / (2.0 * np.pi * cosine))
+
+
+def ring_addendum(planet: Real, ring: Real, angle: float) -> Real:
+    """Addendum of a ring, in modules, that just does not dig into its planet, at most 1."""
+    limit = np.sqrt((ring * np.cos(angle)) ** 2 + ((ring - planet) * np.sin(angle)) ** 2)
+    return np.asarray(np.minimum(1.0, np.floor(0.5 * (ring - limit) / ADDENDUM_STEP) * ADDENDUM_STEP))
+
+
+def internal_contact(planet: Real, ring: Real, angle: float) -> Real:
+    """Contact ratio of a planet and its ring, the ring's teeth shortened where they must be."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    tip = ring - 2.0 * ring_addendum(planet, ring, angle)
+    own = np.sqrt((planet + 2.0) ** 2 - (planet * cosine) ** 2)
+    far = np.sqrt(np.maximum(tip**2 - (ring * cosine) ** 2, 0.0))
+    return np.asarray((own - far + (ring - planet) * sine) / (2.0 * np.pi * cosine))
+
+
+def tips_clear(planet: Real, ring: Real, angle: float) -> Mask:
+    """Whether the tips of a planet and its ring pass each other; a matter of rings hardly larger than their planets."""
+    tip, inner, apart = planet + 2.0, ring - 2.0 * ring_addendum(planet, ring, angle), ring - planet
+    base, ring_base = planet * np.cos(angle), ring * np.cos(angle)
+    inside = inner >= apart + tip
+    meets = (inner > np.abs(apart - tip)) & (inner >= ring_base)
+
+    def involute(cosine: Real) -> Real:
+        flank = np.arccos(np.clip(cosine, -1.0, 1.0))
+        return np.asarray(np.tan(flank) - flank)
+
+    at_planet = np.arccos(np.clip((inner**2 - tip**2 - apart**2) / (2.0 * tip * apart), -1.0, 1.0))
+    at_ring = np.arccos(np.clip((apart**2 + inner**2 - tip**2) / (2.0 * inner * apart), -1.0, 1.0))
+    room = planet * (involute(base / tip) + at_planet) - ring * (involute(ring_base / inner) + at_ring)
+    room = room + apart * (np.tan(angle) - angle)
+    return np.asarray(inside | (meets & (room >= 0.0)), np.bool_)

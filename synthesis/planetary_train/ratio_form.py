@@ -1,0 +1,146 @@
+"""The speed ratio of an arrangement as a quotient of polynomials in its tooth numbers.
+
+The speed equations of the meshes, with one member held and one driven at speed 1, are as many as the speeds that they
+leave open. By Cramer's rule the ratio input over output is a quotient of two determinants whose entries are tooth
+numbers; both are expanded once, and then evaluated for millions of tooth numbers at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from math import gcd
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+
+Polynomial = dict[tuple[str, ...], int]
+"""Integer coefficients by monomial: the names of its factors, sorted, a square twice."""
+
+Row = dict[str, Polynomial]
+"""Coefficients of a speed equation, by body."""
+
+
+class RatioForm(NamedTuple):
+    """Ratio = over / under, without common factors that are numbers or single tooth numbers."""
+
+    over: Polynomial
+    under: Polynomial
+
+
+def mesh_row(first: str, second: str, carrier: str, names: tuple[str, str], sense: int) -> Row:
+    """N1 (ω1 − ωc) − σ N2 (ω2 − ωc) = 0 for tooth numbers with these names."""
+    one: Polynomial = {(names[0],): 1}
+    other: Polynomial = {(names[1],): -sense}
+    return {first: one, second: other, carrier: _sum([(-1, one), (-1, other)])}
+
+
+def ratio_form(rows: Sequence[Row], driver: str, driven: str, held: str) -> RatioForm:
+    """Speed of ``driver`` over that of ``driven``, ``held`` at rest; no terms where the train is locked."""
+    bodies = dict.fromkeys(body for row in rows for body in row)
+    unknown = [body for body in bodies if body not in (driver, held)]
+    if len(unknown) != len(rows):
+        raise ValueError(f"expected {len(unknown)} equations for {', '.join(unknown)}, got {len(rows)}")
+    matrix = [[row.get(body, {}) for body in unknown] for row in rows]
+    at = unknown.index(driven)
+    right = [{term: -c for term, c in row.get(driver, {}).items()} for row in rows]
+    swapped = [[*line[:at], value, *line[at + 1 :]] for line, value in zip(matrix, right, strict=True)]
+    return _reduced(_determinant(matrix), _determinant(swapped))
+
+
+@cache
+def arrangement_form(name: str, driver: str, driven: str, held: str) -> RatioForm:
+    """Ratio of a known arrangement between three of its members."""
+    row = ARRANGEMENTS[name]
+    return ratio_form([line for planets in row.planet_sets for line in set_rows(row, planets)], driver, driven, held)
+
+
+def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
+    """Speed equations of the meshes of one planet set."""
+    found = []
+    for one, other in arrangement.meshes:
+        bodies = arrangement.places[one].body, arrangement.places[other].body
+        on = [body for body in bodies if body in planets]
+        if on:
+            carrier = arrangement.carriers[on[0]]
+            found.append(mesh_row(*bodies, carrier, (one, other), arrangement.sense(one, other)))
+    return found
+
+
+def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]], size: int) -> NDArray[np.float64]:
+    """Values of a polynomial at arrays of tooth numbers; whole numbers, exact below 2^53."""
+    total = np.zeros(size)
+    for term, coefficient in polynomial.items():
+        product = np.full(size, float(coefficient))
+        for name in term:
+            product *= values[name]
+        total += product
+    return total
+
+
+def exact(polynomial: Polynomial, values: Mapping[str, int]) -> int:
+    """Value of a polynomial at one set of tooth numbers."""
+    total = 0
+    for term, coefficient in polynomial.items():
+        product = coefficient
+        for name in term:
+            product *= values[name]
+        total += product
+    return total
+
+
+def _determinant(matrix: Sequence[Sequence[Polynomial]]) -> Polynomial:
+    """Expansion along the first row; the matrices are small and mostly empty."""
+    if not matrix:
+        return {(): 1}
+    parts = []
+    for k, entry in enumerate(matrix[0]):
+        if entry:
+            minor = _determinant([[*line[:k], *line[k + 1 :]] for line in matrix[1:]])
+            parts.append(((-1) ** k, _product(entry, minor)))
+    return _sum(parts)
+
+
+def _product(one: Polynomial, other: Polynomial) -> Polynomial:
+    parts = []
+    for a, x in one.items():
+        parts.append((x, {tuple(sorted(a + b)): y for b, y in other.items()}))
+    return _sum(parts)
+
+
+def _sum(parts: Iterable[tuple[int, Polynomial]]) -> Polynomial:
+    total: Polynomial = {}
+    for factor, polynomial in parts:
+        for term, coefficient in polynomial.items():
+            total[term] = total.get(term, 0) + factor * coefficient
+    return {term: coefficient for term, coefficient in total.items() if coefficient}
+
+
+def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
+    """Both without the whole number and the monomial that divide every term of both."""
+    terms = [*over, *under]
+    if not over or not under:
+        return RatioForm({}, {})
+    common = list(terms[0])
+    for term in terms[1:]:
+        rest, kept = list(term), []
+        for name in common:
+            if name in rest:
+                rest.remove(name)
+                kept.append(name)
+        common = kept
+    number = gcd(*over.values(), *under.values())
+
+    def divided(polynomial: Polynomial) -> Polynomial:
+        found = {}
+        for term, coefficient in polynomial.items():
+            rest = list(term)
+            for name in common:
+                rest.remove(name)
+            found[tuple(rest)] = coefficient // number
+        return found
+
+    return RatioForm(divided(over), divided(under))
