@@ -1,0 +1,322 @@
+"""Parameter homotopy: follow solutions of a square polynomial system while its parameters move.
+
+A system f(y; p) = 0 with n unknowns has, for almost all complex parameters p, the same number of isolated solutions.
+Solutions that are known at parameters p₀ are followed to p₁ along
+
+    p(t) = (1 − t) p₀ + t p₁ + t (1 − t) b,    0 ≤ t ≤ 1,
+
+where b bends the way: with a random complex b (or generic p₀) no solution meets another one before t = 1, except on a
+set of probability zero (Morgan & Sommese 1989, doi:10.1016/0096-3003(89)90099-4). Every path is followed by itself:
+Runge-Kutta's fourth-order step of dy/dt = −J⁻¹ f_p ṗ predicts, Newton corrects, and the first Newton step, which shows
+the error of the prediction (∝ h⁵), sets the next step h.
+
+The system is one compiled function that does the linear algebra, because that is where its structure saves time:
+
+    system(y, low, p, dp, newton, tangent, work) -> solvable
+
+writes ``newton`` = −J⁻¹ f and ``tangent`` = −J⁻¹ f_p dp, and returns 0 where J is singular; ``work`` is scratch.
+``low`` is what y has rounded off: a system that computes f at y + low in higher precision is followed in higher
+precision, since Newton's steps go into y and low together. :mod:`synthesis.numerics.elimination` has a dense solver.
+The type of a system is :data:`SYSTEM`, so that one compiled tracker serves every system and both are cached on disk.
+"""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, types
+from numpy.typing import NDArray
+
+from synthesis.numerics.double_double import add
+
+Complex = NDArray[np.complex128]
+
+_VECTOR = types.Array(types.complex128, 1, "C")
+_INDICES = types.Array(types.int64, 1, "C")
+
+SYSTEM = types.int64(_VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR)
+"""The type of a compiled system: y, low, p, dp, newton, tangent, work."""
+
+REACHED, TOO_MANY_STEPS, STEP_TOO_SMALL, NOT_CONVERGED = range(4)
+"""How a path ended; only ``REACHED`` gives a solution."""
+
+CLOSE = 1e-6
+"""Newton's relative step at which a point on the way is near enough to its path; the next one would be its square."""
+
+SHARP = 1e-13
+"""Newton's relative step that an end point is refined to, if rounding lets it."""
+
+CONVERGED = 1e-7
+"""A last Newton step above this, relative, is no convergence: the end point is singular or a path was lost."""
+
+FIRST_STEP, LEAST_STEP = 0.02, 1e-12
+
+CHUNK = 16
+"""Paths that a thread takes at a time; some milliseconds."""
+
+
+class Ends(NamedTuple):
+    """Ends of paths.
+
+    Attributes
+    ----------
+    y, low : complex, shape (paths, n)
+        End points, and what they have rounded off.
+    status : int, shape (paths,)
+        :data:`REACHED`, or why there is no solution.
+    steps : int, shape (paths,)
+        Steps taken and tried.
+    """
+
+    y: Complex
+    low: Complex
+    status: NDArray[np.int64]
+    steps: NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def _relative(step: Complex, y: Complex, groups: Any) -> float:
+    """Size of a step relative to the point, the largest over the groups of unknowns that share a scale."""
+    largest = 0.0
+    n = 0
+    while n < y.size:
+        group = groups[n]
+        size, moved = 0.0, 0.0
+        while n < y.size and groups[n] == group:
+            size = max(size, y[n].real ** 2 + y[n].imag ** 2)
+            moved = max(moved, step[n].real ** 2 + step[n].imag ** 2)
+            n += 1
+        if not moved <= 1e300:
+            return np.inf
+        largest = max(largest, moved / (size + 1e-300))
+    return math.sqrt(largest)
+
+
+@njit(cache=True, nogil=True)
+def _parameters(t: float, start: Complex, end: Complex, bend: Complex, p: Complex, dp: Complex) -> None:
+    for k in range(p.size):
+        p[k] = (1.0 - t) * start[k] + t * end[k] + t * (1.0 - t) * bend[k]
+        dp[k] = end[k] - start[k] + (1.0 - 2.0 * t) * bend[k]
+
+
+@njit(
+    types.float64(types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR),
+    cache=True,
+    nogil=True,
+)
+def _refine(
+    system: Any,
+    groups: Any,
+    y: Complex,
+    low: Complex,
+    p: Complex,
+    dp: Complex,
+    newton: Complex,
+    tangent: Complex,
+    work: Complex,
+) -> float:
+    """Newton's method in place until its steps are at rounding level; returns the last step's relative size."""
+    moved = np.inf
+    for _ in range(8):
+        if system(y, low, p, dp, newton, tangent, work) == 0:
+            break
+        now = _relative(newton, y, groups)
+        if now >= moved:
+            break
+        moved = now
+        for k in range(y.size):
+            y[k], low[k] = add(y[k], low[k], newton[k], 0j)
+        if moved < SHARP:
+            break
+    return moved
+
+
+@njit(
+    types.UniTuple(types.int64, 2)(  # type: ignore[no-untyped-call]
+        types.FunctionType(SYSTEM), _INDICES, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _VECTOR, types.float64, types.int64,
+        types.int64,
+    ),
+    cache=True,
+    nogil=True,
+)  # fmt: skip
+def _follow(
+    system: Any,
+    groups: Any,
+    y: Complex,
+    low: Complex,
+    start: Complex,
+    end: Complex,
+    bend: Complex,
+    tolerance: float,
+    most_steps: int,
+    scratch: int,
+) -> tuple[int, int]:
+    """Follow one path; ``y`` is its start and becomes its end. Returns status and steps."""
+    n = y.size
+    work = np.empty(scratch, np.complex128)
+    p, dp = np.empty(start.size, np.complex128), np.empty(start.size, np.complex128)
+    slopes = np.empty((4, n), np.complex128)
+    newton, tangent = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    at, rest = np.empty(n, np.complex128), np.zeros(n, np.complex128)
+    t, h, tried, grown = 0.0, FIRST_STEP, 0, 2.0
+    _parameters(0.0, start, end, bend, p, dp)
+    system(y, low, p, dp, newton, tangent, work)
+    slopes[0] = tangent
+    while t < 1.0:
+        if tried >= most_steps:
+            return TOO_MANY_STEPS, tried
+        if h < LEAST_STEP:
+            return STEP_TOO_SMALL, tried
+        tried += 1
+        h = min(h, 1.0 - t)
+        for stage in range(1, 4):
+            reach = h if stage == 3 else 0.5 * h
+            if stage != 2:
+                _parameters(t + reach, start, end, bend, p, dp)
+            for k in range(n):
+                at[k] = y[k] + reach * slopes[stage - 1, k]
+            system(at, low, p, dp, newton, tangent, work)
+            slopes[stage] = tangent
+        for k in range(n):
+            change = h / 6.0 * (slopes[0, k] + 2.0 * (slopes[1, k] + slopes[2, k]) + slopes[3, k])
+            at[k], rest[k] = add(y[k], low[k], change, 0j)
+        missed, accepted = 0.0, False
+        for correction in range(3):
+            if system(at, rest, p, dp, newton, tangent, work) == 0:
+                break
+            moved = _relative(newton, at, groups)
+            if correction == 0:
+                missed = moved
+            if not moved <= tolerance:
+                break
+            for k in range(n):
+                at[k], rest[k] = add(at[k], rest[k], newton[k], 0j)
+            if moved < CLOSE:
+                accepted = True
+                break
+        scale = (0.4 * tolerance / (missed + 1e-300)) ** 0.2 if missed < 1e300 else 0.2
+        if accepted:
+            t = 1.0 if h >= 1.0 - t else t + h
+            for k in range(n):
+                y[k], low[k] = at[k], rest[k]
+                slopes[0, k] = tangent[k]
+            h *= min(max(scale, 0.5), grown)
+            grown = 2.5
+        else:
+            h *= min(max(scale, 0.2), 0.6)
+            grown = 1.0
+    moved = _refine(system, groups, y, low, p, dp, newton, tangent, work)
+    return (REACHED if moved < CONVERGED else NOT_CONVERGED), tried
+
+
+@njit(
+    types.void(
+        types.FunctionType(SYSTEM), _INDICES, types.Array(types.complex128, 2, "C"),
+        types.Array(types.complex128, 2, "C"), _VECTOR, _VECTOR, _VECTOR,
+        types.float64, types.int64, types.int64, _INDICES, _INDICES,
+    ),
+    cache=True,
+    nogil=True,
+)  # fmt: skip
+def _follow_all(
+    system: Any,
+    groups: Any,
+    y: Complex,
+    low: Complex,
+    start: Complex,
+    end: Complex,
+    bend: Complex,
+    tolerance: float,
+    most_steps: int,
+    scratch: int,
+    status: Any,
+    steps: Any,
+) -> None:
+    for path in range(y.shape[0]):
+        status[path], steps[path] = _follow(
+            system, groups, y[path], low[path], start, end, bend, tolerance, most_steps, scratch
+        )
+
+
+def follow(
+    system: Any,
+    groups: NDArray[np.int64],
+    scratch: int,
+    y: Complex,
+    start: Complex,
+    end: Complex,
+    bend: Complex,
+    *,
+    tolerance: float = 5e-3,
+    most_steps: int = 5000,
+    threads: int = 1,
+) -> Ends:
+    """Follow solutions from one set of parameters to another.
+
+    Parameters
+    ----------
+    system : compiled function of type :data:`SYSTEM`
+        The system, see the module.
+    groups : int, shape (n,)
+        Unknowns that stand side by side with the same number share a scale, by which steps are measured.
+    scratch : int
+        Complex numbers that ``system`` needs as ``work``.
+    y : complex, shape (paths, n)
+        Solutions at ``start``.
+    start, end, bend : complex, shape (parameters,)
+        p₀, p₁ and b.
+    tolerance : float
+        Largest error of a prediction, relative; smaller ones take more steps and seldom jump to another path.
+    most_steps : int
+        A path that is not at its end by then is given up.
+    threads : int
+        Paths are independent; the kernel releases the interpreter.
+
+    Returns
+    -------
+    Ends
+        In the order of ``y``.
+    """
+    ends = np.array(y, np.complex128, order="C")
+    low = np.zeros_like(ends)
+    count = len(ends)
+    status, steps = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    ways = [np.ascontiguousarray(p, np.complex128) for p in (start, end, bend)]
+
+    kernel: Any = _follow_all
+
+    def work(first: int) -> None:
+        some = slice(first, first + CHUNK)
+        kernel(system, groups, ends[some], low[some], *ways, tolerance, most_steps, scratch, status[some], steps[some])
+
+    if threads == 1:
+        for first in range(0, count, CHUNK):
+            work(first)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(work, range(0, count, CHUNK)))
+    return Ends(ends, low, status, steps)
+
+
+def refine(
+    system: Any, groups: NDArray[np.int64], scratch: int, y: Complex, low: Complex, p: Complex
+) -> tuple[Complex, Complex, NDArray[np.float64]]:
+    """Newton's method from approximate solutions at the parameters ``p``.
+
+    Returns
+    -------
+    y, low : complex, shape (solutions, n)
+        The refined solutions.
+    moved : float, shape (solutions,)
+        Relative size of the last step; at rounding level, times the condition, where it has converged.
+    """
+    y, low = np.array(y, np.complex128, order="C"), np.array(low, np.complex128, order="C")
+    work, still = np.empty(scratch, np.complex128), np.zeros(len(p), np.complex128)
+    spare = np.empty((2, y.shape[1]), np.complex128)
+    moved = np.empty(len(y))
+    for n in range(len(y)):
+        moved[n] = _refine(system, groups, y[n], low[n], p, still, spare[0], spare[1], work)
+    return y, low, moved

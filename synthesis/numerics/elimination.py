@@ -1,0 +1,64 @@
+"""Gaussian elimination for small dense complex systems inside compiled kernels.
+
+LAPACK's calls cost more than the arithmetic of a system of ten unknowns, and allocate.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+
+
+@njit(cache=True, nogil=True)
+def factor(matrix: Complex, pivots: Any) -> bool:
+    """LU decomposition with partial pivoting in place.
+
+    ``matrix``, shape (n, n), becomes L below the diagonal, U above it and the reciprocals of U's diagonal on it;
+    ``pivots``, shape (n,), the rows exchanged. Returns whether the matrix is regular.
+    """
+    n = matrix.shape[0]
+    for k in range(n):
+        best, row = -1.0, k
+        for i in range(k, n):
+            size = abs(matrix[i, k].real) + abs(matrix[i, k].imag)
+            if size > best:
+                best, row = size, i
+        pivots[k] = row
+        if not best > 0.0:
+            return False
+        if row != k:
+            for c in range(n):
+                matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
+        inverse = 1.0 / matrix[k, k]
+        matrix[k, k] = inverse
+        for i in range(k + 1, n):
+            share = matrix[i, k] * inverse
+            matrix[i, k] = share
+            for c in range(k + 1, n):
+                matrix[i, c] -= share * matrix[k, c]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def solve(factors: Complex, pivots: Any, b: Complex) -> None:
+    """Replace ``b``, shape (n,), by the solution of the system that :func:`factor` has decomposed."""
+    n = factors.shape[0]
+    for k in range(n):
+        row = pivots[k]
+        if row != k:
+            b[k], b[row] = b[row], b[k]
+    for i in range(1, n):
+        total = b[i]
+        for c in range(i):
+            total -= factors[i, c] * b[c]
+        b[i] = total
+    for i in range(n - 1, -1, -1):
+        total = b[i]
+        for c in range(i + 1, n):
+            total -= factors[i, c] * b[c]
+        b[i] = total * factors[i, i]
