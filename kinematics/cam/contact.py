@@ -11,7 +11,10 @@ With P the point in the ground's frame, C the pivot's distance, D = |P − C| an
     translating face      x = P_x
     oscillating face      ψ = β + arcsin(f/D)
 
-The pressure angle is measured between the curve's normal and the motion of the follower's point there.
+The pressure angle is measured between the curve's normal and the motion of the follower's point there. The velocity
+follows from the direction of the curve at the contact, since the roller's centre and the face's contact move along
+their offset curves, and the acceleration from its curvature there (the relations of :mod:`follower`, solved for v and
+a); neither is a difference quotient of displacements.
 """
 
 from __future__ import annotations
@@ -55,12 +58,16 @@ NARROWINGS = 42
 class ContactMotion(NamedTuple):
     """Where the follower stands at each cam angle; NaN where it touches nothing.
 
-    ``s`` its displacement, ``point`` the contact in the cam's frame, ``pressure_angle`` without its sign and
-    ``radius`` of curvature of the profile there, positive where convex.
+    ``s``, ``v``, ``a`` its displacement and derivatives by the cam angle, ``point`` the contact and ``normal`` the
+    outward unit normal there, in the cam's frame, ``pressure_angle`` without its sign and ``radius`` of curvature of
+    the profile there, positive where convex.
     """
 
     s: Real
+    v: Real
+    a: Real
     point: Complex
+    normal: Complex
     pressure_angle: Real
     radius: Real
 
@@ -92,12 +99,19 @@ class Contour:
     def __post_init__(self) -> None:
         if self.points.ndim != 1 or len(self.points) < FEWEST:
             raise ShapeError(points=self.points.shape)
-        if not np.isfinite(self.points).all() or not (self._chords > 0.0).all():
+        if not np.isfinite(self.points).all() or not (self.chords > 0.0).all():
             raise DimensionError("profile points", "finite and different from their neighbours", self.points)
 
     @cached_property
-    def _chords(self) -> Real:
+    def chords(self) -> Real:
+        """Distances from each point to the next, shape (n,)."""
         return np.asarray(np.abs(np.roll(self.points, -1) - self.points))
+
+    @cached_property
+    def tangents(self) -> Complex:
+        """Unit tangents of the profile at its points, in the order of the points."""
+        first, _ = _derivatives(self._curves, np.zeros(len(self.points)))
+        return np.asarray(first / np.abs(first))
 
     @cached_property
     def _curves(self) -> Complex:
@@ -105,7 +119,7 @@ class Contour:
         n = len(self.points)
         index = (np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)) % n
         along = np.zeros((n, STENCIL))
-        chords = self._chords
+        chords = self.chords
         for k in range(STENCIL):
             for step in range(2, k) if k > 2 else range(k, 2):
                 sign = 1.0 if k > 2 else -1.0
@@ -170,8 +184,8 @@ class Contour:
         curves = np.conj(self._curves) if mirrored else self._curves
         flipped = getattr(follower, "sense", 1) == -1
         roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
-        if roller and 0.0 < sizes[2] < NARROW * self._chords.max():
-            raise DimensionError("roller radius", f"0 or at least {NARROW * self._chords.max()}", sizes[2])
+        if roller and 0.0 < sizes[2] < NARROW * self.chords.max():
+            raise DimensionError("roller radius", f"0 or at least {NARROW * self.chords.max()}", sizes[2])
         values: Real = np.empty(theta.size)
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
@@ -185,16 +199,44 @@ class Contour:
         point = _value(local, share)
         first, second = _derivatives(local, share)
         valid = np.isfinite(values)
+        orientation = 1.0 if self.turns_ccw != mirrored else -1.0
         with np.errstate(divide="ignore", invalid="ignore"):
-            orientation = 1.0 if self.turns_ccw != mirrored else -1.0
-            bend = orientation * (np.conj(first) * second).imag
-            radius = np.where(valid, np.abs(first) ** 3 / bend, np.nan)
-            normal = -1j * orientation * first / np.abs(first)
-            ground = normal * np.exp(-1j * theta)
-            direction = _direction(follower, values, point * np.exp(-1j * theta))
-            pressure = np.where(valid, np.abs(np.angle(ground * np.conj(direction))), np.nan)
-        point = np.where(valid, point, np.nan)
-        return ContactMotion(values - zero, np.conj(point) if mirrored else point, pressure, radius)
+            radius = np.where(valid, np.abs(first) ** 3 / (orientation * (np.conj(first) * second).imag), np.nan)
+            normal = np.where(valid, -1j * orientation * first / np.abs(first), np.nan)
+            point = np.where(valid, point, np.nan)
+            turn = np.exp(-1j * theta)
+            v, a = _rates(follower, values - zero, turn * point, turn * normal, radius)
+            direction = _direction(follower, values, turn * point)
+            pressure = np.abs(np.angle(turn * normal * np.conj(direction)))
+        own = np.conj if mirrored else np.asarray
+        return ContactMotion(values - zero, v, a, own(point), own(normal), pressure, radius)
+
+
+def _rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius: Real) -> tuple[Real, Real]:
+    """v and a from the contact, the profile's normal and its radius of curvature there, in the ground's frame."""
+    if isinstance(follower, TranslatingRoller):
+        height, tangent = follower.height + s, 1j * normal
+        across = height / tangent.imag * tangent.real
+        v = follower.offset + across
+        bend = np.hypot(height, across) ** 3 / (radius + follower.roller_radius)
+        return v, np.asarray(height + (across * (v + across) - bend) / height)
+    if isinstance(follower, OscillatingRoller):
+        turn = -1j * follower.sense
+        arm = -follower.arm * np.exp(turn * (follower.start_angle + s))
+        p, tangent, swing = follower.pivot_distance + arm, 1j * normal, turn * arm
+        v = -(1j * p * np.conj(tangent)).imag / (swing * np.conj(tangent)).imag
+        w = v * swing + 1j * p
+        rest = (np.conj(w) * (-(v**2) * arm + 2j * v * swing - p)).imag
+        bend = np.abs(w) ** 3 / (radius + follower.roller_radius)
+        return np.asarray(v), np.asarray((bend - rest) / (np.conj(w) * swing).imag)
+    if isinstance(follower, TranslatingFlat):
+        return np.asarray(contact.imag), np.asarray(radius - follower.base_radius - s)
+    angle = follower.start_angle + s
+    x, y = follower.pivot_distance * np.cos(angle), follower.pivot_distance * np.sin(angle)
+    reach = np.sqrt(np.abs(contact - follower.pivot_distance) ** 2 - follower.face_offset**2)
+    v = follower.sense * (1.0 - x / reach)
+    rate = 1.0 - follower.sense * v
+    return np.asarray(v), np.asarray(((radius - y + follower.face_offset) * rate**2 + y * v**2) * rate / x)
 
 
 def _dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], float]:

@@ -29,7 +29,16 @@ def test_the_profile_gives_the_program_back(kind: str, seed: int) -> None:
     found = measured(cam).follow(cam.follower, angles, cam.rotation)
     assert found.valid.all()
     assert found.s == pytest.approx(cam.program.motion(angles).s, abs=1e-7 * cam.program.lift)
+    motion = cam.program.motion(angles)
+    assert found.v == pytest.approx(motion.v, abs=1e-4 * cam.program.peaks[1].largest)
+    # Where the jerk jumps the acceleration bends, which no curve of the fifth degree follows.
+    bends = np.abs((angles[:, None] - cam.program.breaks + math.pi) % (2.0 * math.pi) - math.pi).min(axis=1)
+    smooth = bends > 4.0 * math.pi / POINTS * 2.0
+    largest = cam.program.peaks[2].largest
+    assert found.a[smooth] == pytest.approx(motion.a[smooth], abs=1e-3 * largest)
+    assert found.a == pytest.approx(motion.a, abs=0.1 * largest)
     assert found.pressure_angle == pytest.approx(np.abs(cam.pressure_angle(angles)), abs=2e-5)
+    assert found.normal == pytest.approx(cam.normal(angles), abs=2e-5)
     assert found.point == pytest.approx(cam.profile(angles), abs=1e-5 * cam.size)
     assert 1.0 / found.radius == pytest.approx(1.0 / cam.profile_radius(angles), abs=0.02 / cam.size)
 
