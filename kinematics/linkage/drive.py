@@ -108,11 +108,12 @@ def drive(
     """
     require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
     program = program_of(mechanism)
-    chosen = assembly_signs(mechanism, program.steps) if signs is None else signs
-    count = len(program.steps)
-    require("signs", f"{count} arrays", np.asarray(len(chosen)), np.bool_(len(chosen) == count))
-    for sign in chosen:
-        require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
+    chosen = program.signs
+    if signs is not None:
+        chosen, count = signs, len(program.steps)
+        require("signs", f"{count} arrays", np.asarray(len(signs)), np.bool_(len(signs) == count))
+        for sign in signs:
+            require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
     q = np.asarray(input, np.float64)
     require("input", "finite", q, ~np.isinf(q))
     given = (q, *(np.asarray(rate, np.float64) for rate in (speed, acceleration, jerk)[:order]))
@@ -137,7 +138,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     length, *shape = inputs.shape
     flat = len(own), shape[-1]
     moved = np.ascontiguousarray(inputs.reshape(length, *flat).swapaxes(0, 1))
-    moved[:, 0] -= mechanism.reference_input.ravel()[own, None]
+    moved[:, 0] -= program.reference_input[own, None]
     given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
     points = np.empty((len(mechanism.joints), length, *flat), np.complex128)
     angles = np.empty((len(program.links), length, *flat))
@@ -145,7 +146,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     sines = np.empty((len(program.closing), *flat))
     margins = np.empty((len(program.closing), min(length, 2), *flat))
     masks = np.empty((2, *flat), np.bool_)
-    kernels.drive(*program[4:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
+    kernels.drive(*program[6:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
     slide_names = [s.joint for s in mechanism.slides]
     for k, name in enumerate(slide_names):
         if slide_names.count(name) > 1:

@@ -98,9 +98,10 @@ def drive(
         m = own[design]
         origin, size = frame[m, 0], frame[m, 1].real
         place, line, along = joints[m], lines[m], line_angles[m]
-        for n in range(1, gives[0, 0] + 1):
-            x[gives[0, n], 0] = place[gives[0, n]]
-        _reference(program, place, line, along, arms, directions, lengths, reaches, norms)
+        if design == 0 or m != own[design - 1]:
+            for n in range(1, gives[0, 0] + 1):
+                x[gives[0, n], 0] = place[gives[0, n]]
+            _reference(program, place, line, along, arms, directions, lengths, reaches, norms)
         for at in range(moved.shape[2]):
             if driver[0] < 0:
                 joint, angle = driver[1], along[driver[2]]

@@ -42,13 +42,16 @@ class Frame:
 class Program(NamedTuple):
     """What :func:`kinematics.linkage.drive_kernels.drive` takes, in its order, after the names of things.
 
-    ``links`` are in the kernel's order, the ground first. ``closing`` are the links that have two assemblies.
+    ``links`` are in the kernel's order, the ground first. ``closing`` are the links that have two assemblies, ``signs``
+    the reference's assemblies by step, ``reference_input`` the inputs there, of shape (M,).
     """
 
     steps: tuple[Step, ...]
     class_iii: bool
     links: tuple[str, ...]
     closing: tuple[str, ...]
+    signs: tuple[Signs, ...]
+    reference_input: Real
     rows: Signs
     ratios: Real
     gives: Signs
@@ -133,6 +136,8 @@ def program_of(mechanism: Mechanism) -> Program:
         bool(decomposition.left),
         links,
         tuple(closing),
+        assembly_signs(mechanism, steps),
+        mechanism.reference_input.ravel(),
         np.array(rows, np.int64).reshape(len(rows), 8),
         np.array([step.ratio for step in steps] or [0.0] * len(rows)),
         numbers.gives,
