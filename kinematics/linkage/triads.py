@@ -11,10 +11,11 @@ leap to another: by the affine covariant Newton–Kantorovich theorem (Deuflhard
 
     |θ' − θ| ≤ 1 / (2 η ω),    η ≥ ‖J⁻¹ k (z' − z)‖ / |z' − z|,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖,
 
-just one solution in a ball around φ; the ball is the same for all of them, so it is the continuation of φ. With the
-rows of J⁻¹ written as complex ones, g, the largest of |ḡ k| over the rows serves as η and the largest sum of |ḡ C| over
-the links as ω. Near a toggle both grow with the inverse root of the distance, so that the steps shrink in proportion
-to it, and the toggle is approached geometrically.
+just one solution in a ball around φ; the ball is the same for all of them, so it is the continuation of φ. The norm is
+max |φ_l| / d_l with weights d that follow the rates of the links, which makes the steps longest. With the rows of J⁻¹
+written as complex ones, g, the largest of |ḡ k| / d over the rows serves as η, and the largest sum of |ḡ C| d² over the
+links, divided by the row's own d, as ω. Near a toggle both grow with the inverse root of the distance, so that the
+steps shrink in proportion to it, and the toggle is approached geometrically.
 """
 
 from __future__ import annotations
@@ -45,6 +46,9 @@ then given as not reached."""
 
 NODES_AT_ONCE = 256
 """Steps between two looks at how far the track has come."""
+
+LEAST_WEIGHT = 0.25
+"""Weight of the slowest links in the norm of the certificate, the fastest link's being 1."""
 
 LOST = 1e-12
 """Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
@@ -203,6 +207,8 @@ def _march(
     links = c.shape[1]
     phi, value = angles[0].copy(), np.empty(links)
     inverse, slope = np.empty((links, links)), np.empty(links)
+    _evaluate(c, k, fixed, phi, sign * nodes[0], value, inverse)
+    _invert(inverse)
     for n in range(1, len(nodes)):
         step = reach[n - 1]
         if step < STALLED:
@@ -210,8 +216,6 @@ def _march(
         if nodes[n - 1] + step >= target:
             return n, False
         at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
-        _evaluate(c, k, fixed, phi, at, value, inverse)
-        _invert(inverse)
         _newton(c, k, fixed, phi, at, to, value, inverse, slope)
         nodes[n], angles[n] = nodes[n - 1] + step, phi
         # Newton's last inverse is that of the solution but for a correction of rounding size.
@@ -318,18 +322,23 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
 def _certified(c: Complex, k: Complex, inverse: Real) -> float:
     """1 / (2 η ω): the step within which the continuation is the only solution."""
     loops, links = c.shape
-    eta, omega = 1e-300, 1e-300
+    rate = np.empty(links)
     for row in range(links):
-        by_input, total = 0j, 0.0
+        by_input = 0j
         for loop in range(loops):
             by_input += complex(inverse[row, loop], -inverse[row, loop + loops]) * k[loop]
+        rate[row] = abs(by_input)
+    eta = max(rate.max(), 1e-300)
+    omega = 1e-300
+    for row in range(links):
+        total = 0.0
         for col in range(links):
             by_link = 0j
             for loop in range(loops):
                 by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
-            total += abs(by_link)
-        eta, omega = max(eta, abs(by_input)), max(omega, total)
-    return 0.5 / (eta * omega)
+            total += abs(by_link) * max(rate[col] / eta, LEAST_WEIGHT) ** 2
+        omega = max(omega, total / max(rate[row] / eta, LEAST_WEIGHT))
+    return float(0.5 / (eta * omega))
 
 
 @njit(cache=True, nogil=True)
