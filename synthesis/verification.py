@@ -33,7 +33,7 @@ from synthesis.designs import (
     Target,
     Verification,
 )
-from synthesis.linkages import DrivenFourbar, driven_fourbar, to_complex
+from synthesis.linkages import DrivenFourbar, driven_fourbar
 from synthesis.problems import Constraints, MotionProblem
 from synthesis.ranking import quality
 
@@ -175,10 +175,10 @@ def _choice_checks(problem: MotionProblem, driven: _Driven, size: float) -> list
             continue
         link = pin - pivot
         gaps = [0.0]
-        if choices.fixed_pivot is not None:
-            gaps.append(abs(pivot - to_complex(choices.fixed_pivot)) / size)
-        if choices.moving_pivot is not None:
-            gaps.append(abs(pin[0] - to_complex(choices.moving_pivot)) / size)
+        for found, stated in ((pivot, choices.fixed_pivot), (pin[0], choices.moving_pivot)):
+            for value, wanted in zip((found.real, found.imag), stated or (None, None), strict=True):
+                if wanted is not None:
+                    gaps.append(abs(value - wanted) / size)
         if choices.link_angle is not None:
             gaps.append(_turn(link[0], choices.link_angle))
         for k, rotation in enumerate(choices.rotations or [], start=1):
@@ -192,6 +192,9 @@ def _choice_checks(problem: MotionProblem, driven: _Driven, size: float) -> list
                 gaps.append(_turn(vector, choices.coupler_vector.angle))
         gap = float(max(gaps))
         checks.append(Check(name=name, passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.ground_line is not None:
+        gap = max(abs(problem.ground_line.offset(complex(pivot))) for pivot in (o2[0], o4[0])) / size
+        checks.append(Check(name="ground_line", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
     return checks
 
 

@@ -30,7 +30,7 @@ from synthesis.designs.linkage import (
     Slide,
     Target,
 )
-from synthesis.designs.motion import MotionResult
+from synthesis.designs.motion import BurmesterBranch, MotionResult
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -43,6 +43,7 @@ from synthesis.designs.planetary_train import (
 
 __all__ = [
     "Answer",
+    "BurmesterBranch",
     "Check",
     "CouplerPoint",
     "FixedPivots",

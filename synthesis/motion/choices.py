@@ -18,24 +18,42 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.motion.dyads import FAR, DyadConditions, Dyads, directions_hold, linear_family, solve_dyads
+from synthesis.motion import burmester
+from synthesis.motion.dyads import (
+    FAR,
+    DyadConditions,
+    Dyads,
+    Line,
+    directions_hold,
+    linear_family,
+    settled,
+    solve_dyads,
+)
+from synthesis.motion.sections import SliderDyad, pose_rows, section
 from synthesis.motion.task import Complex, MotionTask, Real
-from synthesis.problems import Constraints, DyadChoices, Region
+from synthesis.problems import Constraints, DyadChoices, MotionProblem, PartialPoint, Region, whole_point
 
 NEAR_REACH, FAR_REACH = 0.05, 6.0
 """Free pivots are drawn between these distances, in task sizes; beyond them links get too short or too long."""
 
-NEWTON_STARTS = 400
-"""Starts for conditions that determine a dyad, but not linearly; at most a few solutions exist, each met many times."""
+CURVE_REACH = 20.0
+"""Dyads of Burmester's curves with a pivot farther away than this many task sizes are no candidates."""
 
-NEWTON_REACH = 300.0
-"""Distance of the farthest starts, in task sizes: what a client states may stand far away."""
+CURVE_NEAR = 0.15
+"""Within this distance of the body, in task sizes, samples of the curves stand as densely as their arc length is; far
+from it, as its logarithm is."""
+
+SECTIONS = 400
+"""Random sections, each with at most four dyads, from which a family is drawn that has no simpler description."""
 
 NEWTON_CLOUD = 4000
 """Dyads of a cloud at most where each takes Newton's method: some tenths of a second."""
 
-SAME_DYAD = 1e-7
-"""Solutions from different starts closer than this, in task sizes, are one."""
+NEAREST_SAMPLES = 4000
+"""Samples of a curve among which the pivot nearest to a stated one is looked for."""
+
+REDUNDANT = 1e-9
+"""Part of a position's condition that is new, below which it adds nothing to the conditions of the others."""
 
 REGION_DRAWS = 6
 """Draws of a whole cloud at most, until half of it lies in the client's regions."""
@@ -59,19 +77,33 @@ class Cloud(NamedTuple):
         These are all the dyads that satisfy the client's choices; where there are none, that is proved.
     reason : str
         Why there are none, in a sentence about "the side".
+    remark : str
+        What else a client should know of them, in sentences about "the side".
+    sliders : tuple of SliderDyad
+        Dyads with a pivot at infinity that satisfy the choices, where all are known.
     """
 
     dyads: Dyads
     sampled: bool
     complete: bool
     reason: str = ""
+    remark: str = ""
+    sliders: tuple[SliderDyad, ...] = ()
 
 
-def stated_conditions(task: MotionTask, choices: DyadChoices) -> DyadConditions:
-    """The client's choices in task coordinates and radians."""
+def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoices) -> DyadConditions:
+    """The client's choices of one side in task coordinates and radians."""
 
-    def pivot(point: tuple[float, float] | None) -> Complex | None:
-        return None if point is None else np.asarray(task.to_task(complex(*point)))
+    def pivot(point: PartialPoint | None) -> Complex | None:
+        whole = whole_point(point)
+        return None if whole is None else np.asarray(task.to_task(whole))
+
+    def line(point: PartialPoint | None) -> tuple[Line, ...]:
+        if point is None or whole_point(point) is not None:
+            return ()
+        normal, offset = (1.0 + 0j, point[0]) if point[1] is None else (1j, point[1])
+        assert offset is not None
+        return (Line(normal, (offset - (normal.conjugate() * task.origin).real) / task.size),)
 
     def angle(degrees: float | None) -> Real | None:
         return None if degrees is None else np.asarray(math.radians(degrees))
@@ -82,9 +114,16 @@ def stated_conditions(task: MotionTask, choices: DyadChoices) -> DyadConditions:
     if vector is not None and vector.length is not None and vector.angle is not None:
         moving = np.asarray(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
         vector = length = None
+    fixed, fixed_lines = pivot(choices.fixed_pivot), line(choices.fixed_pivot)
+    if problem.ground_line is not None and fixed is None:
+        normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
+        ground = Line(normal, -problem.ground_line.offset(task.origin) / task.size)
+        fixed, fixed_lines = (_crossing(fixed_lines[0], ground), ()) if fixed_lines else (None, (ground,))
     return DyadConditions(
-        fixed_pivot=pivot(choices.fixed_pivot),
+        fixed_pivot=fixed,
         moving_pivot=moving,
+        fixed_lines=fixed_lines,
+        moving_lines=line(choices.moving_pivot),
         rotations=tuple(angle(b) for b in choices.rotations or [None] * (len(task.points) - 1)),
         link_angle=angle(choices.link_angle),
         coupler_length=length,
@@ -92,18 +131,121 @@ def stated_conditions(task: MotionTask, choices: DyadChoices) -> DyadConditions:
     )
 
 
+def _crossing(one: Line, other: Line) -> Complex:
+    """Where two lines meet that are not parallel."""
+    return np.asarray(
+        1j * (other.offset * one.normal - one.offset * other.normal) / (one.normal.conjugate() * other.normal).imag
+    )
+
+
 def side_dyads(
-    task: MotionTask, choices: DyadChoices, constraints: Constraints, rng: np.random.Generator, count: int
+    task: MotionTask, problem: MotionProblem, choices: DyadChoices, rng: np.random.Generator, count: int
 ) -> Cloud:
     """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open."""
     reason = why_no_dyads(task)
     if reason:
         return Cloud(_NO_DYADS, False, True, reason)
-    conditions = stated_conditions(task, choices)
-    if conditions.linear and (conditions.count() == 5 - len(task.points) or _pivot(conditions) is not None):
-        return _of_family(task, conditions, constraints, rng, count)
+    conditions, constraints = stated_conditions(task, problem, choices), problem.constraints
+    essential, conditions = _without_redundant_positions(task, conditions)
+    free = 5 - len(essential.points) - conditions.count()
+    if conditions.linear and (free <= 0 or _pivot(conditions) is not None):
+        cloud = _of_family(essential, conditions, constraints, rng, count)
+    elif free <= 0:
+        cloud = _of_section(essential, conditions, rng)
+    elif free == 1 and len(essential.points) == 4:
+        cloud = _of_curve(essential, conditions, constraints, rng, count)
+    else:
+        cloud = _of_draws(essential, conditions, constraints, rng, count)
+    if len(essential.points) == len(task.points):
+        return cloud
+    return cloud._replace(
+        remark=f"A dyad that meets {len(essential.points)} of the positions meets all {len(task.points)}. "
+        f"{cloud.remark}"
+    )
+
+
+def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -> tuple[MotionTask, DyadConditions]:
+    """The task and the choices without positions whose condition follows from those of the others.
+
+    So it is for a translation along a circle, where three positions say all. A position whose rotation is stated is
+    kept.
+    """
+    rows = pose_rows(task)
+    kept: list[int] = []
+    for k, row in enumerate(rows):
+        others = rows[kept]
+        new = row - others.T @ np.linalg.lstsq(others.T, row, rcond=None)[0] if kept else row
+        if np.linalg.norm(new) > REDUNDANT or conditions.rotations[k] is not None:
+            kept.append(k)
+    if len(kept) == len(rows):
+        return task, conditions
+    order = [0, *(k + 1 for k in kept)]
+    reduced = task._replace(points=task.points[order], turns=task.turns[order])
+    return reduced, replace(conditions, rotations=tuple(conditions.rotations[k] for k in kept))
+
+
+def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
+    """The dyads of as many conditions as a dyad has freedoms, each once; or a cloud where they repeat one another."""
+    found = section(task, conditions)
+    if not found.finite:
+        cloud = _of_random_sections(task, conditions, rng)
+        return cloud._replace(remark="A whole family of dyads satisfies the positions and choices of the side.")
+    dyads = found.dyads
     if conditions.count() == 5 - len(task.points):
-        return _isolated(task, conditions, rng)
+        refined, converged = solve_dyads(task, conditions, dyads)
+        kept = converged & ~found.double
+        dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
+    remark = ""
+    if found.double.any():
+        remark = "Two dyads of the side coincide (a double root) and are counted as one."
+    text = "No dyad with two pins satisfies the positions and choices of the side."
+    return Cloud(dyads, False, found.proved, text, remark, found.sliders)
+
+
+def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
+    """Dyads of a family, met by random lines on which a pivot is to lie."""
+    fixed, moving = [], []
+    for k in range(SECTIONS):
+        centre = complex(_around(task.points.mean(keepdims=True), rng, 1)[0])
+        normal = cmath.rect(1.0, rng.uniform(-math.pi, math.pi))
+        line = Line(normal, (normal.conjugate() * centre).real)
+        lines = (
+            replace(conditions, fixed_lines=(*conditions.fixed_lines, line))
+            if k % 2
+            else replace(conditions, moving_lines=(*conditions.moving_lines, line))
+        )
+        found = section(task, lines)
+        near = np.maximum(np.abs(found.dyads.fixed), np.abs(found.dyads.moving)) <= CURVE_REACH
+        fixed.append(found.dyads.fixed[near])
+        moving.append(found.dyads.moving[near])
+    text = "A family of dyads satisfies the positions and choices of the side, but none was met within reach."
+    return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, text)
+
+
+def _of_curve(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """Dyads spread along Burmester's curve of four positions."""
+    curve = burmester.burmester_curve(task, conditions)
+    if curve is None:
+        return _of_random_sections(task, conditions, rng)
+    dyads = burmester.cloud(curve, curve_window(task), count, float(rng.uniform()))
+    dyads = settled(task, dyads)
+    good = _within(task, constraints.fixed_pivot_region, dyads.fixed)
+    good &= _within(task, constraints.moving_pivot_region, dyads.moving)
+    text = "No dyad of the side has its pivots within reach and in the regions that are given."
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
+
+
+def curve_window(task: MotionTask) -> burmester.Window:
+    """What matters of Burmester's curves in a search."""
+    return burmester.Window((complex(task.points.mean()), complex(task.points[0])), CURVE_REACH, CURVE_NEAR)
+
+
+def _of_draws(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """A cloud of dyads, two or more freedoms of which are drawn at random."""
     if _pivot(conditions) is not None or conditions.count() > 0:
         count = min(count, NEWTON_CLOUD)
     fixed, moving = [], []
@@ -131,18 +273,23 @@ def _within(task: MotionTask, region: Region | None, points: Complex) -> NDArray
 def why_no_dyads(task: MotionTask) -> str:
     """Why no pin-jointed dyad of positive length exists for the positions, in a sentence; empty where some do.
 
-    There is none for a translation along one straight line through three or more positions (every point of the body
-    moves on a line), nor for a rotation about one point, which every dyad would have for its fixed pivot.
+    There is none for a translation through three or more positions, unless P moves on a circle; nor for a rotation
+    about one point, which every dyad would have for its fixed pivot.
     """
     if len(task.points) < 3:
         return ""
     if np.abs(task.turns - 1.0).max() <= SAME_PLACE:
         sides = task.points[1:] - task.points[0]
-        if np.abs((np.conj(sides[0]) * sides).imag).max() > SAME_PLACE:
+        if np.abs((np.conj(sides[0]) * sides).imag).max() <= SAME_PLACE:
+            return (
+                "The positions are a translation along a straight line: every point of the body moves on a line, "
+                "so only a slider can guide it and no pin-jointed fourbar exists."
+            )
+        if np.linalg.svd(pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANT:
             return ""
         return (
-            "The positions are a translation along a straight line: every point of the body moves on a line, "
-            "so only a slider can guide it and no pin-jointed fourbar exists."
+            "The positions are a translation, and not along a circle: every point of the body takes the same places "
+            "as P, so no link of one length can hold it and no pin-jointed fourbar exists."
         )
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _pole(task, turning)
@@ -196,28 +343,32 @@ def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sam
 
 def _why_contradictory(task: MotionTask, conditions: DyadConditions) -> str:
     """Why linear conditions have no solution."""
-    if conditions.fixed_pivot is None and conditions.moving_pivot is None:
+    pivot = _pivot(conditions)
+    if pivot is None:
         return "The rotations of the side belong to no link of finite length."
+    if len(task.points) > 3:
+        return f"The stated pivot of the side is on no dyad that meets all positions. {_nearest(task, conditions)}"
     return (
         "The stated pivot of the side has its images on one straight line: "
         "a slider, not a pin-jointed link, would guide it. No design exists with these choices."
     )
 
 
-def _isolated(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
-    """The dyads of conditions that leave no freedom and are not linear: found from many starts, each once."""
-    middle = task.points.mean(keepdims=True)
-    start = Dyads(
-        _around(middle, rng, NEWTON_STARTS, NEWTON_REACH), _around(task.points[:1], rng, NEWTON_STARTS, NEWTON_REACH)
-    )
-    dyads, found = solve_dyads(task, conditions, start)
-    kept: list[int] = []
-    for i in np.flatnonzero(found):
-        gaps = [abs(dyads.fixed[i] - dyads.fixed[j]) + abs(dyads.moving[i] - dyads.moving[j]) for j in kept]
-        if min(gaps, default=math.inf) > SAME_DYAD:
-            kept.append(int(i))
-    text = "No dyad was found that meets the choices of the side."
-    return Cloud(Dyads(dyads.fixed[kept], dyads.moving[kept]), False, False, text)
+def _nearest(task: MotionTask, conditions: DyadConditions) -> str:
+    """Which pivots near the stated one belong to dyads, in a sentence."""
+    nothing = DyadConditions(rotations=(None,) * (len(task.points) - 1))
+    if len(task.points) == 4:
+        curve = burmester.burmester_curve(task, nothing)
+        dyads = _NO_DYADS if curve is None else burmester.cloud(curve, curve_window(task), NEAREST_SAMPLES)
+    else:
+        dyads = section(task, nothing).dyads
+    if not len(dyads.fixed):
+        return "No pivot within reach is."
+    moving = conditions.fixed_pivot is None
+    pivots, stated = (dyads.moving, conditions.moving_pivot) if moving else (dyads.fixed, conditions.fixed_pivot)
+    assert stated is not None
+    nearest = task.to_problem(complex(pivots[np.abs(pivots - stated).argmin()]))
+    return f"The nearest that is lies at about ({nearest.real:.6g}, {nearest.imag:.6g})."
 
 
 def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.Generator, count: int) -> Dyads:
@@ -250,6 +401,7 @@ def _pinned(
     Where both pivots are open, half of the cloud is drawn by moving pivots and half by fixed pivots: each finds dyads
     that the other seldom meets. With a region for one of them alone, all are drawn there.
     """
+    conditions = _on_lines(conditions, pivots)
     missing = 5 - len(task.points) - conditions.count()
     stated_vector = (conditions.coupler_length, conditions.coupler_angle).count(None) < 2
     if missing >= 2 and _pivot(conditions) is None and not stated_vector and conditions.link_angle is None:
@@ -269,6 +421,19 @@ def _pinned(
             ),
         ]
     return [(_with_numbers(task, conditions, pivots, missing, rng), pivots)]
+
+
+def _on_lines(conditions: DyadConditions, pivots: Dyads) -> DyadConditions:
+    """A pivot that is to lie on a line put there: what is left is linear in the other pivot."""
+    if conditions.fixed_lines and conditions.moving_pivot is None:
+        line = conditions.fixed_lines[0]
+        gap = (line.normal.conjugate() * pivots.fixed).real - line.offset
+        return replace(conditions, fixed_pivot=pivots.fixed - gap * line.normal, fixed_lines=())
+    if conditions.moving_lines and conditions.fixed_pivot is None:
+        line = conditions.moving_lines[0]
+        gap = (line.normal.conjugate() * pivots.moving).real - line.offset
+        return replace(conditions, moving_pivot=pivots.moving - gap * line.normal, moving_lines=())
+    return conditions
 
 
 def _with_numbers(

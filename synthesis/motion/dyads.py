@@ -11,8 +11,8 @@ W(e^{iβ_k} − 1) + Z(e^{iα_k} − 1) = δ_k (Norton 5.35) with the rotation �
 replaces it by A_k − O = e^{iβ_k}(A − O), which is linear. Every other choice of Norton's is linear too, but for the
 length z of the coupler vector:
 
-    fixed pivot        O = O*
-    moving pivot       A = A*
+    fixed pivot        O = O*, or one coordinate of it: Re(conj(n) O) = s
+    moving pivot       A = A*, or one coordinate of it
     link angle θ       Im(e^{−iθ}(A − O)) = 0
     coupler angle φ    Im(e^{−iφ}(P_1 − A)) = 0
     coupler length z   |P_1 − A|² = z²
@@ -50,12 +50,24 @@ FAR = 1e5
 """A pivot farther than this many task sizes away stands for a slider: its residual could not be held to 1e-9."""
 
 
+class Line(NamedTuple):
+    """The line of points z with Re(conj(normal) z) = offset; the normal has unit length."""
+
+    normal: complex
+    offset: float
+
+
 @dataclass(frozen=True)
 class DyadConditions:
-    """Conditions on a batch of dyads, in task coordinates and radians; each a scalar, an array (batch,) or None."""
+    """Conditions on a batch of dyads, in task coordinates and radians; each a scalar, an array (batch,) or None.
+
+    ``fixed_lines`` and ``moving_lines`` are lines that a pivot lies on.
+    """
 
     fixed_pivot: Complex | None = None
     moving_pivot: Complex | None = None
+    fixed_lines: tuple[Line, ...] = ()
+    moving_lines: tuple[Line, ...] = ()
     rotations: tuple[Real | None, ...] = ()
     link_angle: Real | None = None
     coupler_length: Real | None = None
@@ -65,7 +77,8 @@ class DyadConditions:
         """How many numbers are fixed."""
         scalars = (self.link_angle, self.coupler_length, self.coupler_angle, *self.rotations)
         pivots = (self.fixed_pivot, self.moving_pivot)
-        return 2 * sum(p is not None for p in pivots) + sum(s is not None for s in scalars)
+        lines = len(self.fixed_lines) + len(self.moving_lines)
+        return 2 * sum(p is not None for p in pivots) + lines + sum(s is not None for s in scalars)
 
     @property
     def linear(self) -> bool:
@@ -125,6 +138,21 @@ def solve_dyads(task: MotionTask, conditions: DyadConditions, start: Dyads) -> t
     return dyads, done & near & directions_hold(task, conditions, dyads)
 
 
+def settled(task: MotionTask, dyads: Dyads) -> Dyads:
+    """Dyads that nearly carry the body through the positions, moved least so that they do; shape (batch,).
+
+    Two steps of Gauss and Newton's method: what is meant are errors of a few digits beyond rounding.
+    """
+    fixed, moving = dyads
+    conditions = DyadConditions(rotations=(None,) * (len(task.points) - 1))
+    for _ in range(2):
+        values, jacobian = _rows(task, conditions, fixed, moving)
+        step = -(np.linalg.pinv(jacobian) @ values[..., None])[..., 0]
+        fixed = fixed + (step[:, 0] + 1j * step[:, 1])
+        moving = moving + (step[:, 2] + 1j * step[:, 3])
+    return Dyads(fixed, moving)
+
+
 def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadConditions:
     """The conditions of some dyads of the batch."""
 
@@ -134,6 +162,8 @@ def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadCondition
     return DyadConditions(
         taken(conditions.fixed_pivot),
         taken(conditions.moving_pivot),
+        conditions.fixed_lines,
+        conditions.moving_lines,
         tuple(taken(rotation) for rotation in conditions.rotations),
         taken(conditions.link_angle),
         taken(conditions.coupler_length),
@@ -212,6 +242,10 @@ def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: 
         gap = moving - conditions.moving_pivot
         add(gap.real, 0.0, 1.0)
         add(gap.imag, 0.0, 1j)
+    for line in conditions.fixed_lines:
+        add((np.conj(line.normal) * fixed).real - line.offset, line.normal, 0.0)
+    for line in conditions.moving_lines:
+        add((np.conj(line.normal) * moving).real - line.offset, 0.0, line.normal)
     if conditions.link_angle is not None:
         direction = np.exp(1j * conditions.link_angle)
         add((np.conj(direction) * (moving - fixed)).imag, -1j * direction, 1j * direction)

@@ -5,7 +5,8 @@ What has to be decided for a pair is whether one motion of the input meets the t
 
 * Assembly. At target k the sign of (B − A) × (B − O4) tells the assembly; all targets must agree.
 * Order. The input turns one way: its rotations ρ_k from the first target, taken modulo a full turn, must rise
-  (turning counter-clockwise) or fall (clockwise). With two targets both ways are open, and the shorter is taken.
+  (turning counter-clockwise) or fall (clockwise). With two targets both ways are open, and the shorter is taken. The
+  input dyad alone decides it; where it fails and order is demanded, that is the verdict on all its pairs.
 * Toggles and transmission. The diagonal f = |O4 − A| decides both. While the input turns, f has its extremes at the
   ends of the range or where the input lies on the ground line, so the range holds no toggle when
   cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the least
@@ -140,7 +141,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: Demands) -> 
         What a pair must satisfy.
     """
     shape = (len(inputs.fixed), len(outputs.fixed))
-    verdict, score = np.empty(shape, np.int8), np.zeros(shape, np.float32)
+    verdict, score = np.full(shape, ORDER_DEFECT, np.int8), np.zeros(shape, np.float32)
     _screen(
         np.ascontiguousarray(task.images(inputs.moving)),
         np.ascontiguousarray(inputs.fixed),
@@ -165,11 +166,14 @@ def _screen(
     verdict: NDArray[np.int8],
     score: NDArray[np.float32],
 ) -> None:
+    """Judge all pairs; those that are not judged keep the verdict and score that they have."""
     n = a_images.shape[1]
     turned = np.empty((2, n))
     for i in range(len(o2s)):
         o2 = o2s[i]
         in_order = _turns(a_images[i], o2, turned)
+        if wanted.in_order and not (in_order[0] or in_order[1]):
+            continue  # an order defect with every output
         for j in range(len(o4s)):
             verdict[i, j], score[i, j] = _judge(a_images[i], o2, b_images[j], o4s[j], turned, in_order, points, wanted)
 

@@ -1,25 +1,30 @@
 """Motion generation: dyads for both sides, all pairs screened, the best distinct ones verified.
 
-Where the client's choices determine both dyads there is one linkage, or a few, and each is verified. Where some freedom
-is left, that side is a cloud of dyads (:mod:`synthesis.motion.choices`), every pair is screened
+Where the positions and the client's choices determine both dyads there is one linkage, or a few, and each is verified.
+Where some freedom is left, that side is a cloud of dyads (:mod:`synthesis.motion.choices`), every pair is screened
 (:mod:`synthesis.motion.screening`), and the best that differ from one another are verified until enough have passed.
+
+Where both sides are stated alike they have the same dyads, as for five positions, and two of them make one fourbar that
+may be driven from either side. It counts as one candidate; each way of driving it that passes is an answer.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
 
-from synthesis.designs import LinkageDesign, MotionResult, Search
+from synthesis.designs import BurmesterBranch, LinkageDesign, MotionResult, Search
 from synthesis.kinds import Progress
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.linkages import FourbarConfiguration, fourbar_mechanism, to_point
+from synthesis.motion.burmester import Window, branches, burmester_curve
 from synthesis.motion.choices import Cloud, side_dyads
-from synthesis.motion.dyads import Dyads
+from synthesis.motion.dyads import DyadConditions, Dyads
 from synthesis.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import Constraints, DyadChoices, MotionProblem
+from synthesis.problems import Constraints, DyadChoices, MotionProblem, whole_point
 from synthesis.ranking import distinct, ranked
 from synthesis.verification import verify
 
@@ -32,6 +37,12 @@ CLOUD_PAIR = 1200
 
 CLOUD_SINGLE = 40_000
 """Dyads of an open side when the other is determined."""
+
+CURVES_REACH = 4.0
+"""Burmester's curves are returned up to this many task sizes from the body, or half as far again as designs reach."""
+
+CURVES_SAMPLES = 400
+"""Samples of Burmester's curves that are returned, all branches together."""
 
 SHORTLIST = 4000
 """Best-scored pairs from which distinct ones are chosen."""
@@ -60,15 +71,19 @@ _NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
 
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Solve a motion-generation problem of two or three positions."""
+    """Solve a motion-generation problem of two to five positions."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding dyads")
     sides = problem.input_side, problem.output_side
-    clouds = [side_dyads(task, side, problem.constraints, rng, CLOUD_PAIR) for side in sides]
+    clouds = [side_dyads(task, problem, sides[0], rng, CLOUD_PAIR)]
+    alike = sides[0] == sides[1]
+    clouds.append(
+        clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, CLOUD_PAIR)
+    )
     for k in (0, 1):
         if clouds[k].sampled and not clouds[1 - k].sampled:
-            clouds[k] = side_dyads(task, sides[k], problem.constraints, rng, CLOUD_SINGLE)
+            clouds[k] = side_dyads(task, problem, sides[k], rng, CLOUD_SINGLE)
     pairs = _Pairs(problem, task, *clouds)
     for name, cloud in zip(("input", "output"), clouds, strict=True):
         if not len(cloud.dyads.fixed):
@@ -84,17 +99,22 @@ class _Pairs:
         self.inputs, self.outputs = inputs.dyads, outputs.dyads
         self.sampled = inputs.sampled or outputs.sampled
         self.complete = inputs.complete and outputs.complete
+        self.alike = inputs is outputs
+        self.remarks = _remarks(problem, inputs, outputs)
+        self.accepted = 0
         self.passed: list[LinkageDesign] = []
         self.failed: list[LinkageDesign] = []
         self.rejected: Counter[str] = Counter()
 
     def determined(self, progress: Progress) -> MotionResult:
-        """Verify every pair of a few determined dyads."""
+        """Verify every pair of a few determined dyads; of two that serve either side, both ways of driving."""
+        count = 0
         for i in range(len(self.inputs.fixed)):
-            for j in range(len(self.outputs.fixed)):
-                self._verify(i, j)
+            for j in range(i + 1 if self.alike else 0, len(self.outputs.fixed)):
+                verdicts = [self._verify(i, j), *([self._verify(j, i)] if self.alike else [])]
+                self._count(verdicts)
+                count += 1
         progress(1.0, "verified")
-        count = len(self.passed) + sum(self.rejected.values())
         complete = self.complete and not _NUMERICAL & self.rejected.keys()
         return self._result("exact", complete, count, self._summary_of_determined(count, complete))
 
@@ -104,7 +124,7 @@ class _Pairs:
         progress(0.1, f"screening {count} pairs of dyads")
         limit = self.problem.constraints.min_transmission_angle
         screening = self._screened(self.problem.constraints, USABLE_TRANSMISSION_ANGLE if limit is None else limit)
-        if limit is None and not screening.score.any():
+        if limit is None and not screening.score.any() and "transmission_angle" in screening.rejected():
             screening = self._screened(self.problem.constraints, 0.0)
         sound = int(np.count_nonzero(screening.score))
         progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
@@ -112,7 +132,7 @@ class _Pairs:
         tried = 0
         for i, j in self._best(screening):
             tried += 1
-            self._verify(i, j)
+            self._count([self._verify(i, j)])
             if len(self.passed) == self.problem.max_designs:
                 break
         if sound > tried:
@@ -127,29 +147,39 @@ class _Pairs:
         method = "dyad_search" if self.sampled else "exact"
         return self._result(method, cloud.complete, 0, cloud.reason.replace("the side", f"the {side} side"))
 
-    def _verify(self, i: int, j: int) -> None:
-        """Drive the linkage of an input and an output dyad, and put it where it belongs."""
+    def _count(self, verdicts: list[str]) -> None:
+        """Count a candidate by the verdicts on the ways in which it can be driven: accepted if one passes."""
+        if "" in verdicts:
+            self.accepted += 1
+        else:
+            self.rejected[verdicts[0]] += 1
+
+    def _verify(self, i: int, j: int) -> str:
+        """Drive the linkage of an input and an output dyad, and put it where it belongs.
+
+        The answer is why it was rejected; empty where it passed.
+        """
         o2, a = self._pivots(self.problem.input_side, self.inputs, i)
         o4, b = self._pivots(self.problem.output_side, self.outputs, j)
         lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
         if min(lengths) <= SHORTEST_LINK * max(lengths):
-            self.rejected["degenerate"] += 1
-            return
+            return "degenerate"
         design = verify(self.problem, fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin)))
         if design is None:
-            self.rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
+            return "cannot_be_driven"
+        if design.verification.passed:
             self.passed.append(design)
-        else:
-            self.failed.append(design)
-            name = next(check.name for check in design.verification.checks if not check.passed)
-            self.rejected[_REASONS.get(name, name)] += 1
+            return ""
+        self.failed.append(design)
+        name = next(check.name for check in design.verification.checks if not check.passed)
+        return _REASONS.get(name, name)
 
     def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
         """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
         stated = side.fixed_pivot, side.moving_pivot
         found = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
-        fixed, moving = (f if s is None else complex(*s) for s, f in zip(stated, found, strict=True))
+        wholes = map(whole_point, stated)
+        fixed, moving = (f if s is None else s for s, f in zip(wholes, found, strict=True))
         return fixed, moving
 
     def _screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
@@ -178,32 +208,39 @@ class _Pairs:
         """Add the best linkages that move as the task demands but break a limit of the client's."""
         demanded = self.problem.constraints
         motion_alone = Constraints(same_branch=demanded.same_branch, in_order=demanded.in_order)
-        kept, self.rejected = self.rejected, Counter()
         for i, j in self._best(self._screened(motion_alone, 0.0))[: self.problem.max_designs]:
             passed = len(self.passed)
             self._verify(i, j)
             del self.passed[passed:]  # what passes was met by the search already
-        self.rejected = kept
 
     def _result(self, method: str, complete: bool, candidates: int, summary: str) -> MotionResult:
         shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
+        designs = ranked(shown, self.problem.rank_by)[: self.problem.max_designs]
         return MotionResult(
-            designs=ranked(shown, self.problem.rank_by)[: self.problem.max_designs],
+            designs=designs,
+            curves=_curves(self.task, designs),
             search=Search(
                 method=method,
                 complete=complete,
                 candidates=candidates,
-                accepted=len(self.passed),
+                accepted=self.accepted,
                 rejected=dict(self.rejected),
                 seed=self.problem.seed,
             ),
-            summary=summary,
+            summary=" ".join([summary, *self.remarks]),
         )
 
     def _summary_of_determined(self, count: int, complete: bool) -> str:
-        verb = "carries" if len(self.passed) == 1 else "carry"
+        verb = "carries" if self.accepted == 1 else "carry"
         noun = "linkage" if count == 1 else "linkages"
-        text = f"{len(self.passed)} of {count} {noun} with the stated choices {verb} the body through all positions."
+        if self.alike:
+            dyads = len(self.inputs.fixed)
+            text = f"{dyads} dyad{'s' * (dyads > 1)} with two pins {'make' if dyads > 1 else 'makes'} {count} {noun}"
+            text += f", of which {self.accepted} {verb} the body through all positions." if count else "."
+            if self.accepted and len(self.passed) > self.accepted:
+                text += f" {len(self.passed) - self.accepted} can be driven from either side."
+        else:
+            text = f"{self.accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
         if self.rejected:
             text += f" Rejected: {_listed(self.rejected)}."
         if not self.passed:
@@ -229,3 +266,41 @@ class _Pairs:
 
 def _listed(counts: Mapping[str, int]) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items())
+
+
+def _remarks(problem: MotionProblem, inputs: Cloud, outputs: Cloud) -> list[str]:
+    """What a client should know of the dyads beside the linkages."""
+    remarks = []
+    clouds = {"side": inputs} if inputs is outputs else {"input side": inputs, "output side": outputs}
+    for name, cloud in clouds.items():
+        if cloud.remark:
+            remarks.append(cloud.remark.replace("the side", f"the {name}").strip())
+        if cloud.sliders:
+            count = len(cloud.sliders)
+            kinds = " and ".join(sorted({slider.kind for slider in cloud.sliders}))
+            remarks.append(
+                f"{count} more dyad{'s' * (count > 1)} of the {name} {'have' if count > 1 else 'has'} a pivot "
+                f"at infinity: a slider ({kinds})."
+            )
+    return list(dict.fromkeys(remarks))
+
+
+def _curves(task: MotionTask, designs: list[LinkageDesign]) -> list[BurmesterBranch]:
+    """Burmester's curves of a task of four positions for drawing, wide enough for the designs."""
+    if len(task.points) != 4:
+        return []
+    curve = burmester_curve(task, DyadConditions(rotations=(None,) * 3))
+    if curve is None:
+        return []
+    pivots = [joint for design in designs for joint in design.mechanism.skeleton.joints.values()]
+    reach = max((abs(task.to_task(complex(*pivot))) for pivot in pivots), default=0.0)
+    centres = complex(task.points.mean()), complex(task.points[0])
+    window = Window(centres, max(CURVES_REACH, 1.5 * reach), math.inf)
+    return [
+        BurmesterBranch(
+            centre_points=[to_point(task.to_problem(complex(z))) for z in branch.dyads.fixed],
+            circle_points=[to_point(task.to_problem(complex(z))) for z in branch.dyads.moving],
+            closed=branch.closed,
+        )
+        for branch in branches(curve, window, CURVES_SAMPLES)
+    ]

@@ -14,6 +14,7 @@ from synthesis.problems.base import (
     Flag,
     Interval,
     Number,
+    PartialPoint,
     Point,
     PositiveNumber,
     StatedProblem,
@@ -21,7 +22,7 @@ from synthesis.problems.base import (
 )
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
-from synthesis.problems.motion import CouplerVector, DyadChoices, MotionProblem, Position
+from synthesis.problems.motion import CouplerVector, DyadChoices, GroundLine, MotionProblem, Position, whole_point
 from synthesis.problems.planetary_train import (
     PlanetaryProblem,
     PlanetaryTeeth,
@@ -37,11 +38,13 @@ __all__ = [
     "DyadChoices",
     "Flag",
     "GearTrainProblem",
+    "GroundLine",
     "Interval",
     "LengthLimits",
     "LinkageProblem",
     "MotionProblem",
     "Number",
+    "PartialPoint",
     "PlanetaryProblem",
     "PlanetaryTeeth",
     "Point",
@@ -53,4 +56,5 @@ __all__ = [
     "StockedGear",
     "TeethRange",
     "ToothRange",
+    "whole_point",
 ]

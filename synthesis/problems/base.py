@@ -47,6 +47,15 @@ def _ordered(interval: tuple[float, float]) -> tuple[float, float]:
     return interval
 
 
+def _somewhere(point: tuple[float | None, float | None]) -> tuple[float | None, float | None]:
+    if point == (None, None):
+        raise ValueError("state one coordinate at least, or leave the point out")
+    return point
+
+
+PartialPoint = Annotated[tuple[Number | None, Number | None], AfterValidator(_somewhere)]
+"""A point of which one coordinate may be left open (null)."""
+
 Interval = Annotated[tuple[Number, Number], AfterValidator(_ordered)]
 
 

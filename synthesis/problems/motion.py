@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import cmath
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.problems.base import Contradiction, Number, Point, PositiveNumber, Statement
+from synthesis.problems.base import Contradiction, Number, PartialPoint, Point, PositiveNumber, Statement
 from synthesis.problems.linkage import LinkageProblem
 
 LEAST_LENGTH = 1e-12
@@ -23,6 +25,13 @@ Double precision keeps about 1e-16 of the largest coordinate, so a displacement 
 half its digits and no residual of 1e-9 could be shown for it."""
 
 
+PARALLEL = 1e-9
+"""Component of a unit vector below which a line counts as parallel to an axis."""
+
+ON_LINE = 1e-9
+"""Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
+
+
 class Position(Statement):
     """Where the body is: its reference point P and the angle of a line fixed in it."""
 
@@ -34,6 +43,28 @@ class Position(Statement):
     def point(self) -> complex:
         """The reference point as a complex number, in length units."""
         return complex(self.x, self.y)
+
+
+def whole_point(point: PartialPoint | None) -> complex | None:
+    """A stated point as a complex number; None where it, or one of its coordinates, is left open."""
+    if point is None or point[0] is None or point[1] is None:
+        return None
+    return complex(point[0], point[1])
+
+
+class GroundLine(Statement):
+    """A straight line on which both fixed pivots lie."""
+
+    point: Point
+    angle: Number = Field(description="Direction of the line, degrees.")
+
+    def offset(self, point: complex) -> float:
+        """Signed distance of a point from the line, in length units."""
+        return ((point - complex(*self.point)) * cmath.exp(-1j * math.radians(self.angle))).imag
+
+    def foot(self, point: complex) -> complex:
+        """The point of the line that is nearest to a point."""
+        return point - 1j * cmath.rect(self.offset(point), math.radians(self.angle))
 
 
 class CouplerVector(Statement):
@@ -50,8 +81,10 @@ class DyadChoices(Statement):
     are β₂, β₃ (γ₂, γ₃).
     """
 
-    fixed_pivot: Point | None = None
-    moving_pivot: Point | None = Field(default=None, description="Moving pivot in the first position.")
+    fixed_pivot: PartialPoint | None = Field(default=None, description="null leaves a coordinate open.")
+    moving_pivot: PartialPoint | None = Field(
+        default=None, description="Moving pivot in the first position; null leaves a coordinate open."
+    )
     rotations: list[Number | None] | None = Field(
         default=None,
         min_length=1,
@@ -66,20 +99,23 @@ class DyadChoices(Statement):
     def count(self) -> int:
         """How many numbers are fixed."""
         vector = self.coupler_vector or CouplerVector()
-        scalars = [self.link_angle, vector.length, vector.angle, *(self.rotations or [])]
-        return (
-            2 * (self.fixed_pivot is not None)
-            + 2 * (self.moving_pivot is not None)
-            + sum(s is not None for s in scalars)
-        )
+        pivots = [*(self.fixed_pivot or ()), *(self.moving_pivot or ())]
+        scalars = [self.link_angle, vector.length, vector.angle, *(self.rotations or []), *pivots]
+        return sum(s is not None for s in scalars)
+
+    @property
+    def one_pivot(self) -> bool:
+        """Whether one whole pivot is all that is fixed."""
+        pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)
+        return self.count() == 2 and pivots.count(None) == 1
 
 
 class MotionProblem(LinkageProblem):
-    """Motion generation: a fourbar whose coupler carries a body through two or three positions.
+    """Motion generation: a fourbar whose coupler carries a body through two to five positions.
 
-    Each side of the linkage is a dyad: a link from a fixed pivot to a moving pivot on the body. Two positions leave
-    three free choices per dyad, three positions leave two (Norton, Table 5-3). Choices that are not stated are
-    searched, and the best distinct linkages are returned.
+    Each side of the linkage is a dyad: a link from a fixed pivot to a moving pivot on the body. n positions leave 5 − n
+    free choices per dyad (Norton, Table 5-3). Choices that are not stated are searched, and the best distinct linkages
+    are returned; for five positions there are six linkages at most, and all that are sound are returned.
     """
 
     model_config = ConfigDict(
@@ -101,12 +137,11 @@ class MotionProblem(LinkageProblem):
     )
 
     kind: Literal["motion"]
-    positions: list[Position] = Field(min_length=2, max_length=3)
+    positions: list[Position] = Field(min_length=2, max_length=5)
     input_side: DyadChoices = DyadChoices()
     output_side: DyadChoices = DyadChoices()
-    method: Literal["auto", "exact"] = Field(
-        default="auto", description="How positions are met: exactly. Up to three positions can always be."
-    )
+    ground_line: GroundLine | None = Field(default=None, description="Both fixed pivots lie on this line.")
+    method: Literal["auto", "exact"] = Field(default="auto", description="How positions are met: exactly.")
 
     @property
     def task_size(self) -> float:
@@ -127,10 +162,13 @@ class MotionProblem(LinkageProblem):
         return [math.radians(math.remainder(position.angle - first, 360.0)) for position in self.positions]
 
     def _stated_points(self) -> list[complex]:
-        stated = [
-            pivot for side in (self.input_side, self.output_side) for pivot in (side.fixed_pivot, side.moving_pivot)
-        ]
-        points = [complex(*pivot) for pivot in stated if pivot is not None]
+        first = self.positions[0]
+        points = [] if self.ground_line is None else [self.ground_line.foot(first.point)]
+        for side in (self.input_side, self.output_side):
+            for pivot in (side.fixed_pivot, side.moving_pivot):
+                if pivot is not None:
+                    x, y = pivot
+                    points.append(complex(first.x if x is None else x, first.y if y is None else y))
         for region in (self.constraints.fixed_pivot_region, self.constraints.moving_pivot_region):
             if region is not None:
                 points += [complex(x, y) for x in region.x for y in region.y]
@@ -142,6 +180,7 @@ class MotionProblem(LinkageProblem):
             *self._equal_positions(),
             *self._overstated_sides(),
             *self._coinciding_pivots(),
+            *self._pivots_off_the_ground_line(),
             *self._pivots_outside_regions(),
             *self._impossible_class(),
         ]
@@ -180,24 +219,57 @@ class MotionProblem(LinkageProblem):
                         f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
                     )
                 )
-            elif side.count() > free:
+            elif side.count() > free and not (len(self.positions) > 3 and side.one_pivot):
                 found.append(
                     Contradiction(
                         f"/{name}",
                         f"states {side.count()} numbers, but {len(self.positions)} positions leave {free} free choices "
-                        "per side; leave some out",
+                        f"per side; leave some out{' or state one pivot' if len(self.positions) > 3 else ''}",
+                    )
+                )
+            elif self.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
+                found.append(
+                    Contradiction(
+                        "/ground_line",
+                        f"is one number more than the {free} free choices that {len(self.positions)} positions leave "
+                        f"for {name}, which states {side.count()}",
                     )
                 )
         return found
 
     def _pivots_outside_regions(self) -> list[Contradiction]:
         found = []
-        for pivot in ("fixed_pivot", "moving_pivot"):
-            region = getattr(self.constraints, f"{pivot}_region")
-            for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
-                point = getattr(side, pivot)
-                if region is not None and point is not None and not region.contains(complex(*point)):
-                    found.append(Contradiction(f"/{name}/{pivot}", f"lies outside constraints.{pivot}_region"))
+        for path, pivot in self._stated_pivots():
+            region = getattr(self.constraints, f"{path.rsplit('/')[-1]}_region")
+            # An open coordinate cannot lie outside: the region's own stands for it.
+            if region is not None:
+                x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
+                if not region.contains(complex(x, y)):
+                    found.append(Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region"))
+        return found
+
+    def _stated_pivots(self) -> Iterator[tuple[str, PartialPoint]]:
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot)):
+                if pivot is not None:
+                    yield f"/{name}/{field}", pivot
+
+    def _pivots_off_the_ground_line(self) -> list[Contradiction]:
+        line = self.ground_line
+        if line is None:
+            return []
+        found = []
+        along = cmath.rect(1.0, math.radians(line.angle))
+        for path, pivot in self._stated_pivots():
+            if path.endswith("/fixed_pivot"):
+                whole = whole_point(pivot)
+                parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
+                if whole is not None and abs(line.offset(whole)) > ON_LINE * self.task_size:
+                    found.append(Contradiction(path, "does not lie on ground_line"))
+                elif whole is None and parallel:
+                    found.append(
+                        Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
+                    )
         return found
 
     def _impossible_class(self) -> list[Contradiction]:
@@ -211,7 +283,7 @@ class MotionProblem(LinkageProblem):
         found = []
         for pivot in ("fixed_pivot", "moving_pivot"):
             one, other = getattr(self.input_side, pivot), getattr(self.output_side, pivot)
-            if one is not None and one == other:
+            if whole_point(one) is not None and one == other:
                 found.append(
                     Contradiction(
                         f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost"

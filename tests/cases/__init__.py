@@ -88,9 +88,9 @@ def cases(kind: str, file: str = "linkage") -> list[Any]:
 
 
 @cache
-def search_tasks() -> tuple[dict[str, Any], ...]:
-    """The three-position tasks of ``search_3_positions.json``: ``id``, and ``positions`` of x, y, angle."""
-    return tuple(json.loads((HERE / "search_3_positions.json").read_text(encoding="utf-8")))
+def search_tasks(n: int = 3) -> tuple[dict[str, Any], ...]:
+    """The tasks of ``search_n_positions.json``: ``id``, and ``positions`` of x, y, angle; for five also ``planted``."""
+    return tuple(json.loads((HERE / f"search_{n}_positions.json").read_text(encoding="utf-8")))
 
 
 def _gear_case(row: dict[str, Any]) -> Case:

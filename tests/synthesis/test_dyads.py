@@ -11,7 +11,7 @@ from synthesis.kinds import parse_problem
 from synthesis.motion.choices import side_dyads, stated_conditions
 from synthesis.motion.dyads import DyadConditions, Dyads, solve_dyads
 from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import Constraints, DyadChoices
+from synthesis.problems import DyadChoices
 from tests.cases import Case, cases
 from tests.synthesis.planted import plant
 from tests.synthesis.test_motion_literature import vector
@@ -158,12 +158,12 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
         choices = DyadChoices.model_validate(side.choices(*names))
         problem = parse_problem({"kind": "motion", "positions": planted.positions})
         task = motion_task(problem)
-        cloud = side_dyads(task, choices, Constraints(), np.random.default_rng(trial), 1)
+        cloud = side_dyads(task, problem, choices, np.random.default_rng(trial), 1)
         gaps = np.abs(cloud.dyads.fixed - task.to_task(side.fixed_pivot))
         gaps += np.abs(cloud.dyads.moving - task.to_task(side.moving_pivot))
         assert gaps.min(initial=math.inf) < 1e-7, (trial, names)
-        if stated_conditions(task, choices).linear:
-            assert cloud.complete
+        assert cloud.complete
+        if stated_conditions(task, problem, choices).linear:
             assert len(gaps) == 1
 
 
@@ -173,8 +173,8 @@ def test_directions_are_met_forwards_only() -> None:
     planted = plant(rng, 2)
     stated = planted.input_side.choices("moving", "theta")
     stated["link_angle"] += 180.0
-    task = motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
-    cloud = side_dyads(task, DyadChoices.model_validate(stated), Constraints(), rng, 1)
+    problem = parse_problem({"kind": "motion", "positions": planted.positions})
+    cloud = side_dyads(motion_task(problem), problem, DyadChoices.model_validate(stated), rng, 1)
     assert len(cloud.dyads.fixed) == 0
 
 

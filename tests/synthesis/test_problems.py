@@ -16,6 +16,8 @@ POSITIONS = [
     {"x": 1.0, "y": 0.0, "angle": 10.0},
     {"x": 2.0, "y": 1.0, "angle": 30.0},
 ]
+FOUR = [*POSITIONS, {"x": 3.0, "y": 0.5, "angle": 40.0}]
+FIFTH = {"x": 3.0, "y": 0.0, "angle": 55.0}
 
 
 def statement(**changes: Any) -> dict[str, Any]:
@@ -49,6 +51,9 @@ def statement(**changes: Any) -> dict[str, Any]:
         ),
         ({"constraints": {"full_rotation": "yes"}}, ("constraints", "full_rotation")),
         ({"input_side": {"fixed_pivot": [0.0]}}, ("input_side", "fixed_pivot", 1)),
+        ({"input_side": {"fixed_pivot": [None, None]}}, ("input_side", "fixed_pivot")),
+        ({"ground_line": {"point": [0.0, None], "angle": 0.0}}, ("ground_line", "point", 1)),
+        ({"ground_line": {"point": [0.0, 1.0]}}, ("ground_line", "angle")),
         ({"input_side": {"coupler_vector": {"length": 0.0}}}, ("input_side", "coupler_vector", "length")),
     ],
 )
@@ -84,6 +89,33 @@ def test_an_unknown_kind_is_said(changes: dict[str, Any]) -> None:
         (
             {"input_side": {"fixed_pivot": [1.0, 2.0]}, "output_side": {"fixed_pivot": [1.0, 2.0]}},
             "/output_side/fixed_pivot",
+        ),
+        ({"input_side": {"fixed_pivot": [None, 2.0], "link_angle": 3.0, "rotations": [1.0, None]}}, "/input_side"),
+        ({"positions": FOUR, "input_side": {"link_angle": 3.0, "rotations": [1.0, None, None]}}, "/input_side"),
+        ({"positions": FOUR, "output_side": {"fixed_pivot": [0.0, 1.0], "link_angle": 3.0}}, "/output_side"),
+        ({"positions": [*FOUR, FIFTH], "output_side": {"link_angle": 3.0}}, "/output_side"),
+        (
+            {
+                "positions": FOUR,
+                "ground_line": {"point": [0.0, 0.0], "angle": 0.0},
+                "input_side": {"link_angle": 3.0},
+            },
+            "/ground_line",
+        ),
+        (
+            {"ground_line": {"point": [0.0, 0.0], "angle": 0.0}, "input_side": {"fixed_pivot": [1.0, 2.0]}},
+            "/input_side/fixed_pivot",
+        ),
+        (
+            {"ground_line": {"point": [0.0, 0.0], "angle": 90.0}, "output_side": {"fixed_pivot": [1.0, None]}},
+            "/output_side/fixed_pivot",
+        ),
+        (
+            {
+                "output_side": {"moving_pivot": [None, 5.0]},
+                "constraints": {"moving_pivot_region": {"x": [0, 1], "y": [0, 1]}},
+            },
+            "/output_side/moving_pivot",
         ),
     ],
 )

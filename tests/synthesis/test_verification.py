@@ -123,7 +123,7 @@ def test_every_defect_by_independent_continuation() -> None:
         problem = problem_of(planted)
         task = motion_task(problem)
         sides = [
-            side_dyads(task, side, problem.constraints, np.random.default_rng(trial + 100 * k), 40).dyads
+            side_dyads(task, problem, side, np.random.default_rng(trial + 100 * k), 40).dyads
             for k, side in enumerate((problem.input_side, problem.output_side))
         ]
         designs = []
@@ -208,9 +208,7 @@ def test_demands_of_the_motion_can_be_dropped() -> None:
     problem = problem_of(planted)
     relaxed = problem_of(planted, constraints={"same_branch": False, "in_order": False})
     task = motion_task(problem)
-    one, other = (
-        side_dyads(task, problem.input_side, problem.constraints, np.random.default_rng(k), 60) for k in (0, 1)
-    )
+    one, other = (side_dyads(task, problem, problem.input_side, np.random.default_rng(k), 60) for k in (0, 1))
     found = 0
     for i in range(50):
         joints = [complex(z[i]) for z in (one.dyads.fixed, one.dyads.moving, other.dyads.moving, other.dyads.fixed)]

@@ -1,0 +1,211 @@
+"""The common points of m − 1 quadrics in projective space of m coordinates: all 2^(m−1), with a proof of their number.
+
+Multiplied by all monomials of degree m − 2, the quadrics are linear equations for the monomials of degree m (Macaulay).
+Where the quadrics meet in points only, the solutions have dimension 2^(m−1) (Bézout), and are spanned by the monomials
+at the common points. Shifting by two linear forms, l₁ · monomial and l₂ · monomial for those of degree m − 1, is then
+an eigenvalue problem whose eigenvectors are the common points (Cox, Little & O'Shea, Using Algebraic Geometry, 2.4).
+No coordinate is singled out, so that points at infinity are like any other.
+
+Each point is refined by Newton's method, and the Newton–Kantorovich theorem tells whether it is a simple root in a ball
+that holds no other; 2^(m−1) such balls, apart from each other, are all the roots there are.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from itertools import combinations_with_replacement
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Numbers = NDArray[Any]
+"""Real or complex: what is real stays so."""
+
+DEGENERATE = 1e-11
+"""Singular value of the monomial equations, relative to the largest, below which quadrics meet in more than points."""
+
+NEWTON_STEPS = 6
+"""Steps at most; eigenvectors carry ten digits or more where roots are simple."""
+
+NEARLY_REAL = 1e-4
+"""Imaginary part of a unit vector below which a real root is looked for nearby; a double root of data with 16 digits
+shows half of them, and a triple one a third."""
+
+CLUSTER = 1e-5
+"""Radius in which the roots of a cluster are taken to lie, for none of which a proof is found."""
+
+ROUNDING = 4e-15
+"""Error of a residual as computed: some tens of roundings of unit numbers."""
+
+MET = 1e-13
+"""Residual at which a real point counts as common to all quadrics where it cannot be proved: a double root, which data
+a few roundings away would have or not have."""
+
+
+class CommonPoints(NamedTuple):
+    """What quadrics have in common.
+
+    Attributes
+    ----------
+    real : float64, shape (k, m)
+        Real common points, unit vectors, each once.
+    double : bool, shape (k,)
+        Not proved to be simple: two or more common points lie here, to rounding.
+    finite : bool
+        The quadrics meet in points only. Where not, ``real`` is empty.
+    unproved : complex128, shape (j, m)
+        Unit vectors near those of the 2^(m−1) common points, complex ones included, that could not be proved to be
+        simple, and apart from the others. Where there are none, ``real`` is complete.
+    """
+
+    real: Real
+    double: NDArray[np.bool_]
+    finite: bool
+    unproved: Complex
+
+
+def common_points(forms: Real) -> CommonPoints:
+    """Real common points of quadrics xᵀ Q x = 0.
+
+    Parameters
+    ----------
+    forms : float64, shape (m − 1, m, m)
+        Symmetric matrices Q of unit norm, 2 ≤ m ≤ 4.
+    """
+    m = forms.shape[-1]
+    frame = _frame(m)
+    equations = np.zeros((len(frame.shift) * (m - 1), frame.monomials))
+    for j, q in enumerate(forms):
+        coefficients = q[frame.rows, frame.columns] * frame.twice
+        for i, places in enumerate(frame.shift):
+            equations[j * len(frame.shift) + i, places] = coefficients
+    _, s, vh = np.linalg.svd(equations)
+    roots = 2 ** (m - 1)
+    if s[frame.monomials - roots - 1] <= DEGENERATE * s[0]:
+        return CommonPoints(np.empty((0, m)), np.empty(0, np.bool_), False, np.empty((0, m), np.complex128))
+    basis = vh[frame.monomials - roots :].T
+    above = np.tensordot(frame.first, basis[frame.lift], (0, 1))
+    below = np.tensordot(frame.second, basis[frame.lift], (0, 1))
+    _, vectors = np.linalg.eig(np.linalg.lstsq(below, above, rcond=None)[0])
+    monomials = basis @ vectors
+    largest = np.abs(monomials[frame.powers]).argmax(axis=0)
+    points = monomials[frame.lines[largest], np.arange(roots)[:, None]]
+    return _refined(forms, points)
+
+
+class _Frame(NamedTuple):
+    """Where monomials stand: of degree m in a solution, of degree m − 2 as multipliers, and products between them."""
+
+    monomials: int
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    twice: Real
+    shift: NDArray[np.intp]
+    lift: NDArray[np.intp]
+    powers: NDArray[np.intp]
+    lines: NDArray[np.intp]
+    first: Real
+    second: Real
+
+
+@cache
+def _frame(m: int) -> _Frame:
+    place = {mono: k for k, mono in enumerate(combinations_with_replacement(range(m), m))}
+    squares = list(combinations_with_replacement(range(m), 2))
+    multipliers = list(combinations_with_replacement(range(m), m - 2))
+    lower = list(combinations_with_replacement(range(m), m - 1))
+
+    def product(*factors: tuple[int, ...]) -> int:
+        return place[tuple(sorted(sum(factors, ())))]
+
+    angles = 1.0 + 2.0 * np.arange(m)  # linear forms in general position
+    return _Frame(
+        monomials=len(place),
+        rows=np.array([i for i, _ in squares]),
+        columns=np.array([j for _, j in squares]),
+        twice=np.array([1.0 if i == j else 2.0 for i, j in squares]),
+        shift=np.array([[product(mono, square) for square in squares] for mono in multipliers]),
+        lift=np.array([[product(mono, (i,)) for mono in lower] for i in range(m)]).T,
+        powers=np.array([place[(i,) * m] for i in range(m)]),
+        lines=np.array([[product((i,) * (m - 1), (j,)) for j in range(m)] for i in range(m)]),
+        first=np.cos(angles),
+        second=np.sin(angles * math.sqrt(2.0)),
+    )
+
+
+def _refined(forms: Real, points: Numbers) -> CommonPoints:
+    """Newton's method from each point, real ones among the reals, and the proof of their number."""
+    m = forms.shape[-1]
+    points = _newton(forms, points / np.linalg.norm(points, axis=1)[:, None])
+    pivot = np.take_along_axis(points, np.abs(points).argmax(axis=1)[:, None], axis=1)
+    points = points * (np.conj(pivot) / np.abs(pivot))
+    nearly = np.abs(points.imag).max(axis=1) <= NEARLY_REAL
+    reals = points[nearly].real
+    reals = _newton(forms, reals / np.linalg.norm(reals, axis=1)[:, None])
+    real_radius, real_alone, residual = _certificate(forms, reals)
+    radius, alone, _ = _certificate(forms, points[~nearly])
+    imaginary = np.abs(points[~nearly].imag).max(axis=1)
+    everywhere = np.concatenate([reals, points[~nearly]])
+    apart = _apart(everywhere, np.concatenate([real_radius, radius]))
+    proved = apart & np.concatenate([real_alone, alone & (imaginary > radius)])
+    kept: list[int] = []
+    for k in np.flatnonzero(real_alone | (residual <= MET)):
+        gaps = [1.0 - abs(float(reals[k] @ reals[j])) for j in kept]
+        if min(gaps, default=1.0) > 1e-14:
+            kept.append(int(k))
+    double = ~proved[: len(reals)][kept]
+    return CommonPoints(reals[kept].reshape(-1, m), double, True, everywhere[~proved].astype(np.complex128))
+
+
+def _newton(forms: Real, points: Numbers) -> Numbers:
+    """Newton's method on the sphere: a step is perpendicular to the point; the best point on the way is kept."""
+    best, least = points, np.full(len(points), np.inf)
+    for step in range(NEWTON_STEPS + 1):
+        images = np.einsum("qij,kj->kqi", forms, points)
+        values = np.einsum("kqi,ki->kq", images, points)
+        size = np.abs(values).max(axis=1, initial=0.0)
+        better = size < least
+        best = np.where(better[:, None], points, best)
+        least = np.where(better, size, least)
+        if step == NEWTON_STEPS or not len(points) or least.max() <= ROUNDING / 8.0:
+            break
+        jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
+        right = np.concatenate([values, np.zeros((len(points), 1))], axis=1)
+        u, s, vh = np.linalg.svd(jacobian)
+        inverse = np.where(s > ROUNDING, 1.0 / np.maximum(s, ROUNDING), 0.0)
+        move = np.einsum("kji,kj->ki", vh.conj(), inverse * np.einsum("kij,ki->kj", u.conj(), right))
+        points = points - move
+        points = points / np.linalg.norm(points, axis=1)[:, None]
+    return best
+
+
+def _certificate(forms: Real, points: Numbers) -> tuple[Real, NDArray[np.bool_], Real]:
+    """Newton–Kantorovich at unit vectors: radius in which a root lies, whether that is proved, and the residual.
+
+    With K a Lipschitz constant of the Jacobian J and η = |J⁻¹f|, a root lies within 2η where K|J⁻¹|η ≤ 1/2
+    (Kantorovich; Ortega & Rheinboldt, 12.6.2).
+    """
+    images = np.einsum("qij,kj->kqi", forms, points)
+    values = np.einsum("kqi,ki->kq", images, points)
+    jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
+    least = np.linalg.svd(jacobian, compute_uv=False)[:, -1] if len(points) else np.empty(0)
+    least = np.maximum(least, np.finfo(np.float64).tiny)
+    residual = np.linalg.norm(values, axis=1)
+    step = (residual + ROUNDING) / least
+    lipschitz = 2.0 * math.sqrt(len(forms))
+    alone = lipschitz * step / least <= 0.5
+    return np.where(alone, 2.0 * step, CLUSTER), alone, np.abs(values).max(axis=1, initial=0.0)
+
+
+def _apart(points: Complex, radius: Real) -> NDArray[np.bool_]:
+    """Which points are farther from every other than their radii together, as points of projective space."""
+    closeness = np.minimum(np.abs(points.conj() @ points.T), 1.0)
+    distance = np.sqrt(2.0 * (1.0 - closeness))
+    np.fill_diagonal(distance, np.inf)
+    # The cosine of two unit vectors tells their distance to the root of a rounding only.
+    needed = np.maximum(radius[:, None] + radius[None, :], 3e-8)
+    return np.asarray((distance > needed).all(axis=1), np.bool_)

@@ -1,0 +1,123 @@
+"""All dyads of five positions and of stated choices: their number exactly, planted ones, sliders, degenerate tasks."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from synthesis.kinds import parse_problem
+from synthesis.motion.dyads import DyadConditions
+from synthesis.motion.sections import section
+from synthesis.motion.task import MotionTask, motion_task
+from tests.oracles.five_positions import real_dyads
+from tests.synthesis.planted import plant
+
+
+def open_choices(task: MotionTask) -> DyadConditions:
+    return DyadConditions(rotations=(None,) * (len(task.points) - 1))
+
+
+def lengths_vary(task: MotionTask, fixed: np.ndarray, moving: np.ndarray) -> float:
+    """Largest change of a link's length over the positions, relative to the dyad's size."""
+    links = np.abs(task.images(moving) - fixed[:, None])
+    return float((np.ptp(links, axis=1) / (1.0 + np.abs(fixed) + np.abs(moving))).max(initial=0.0))
+
+
+def rational_task(rng: np.random.Generator) -> tuple[MotionTask, int]:
+    """Five positions by rational numbers, and how many real dyads they have."""
+    poses = [tuple(Fraction(int(v), 997) for v in rng.integers(-414, 414, 3)) for _ in range(5)]
+    points = np.array([complex(float(x), float(y)) for x, y, _ in poses])
+    turns = np.array([(1.0 + 1j * float(t)) ** 2 / (1.0 + float(t) ** 2) for _, _, t in poses])
+    return MotionTask(points - points[0], turns / turns[0], 0j, 1.0), real_dyads(poses)  # type: ignore[arg-type]
+
+
+def compared_with_the_oracle(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    met = set()
+    for _ in range(count):
+        task, expected = rational_task(rng)
+        found = section(task, open_choices(task))
+        assert found.proved
+        assert not found.double.any()
+        assert len(found.dyads.fixed) + len(found.sliders) == expected
+        assert lengths_vary(task, *found.dyads) < 1e-11
+        met.add(expected)
+    assert met == {0, 2, 4}
+
+
+def test_number_of_real_dyads_is_exact() -> None:
+    compared_with_the_oracle(0, 60)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_number_of_real_dyads_is_exact_for_a_thousand_tasks(seed: int) -> None:
+    compared_with_the_oracle(seed, 250)
+
+
+def test_planted_dyads_of_five_positions_are_among_the_answers() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(40):
+        planted = plant(rng, 5, 10.0 ** rng.uniform(-3.0, 3.0), complex(*rng.uniform(-5.0, 5.0, 2)))
+        task = motion_task(parse_problem({"kind": "motion", "positions": planted.positions}))
+        found = section(task, open_choices(task))
+        for side in (planted.input_side, planted.output_side):
+            gaps = np.abs(found.dyads.fixed - task.to_task(side.fixed_pivot))
+            gaps += np.abs(found.dyads.moving - task.to_task(side.moving_pivot))
+            assert gaps.min(initial=math.inf) < 1e-6
+
+
+@pytest.mark.parametrize("kind", ["PR", "RP"])
+def test_sliders_are_dyads_at_infinity(kind: str) -> None:
+    """Positions whose body has a point on a line, or a line through a point: that dyad is found, and said."""
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        angles = rng.uniform(-1.0, 1.0, 5)
+        along = rng.uniform(-1.0, 1.0, 5)
+        direction, pin = np.exp(1j * rng.uniform(-3.0, 3.0)), complex(*rng.normal(size=2))
+        turns = np.exp(1j * (angles - angles[0]))
+        place = complex(*rng.normal(size=2))
+        if kind == "PR":  # the body's point at ``pin`` in the first position moves along ``direction``
+            images = pin + (along - along[0]) * direction
+            points = images + turns * (place - pin)
+        else:  # the body's line through ``pin`` along ``direction`` keeps passing through ``pin``
+            points = pin + turns * (place - pin + (along - along[0]) * direction)
+        task = MotionTask(points - points[0], turns, 0j, 1.0)
+        found = section(task, open_choices(task))
+        assert found.proved
+        sliders = [slider for slider in found.sliders if slider.kind == kind]
+        assert len(sliders) == 1
+        assert abs((np.conj(sliders[0].normal) * direction).real) < 1e-8
+        offset = sliders[0].point - (pin - points[0])
+        assert abs(offset if kind == "PR" else (np.conj(sliders[0].normal) * offset).real) < 1e-8
+        assert (len(found.dyads.fixed) + len(found.sliders)) % 2 == 0
+
+
+def test_a_family_of_dyads_is_said() -> None:
+    """A body point that is at one place in three positions and at another in two has its centre anywhere on a line."""
+    angles = np.array([0.0, 0.4, -0.7, 0.2, 0.9])
+    arm = np.exp(1j * angles)
+    pins = np.array([0.0, 0.0, 0.0, 1.0 + 0.5j, 1.0 + 0.5j])
+    points = pins + arm * (0.6 - 0.8j)
+    task = MotionTask(points - points[0], arm / arm[0], 0j, 1.0)
+    found = section(task, open_choices(task))
+    assert not found.finite
+    assert not found.proved
+
+
+def test_symmetric_positions_have_a_double_dyad_or_simple_ones_but_never_a_false_count() -> None:
+    """Positions that mirror each other in the middle one."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        x, y, a = rng.normal(size=(3, 2))
+        points = np.array([-x[0] + 1j * y[0], -x[1] + 1j * y[1], 0.0, x[1] + 1j * y[1], x[0] + 1j * y[0]])
+        turns = np.exp(1j * np.array([-a[0], -a[1], 0.0, a[1], a[0]]))
+        task = MotionTask(points - points[0], turns / turns[0], 0j, 1.0)
+        found = section(task, open_choices(task))
+        assert found.finite
+        assert lengths_vary(task, *found.dyads) < 1e-9
+        count = len(found.dyads.fixed) + len(found.sliders)
+        assert count % 2 == 0 or found.double.any()
