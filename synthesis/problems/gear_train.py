@@ -129,7 +129,7 @@ class GearTrainProblem(StatedProblem):
     diametral_pitch: PositiveNumber | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
     )
-    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=35.0)] = Field(default=20.0, description="Degrees.")
+    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = Field(default=20.0, description="Degrees.")
     interference: Literal["report", "refuse"] = Field(
         default="report",
         description="Whether meshes in which one gear would dig into the other are only told (with the profile shift "

@@ -1,0 +1,149 @@
+"""Outlines of spur gears: the true involute, and the fillet that a rack with a rounded tip leaves.
+
+In the frame of a tooth space whose middle lies on the positive real axis the flank of an external gear stands, at the
+radius R ≥ r_b, at the angle π/z − t(R)/2R, t the arc thickness of the tooth. Below it the rounded corner of the rack
+generates a trochoid: with the corner's centre a distance d below the pitch line and y beside the middle of the rack's
+tooth, the point whose normal has turned by ψ from the radial one is met when the line of this normal passes through the
+pitch point, that is after the rack has moved by s = d tan ψ − y,
+
+    Q(ψ) = (r − d + i d tan ψ − ρ e^{−iψ}) e^{−is/r},       0 ≤ ψ ≤ π/2 − φ
+
+(F. L. Litvin & A. Fuentes, Gear Geometry and Applied Theory, 2004, ch. 10). It meets the involute smoothly, or crosses
+it where the gear is undercut.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import Gear
+
+Outline = NDArray[np.complex128]
+
+TIP_ROUNDING = 0.38
+"""Radius of the rack's rounded tip in modules (ISO 53, profile A); less where the tip is not wide enough for it."""
+
+FLANK, FILLET, ARC = 24, 20, 4
+"""Points on a flank, a fillet, and half of a tip or root arc: chords within about 1e-4 of a module of the curve."""
+
+
+def half_space(gear: Gear) -> Outline:
+    """From the middle of a tooth space, on the real axis, along root, fillet and flank to the middle of the tip.
+
+    Returns
+    -------
+    Outline
+        Points with rising polar angle from 0 to π/z, gear centre at 0.
+
+    Raises
+    ------
+    DimensionError
+        Where the rack's tooth comes to a point before it has cut to the root circle.
+    """
+    return _internal(gear) if gear.internal else _external(gear)
+
+
+def outline(gear: Gear, tooth_at: float = 0.0) -> Outline:
+    """The closed outline of all teeth, one tooth's middle at the polar angle ``tooth_at``; counter-clockwise."""
+    half = half_space(gear)
+    # From tooth to tooth: the half space run backwards and mirrored, then forwards.
+    space = np.concatenate([half[::-1].conj(), half[1:]])[:-1]
+    pitch = 2.0 * math.pi / gear.teeth
+    turns = np.exp(1j * (tooth_at + 0.5 * pitch + pitch * np.arange(gear.teeth)))
+    return np.asarray((turns[:, None] * space[None, :]).ravel())
+
+
+def _external(gear: Gear) -> Outline:
+    fillet = _fillet(gear, np.linspace(0.0, _fillet_end(gear), FILLET))
+    start, tip = max(abs(fillet[-1]), gear.base_radius), _tip(gear)
+    rolls = np.linspace(*(math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip)), FLANK)
+    radii = gear.base_radius * np.hypot(1.0, rolls)
+    flank = np.array([r * np.exp(1j * _space_angle(gear, r)) for r in radii])
+    root = _arc(gear.root_radius, 0.0, float(np.angle(fillet[0])))
+    return _distinct(np.concatenate([root, fillet, flank, _arc(tip, float(np.angle(flank[-1])), math.pi / gear.teeth)]))
+
+
+def _distinct(points: Outline) -> Outline:
+    """Without points that repeat the one before."""
+    kept = np.abs(np.diff(points)) > 1e-9 * np.abs(points[:-1])
+    return points[np.concatenate([[True], kept])]
+
+
+def _fillet_end(gear: Gear) -> float:
+    """The parameter at which the fillet passes into the flank.
+
+    Without undercut it is the end of the corner, where both are tangent. With undercut the fillet goes beyond the
+    flank and comes back to it: it is sampled for the last place beyond, and the crossing after that is bisected.
+    """
+    end = 0.5 * math.pi - gear.pressure_angle
+    psi = np.linspace(0.0, end, 8 * FILLET)
+    beyond = np.flatnonzero(_beyond(gear, _fillet(gear, psi)) > 1e-9 / gear.teeth)
+    if not len(beyond) or beyond[-1] + 1 == len(psi):
+        return end
+    low, high = psi[beyond[-1]], psi[beyond[-1] + 1]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _beyond(gear, _fillet(gear, np.array([middle])))[0] > 0.0 else (low, middle)
+    return float(low)
+
+
+def _beyond(gear: Gear, fillet: Outline) -> NDArray[np.float64]:
+    """Angle by which points of the fillet lie inside the involute tooth; negative below the base circle."""
+    radius = np.abs(fillet)
+    involute = [_space_angle(gear, r) if r >= gear.base_radius else math.inf for r in radius]
+    return np.asarray(np.angle(fillet) - np.array(involute))
+
+
+def _fillet(gear: Gear, psi: NDArray[np.float64]) -> Outline:
+    """Points of the trochoid of the rack's corner, from the root circle up."""
+    phi, m = gear.pressure_angle, gear.module
+    wide = 0.25 * math.pi - gear.dedendum * math.tan(phi)
+    if wide < 0.0:
+        raise DimensionError("dedendum", "no deeper than the point of the rack's tooth", gear.dedendum)
+    rounding = m * min(TIP_ROUNDING, wide * math.cos(phi) / (1.0 - math.sin(phi)))
+    beside = m * wide + rounding * (math.tan(phi) - 1.0 / math.cos(phi))
+    below = m * (gear.dedendum - gear.shift) - rounding
+    r = gear.pitch_radius
+    moved = below * np.tan(psi) - beside
+    return np.asarray((r - below + 1j * below * np.tan(psi) - rounding * np.exp(-1j * psi)) * np.exp(-1j * moved / r))
+
+
+def _space_angle(gear: Gear, radius: float) -> float:
+    """Half the angle of the space between two external teeth at a radius."""
+    return math.pi / gear.teeth - gear.thickness_at(max(radius, gear.base_radius)) / (2.0 * radius)
+
+
+def _tip(gear: Gear) -> float:
+    """Tip radius, or where the flanks meet."""
+    if not gear.is_pointed:
+        return gear.tip_radius
+    low, high = gear.pitch_radius, gear.tip_radius
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if gear.thickness_at(middle) > 0.0 else (low, middle)
+    return low
+
+
+def _internal(gear: Gear) -> Outline:
+    """An internal gear: root arc, flank down to the tip, tip arc; below the base circle the flank is radial."""
+    low = max(gear.tip_radius, gear.base_radius)
+    radii = np.linspace(gear.root_radius, low, FLANK)
+    half = math.pi / gear.teeth
+    angles = np.array([half - gear.thickness_at(r) / (2.0 * r) for r in radii])
+    return _distinct(
+        np.concatenate(
+            [
+                _arc(gear.root_radius, 0.0, angles[0]),
+                radii * np.exp(1j * angles),
+                _arc(gear.tip_radius, angles[-1], half),
+            ]
+        )
+    )
+
+
+def _arc(radius: float, start: float, end: float) -> Outline:
+    return np.asarray(radius * np.exp(1j * np.linspace(start, end, ARC)))
