@@ -60,7 +60,8 @@ def outline(gear: Gear, tooth_at: float = 0.0) -> Outline:
 def _external(gear: Gear) -> Outline:
     fillet = _fillet(gear, np.linspace(0.0, _fillet_end(gear), FILLET))
     start, tip = max(abs(fillet[-1]), gear.base_radius), _tip(gear)
-    rolls = np.linspace(*(math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip)), FLANK)
+    least, most = (math.sqrt(max((end / gear.base_radius) ** 2 - 1.0, 0.0)) for end in (start, tip))
+    rolls = np.linspace(least, most, FLANK)
     radii = gear.base_radius * np.hypot(1.0, rolls)
     flank = np.array([r * np.exp(1j * _space_angle(gear, r)) for r in radii])
     root = _arc(gear.root_radius, 0.0, float(np.angle(fillet[0])))
@@ -70,7 +71,7 @@ def _external(gear: Gear) -> Outline:
 def _distinct(points: Outline) -> Outline:
     """Without points that repeat the one before."""
     kept = np.abs(np.diff(points)) > 1e-9 * np.abs(points[:-1])
-    return points[np.concatenate([[True], kept])]
+    return np.asarray(points[np.concatenate([[True], kept])])
 
 
 def _fillet_end(gear: Gear) -> float:

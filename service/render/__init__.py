@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal
 
+from service.render.gear_csv import gear_train_table
+from service.render.gear_dxf import gear_train_drawing
+from service.render.gear_sheet import gear_train_sheet
 from service.render.sheet import fourbar_sheet
 
 __all__ = ["NoSuchExport", "exported"]
@@ -13,6 +16,7 @@ Form = Literal["svg", "dxf", "csv"]
 
 EXPORTS: dict[str, dict[Form, Callable[[Any, Any, str], str]]] = {
     "fourbar": {"svg": fourbar_sheet},
+    "gear_train": {"svg": gear_train_sheet, "dxf": gear_train_drawing, "csv": gear_train_table},
 }
 """For each type of mechanism how a design and its problem, under a title, become a file of each form."""
 

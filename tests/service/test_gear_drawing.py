@@ -1,0 +1,165 @@
+"""Files of gear trains: what the drawing shows is the train that was designed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import math
+import xml.etree.ElementTree as ET
+from fractions import Fraction
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+
+from kinematics.gear.teeth import Gear
+from service.render import exported
+from service.render.gear_layout import PlacedGear, placed_gears
+from synthesis.designs import GearTrainDesign, GearTrainResult
+from synthesis.dispatch import solve
+from synthesis.kinds import parse_problem
+from synthesis.problems import GearTrainProblem
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+TASKS: dict[str, dict[str, Any]] = {
+    "two_stages": {"ratio": "pi", "max_stages": 2, "teeth": {"min": 15, "max": 100}},
+    "idler": {
+        "ratio": -70,
+        "max_stages": 2,
+        "teeth": {"min": 18, "max": 180},
+        "module": [1.5, 2.0],
+        "length_unit": "cm",
+    },
+    "reverted": {"ratio": 12, "max_stages": 2, "teeth": {"min": 18, "max": 90}, "reverted": True, "tolerance": 0},
+    "triangle": {
+        "ratio": -70,
+        "max_stages": 3,
+        "teeth": {"min": 18, "max": 150},
+        "reverted": True,
+        "diametral_pitch": 10,
+    },
+    "one_stage": {"ratio": 3, "max_stages": 1, "length_unit": "in"},
+}
+
+
+@pytest.fixture(scope="module", params=TASKS.values(), ids=TASKS.keys())
+def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProblem]:
+    problem = parse_problem({"kind": "gear_train", **request.param})
+    assert isinstance(problem, GearTrainProblem)
+    result = solve(problem, lambda fraction, message: None)
+    assert isinstance(result, GearTrainResult)
+    return result.designs[0], problem
+
+
+def drawn(task: tuple[GearTrainDesign, GearTrainProblem]) -> list[PlacedGear]:
+    return placed_gears(task[0], task[1].reverted)
+
+
+def test_meshing_pitch_circles_touch(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
+    gears = drawn(task)
+    for one, other in itertools.pairwise(gears):
+        apart = abs(other.centre - one.centre)
+        if other.role == "driver":
+            assert apart < 1e-9
+            assert other.speed == one.speed
+        else:
+            assert apart == pytest.approx(one.pitch_radius + other.pitch_radius)
+            assert other.speed == -one.speed * one.gear.teeth / other.gear.teeth
+    assert 1 / gears[-1].speed == Fraction(task[0].mechanism.ratio.numerator, task[0].mechanism.ratio.denominator)
+    if task[1].reverted:
+        assert abs(gears[-1].centre - gears[0].centre) < 1e-9 * gears[-1].pitch_radius
+
+
+def test_meshing_teeth_stand_in_spaces(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
+    """At the point of contact of the pitch circles tooth and space alternate: their arcs differ by half a pitch."""
+    gears = drawn(task)
+    for one, other in itertools.pairwise(gears):
+        if other.role == "driver":
+            continue
+        ahead = math.atan2((other.centre - one.centre).imag, (other.centre - one.centre).real)
+        pitch = one.gear.circular_pitch
+        first = one.pitch_radius * math.remainder(one.tooth_at - ahead, 2.0 * math.pi / one.gear.teeth)
+        back = math.remainder(other.tooth_at - ahead - math.pi, 2.0 * math.pi / other.gear.teeth)
+        # Both as arcs in the same direction along the common tangent.
+        assert math.remainder(first + other.pitch_radius * back - 0.5 * pitch, pitch) == pytest.approx(
+            0.0, abs=1e-9 * pitch
+        )
+
+
+def test_svg_shows_every_gear_to_scale(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
+    design, problem = task
+    sheet = ET.fromstring(exported(design, problem, "A <train> & more", "svg"))
+    groups = [group for group in sheet.iter(f"{SVG}g") if "data-gear" in group.attrib]
+    gears = drawn(task)
+    assert [int(group.get("data-teeth", "0")) for group in groups] == [placed.gear.teeth for placed in gears]
+    scales = [
+        float(group.findall(f"{SVG}circle")[1].get("r", "nan")) / placed.pitch_radius
+        for group, placed in zip(groups, gears, strict=True)
+    ]
+    assert max(scales) / min(scales) == pytest.approx(1.0, rel=2e-3)
+    labels = [group.get("data-label") for group in sheet.iter(f"{SVG}g") if "data-label" in group.attrib]
+    assert labels == [str(placed.gear.teeth) for placed in gears]
+    assert sheet.find(f"{SVG}title").text == "A <train> & more"
+    assert not [node for node in sheet.iter() if "id" in node.attrib]
+    width, height = float(sheet.get("width", "0")), float(sheet.get("height", "0"))
+    for circle in sheet.iter(f"{SVG}circle"):
+        x, y, r = (float(circle.get(name, "nan")) for name in ("cx", "cy", "r"))
+        assert r <= x <= width - r
+        assert r <= y <= height - r
+
+
+def test_dxf_has_pitch_circles_and_involute_teeth(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
+    design, problem = task
+    text = exported(design, problem, "train", "dxf")
+    assert text == exported(design, problem, "train", "dxf")
+    document = ezdxf.read(io.StringIO(text))
+    assert not document.audit().has_errors
+    assert document.units == {"mm": 4, "cm": 5, "m": 6, "in": 1}[problem.length_unit]
+    space = document.modelspace()
+    gears = drawn(task)
+    circles, outlines = space.query("CIRCLE"), space.query("LWPOLYLINE")
+    assert len(circles) == len(outlines) == len(gears)
+    for placed, circle, polyline in zip(gears, circles, outlines, strict=True):
+        assert circle.dxf.layer == f"STAGE_{placed.stage}_PITCH"
+        assert circle.dxf.radius == pytest.approx(placed.pitch_radius)
+        assert polyline.closed
+        points = np.array([complex(x, y) for x, y in polyline.get_points("xy")]) - placed.centre
+        assert_involute(placed.gear, points)
+
+
+def assert_involute(gear: Gear, points: np.ndarray) -> None:
+    """From the pitch circle to the tip every point lies on a string unwound from the base circle.
+
+    Both flanks of all teeth are two families of such curves; they start at the middle of a tooth plus and minus the
+    half tooth on the pitch circle and the involute of the pressure angle.
+    """
+    radius, phi = np.abs(points), gear.pressure_angle
+    assert radius.max() == pytest.approx(gear.tip_radius)
+    assert radius.min() == pytest.approx(gear.root_radius)
+    flank = points[(radius > gear.pitch_radius) & (radius < gear.tip_radius * (1.0 - 1e-9))]
+    assert len(flank) > 8 * gear.teeth
+    roll = np.sqrt((np.abs(flank) / gear.base_radius) ** 2 - 1.0)
+    start = 0.5 * math.pi / gear.teeth + math.tan(phi) - phi - (roll - np.arctan(roll))
+    off = np.stack([np.angle(flank * np.exp(sign * 1j * start)) for sign in (1.0, -1.0)]) * gear.teeth / (2.0 * math.pi)
+    # In units of a pitch from the middle of the first tooth: whole numbers.
+    middles = np.mod(off - _middle(points, gear), 1.0)
+    assert np.minimum(middles, 1.0 - middles).min(axis=0).max() < 1e-6
+
+
+def _middle(points: np.ndarray, gear: Gear) -> float:
+    """Where the middle of a tooth is, in pitches: the mean direction of its tip."""
+    tip = points[np.abs(points) > gear.tip_radius * (1.0 - 1e-9)]
+    return float(np.angle(np.mean((tip / np.abs(tip)) ** gear.teeth))) / (2.0 * math.pi)
+
+
+def test_csv_lists_every_gear(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
+    design, problem = task
+    rows = list(csv.DictReader(io.StringIO(exported(design, problem, "train", "csv"))))
+    gears = drawn(task)
+    assert [int(row["teeth"]) for row in rows] == [placed.gear.teeth for placed in gears]
+    for row, placed in zip(rows, gears, strict=True):
+        assert float(row[f"pitch_diameter_{problem.length_unit}"]) == 2.0 * placed.pitch_radius
+        assert Fraction(row["speed_over_input"]) == placed.speed
