@@ -1,8 +1,8 @@
 """All circuits and branches of a mechanism that closes by dyads from its input link, by root finding.
 
 The configurations form curves (:mod:`kinematics.linkage.configuration_curves`). Cut where the input turns back, and
-where curves cross, they are the branches. Each toggle stands between two neighbours on its curve, hence no branch can be
-listed without the one that it goes over into, and the number of ends is even.
+where curves cross, they are the branches. Each toggle stands between two neighbours on its curve, hence no branch can
+be listed without the one that it goes over into, and the number of ends is even.
 
 Words: see :mod:`kinematics.linkage.circuits`.
 """

@@ -184,10 +184,16 @@ def places(curves: Sequence[Curve], row: Rows, at: Real) -> Place:
     """Places on many curves."""
     order = np.argsort(row, kind="stable")
     found = [curves[n].place(at[part]) for n, part in _parts(row, order)]
-    together = Place(*(np.concatenate(column, axis=-1) for column in zip(*found, strict=True)))
     back = np.empty(len(row), np.int64)
     back[order] = np.arange(len(row))
-    return Place(*(column[..., back] for column in together))
+
+    def whole(columns: list[Real]) -> Real:
+        return np.asarray(np.concatenate(columns, axis=-1)[..., back])
+
+    signs = np.concatenate([place.signs for place in found], axis=1)[:, back]
+    return Place(
+        whole([p.theta for p in found]), whole([p.rate for p in found]), whole([p.second for p in found]), signs
+    )
 
 
 def _parts(row: Rows, order: Rows) -> list[tuple[int, Rows]]:
@@ -221,8 +227,8 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
             points[around] = ChangePoint(level, closures.swings(level, curve, at))
             if points[around].swings and level + 1 < len(closures.links):
                 raise TopologyError(
-                    f"{closures.links[level]!r} swings freely at a change point, its pins on each other, and other links "
-                    "with it; its circuits are not known"
+                    f"{closures.links[level]!r} swings freely at a change point, its pins on each other, and other "
+                    "links with it; its circuits are not known"
                 )
         return End(curve.input_at(at), points[around], frozenset({level}))
 

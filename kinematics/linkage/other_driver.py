@@ -174,12 +174,19 @@ class _TrueInput:
             place = np.flatnonzero(leap) + 1
             known, value = np.insert(known, place, between), np.insert(value, place, self._value(curve, between))
         smooth = value if self.slide else np.unwrap(value)
-        at = np.searchsorted(known, np.clip(cuts, known[0], known[-1]))
-        return [float(x) for x in smooth[at]]
+        ends = np.clip(cuts, known[0], known[-1])
+        found = smooth[np.searchsorted(known, ends)]
+        if not curve.closed:
+            # Where curves cross the assembly may be lost to rounding; from a hair beside it the series leads there.
+            at = np.array([known[0], known[-1]])
+            hair = np.array([cuts[0], cuts[-1]]) - at
+            rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
+            found[[0, -1]] += hair * rate + 0.5 * hair**2 * second
+        return [float(x) for x in found]
 
     def _value(self, curve: Curve, at: Real) -> Real:
         """The true input, at folded places where rounding takes the assembly away from a hair beside them."""
-        value = self._jet(curve.place(at), 0)[0]
+        value: Real = self._jet(curve.place(at), 0)[0]
         lost = np.isnan(value)
         if lost.any():
             value[lost] = self._jet(curve.place(at[lost] + HAIR), 0)[0]

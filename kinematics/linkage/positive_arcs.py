@@ -41,6 +41,10 @@ VANISHES = 1e-13
 NOISE = 1e-12
 """Cells in which a function stays below this part of its greatest value are not divided: their shape is rounding."""
 
+CROWD = 4
+"""When this many times its first cells are still to be divided at once, a function is rounding, and left as it is: one
+that is smooth but for a few places has but a few such cells at a time."""
+
 Function = Callable[[Rows, Real], tuple[Real, Real]]
 """Value and rate of the functions ``rows`` at the places given, shape (n,) each; a rate may be NaN."""
 
@@ -77,14 +81,20 @@ class Samples(NamedTuple):
 
     def merged(self, *others: Samples) -> Samples:
         """These and others, sorted."""
-        together = [np.concatenate(columns) for columns in zip(self, *others, strict=True)]
-        order = np.lexsort((together[1], together[0]))
-        return Samples(*(column[order] for column in together))
+        every = [self, *others]
+        row, at = np.concatenate([s.row for s in every]), np.concatenate([s.at for s in every])
+        value, rate = np.concatenate([s.value for s in every]), np.concatenate([s.rate for s in every])
+        order = np.lexsort((at, row))
+        return Samples(row[order], at[order], value[order], rate[order])
+
+    def part(self, index: NDArray[np.bool_] | Rows) -> Samples:
+        """Some of them."""
+        return Samples(self.row[index], self.at[index], self.value[index], self.rate[index])
 
     def cells(self) -> tuple[Samples, Samples]:
         """Left and right ends of the cells."""
         left = np.flatnonzero(self.row[:-1] == self.row[1:])
-        return Samples(*(column[left] for column in self)), Samples(*(column[left + 1] for column in self))
+        return self.part(left), self.part(left + 1)
 
 
 def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Arc]]:
@@ -118,7 +128,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
                 boundaries.append(_Boundary(float(at[least]), None, None))
             else:
                 boundaries.append(_Boundary(np.nan, len(changes), bool(positive[n + 1])))
-                changes.append((row, *map(float, (at[one], at[other], value[one], value[other]))))
+                changes.append((row, float(at[one]), float(at[other]), float(value[one]), float(value[other])))
         pending.append((row, boundaries, bool(positive[0])))
     zeros = _zeros(function, changes)
     return [
@@ -143,21 +153,22 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
     """Samples between which the functions are their cubics."""
     places = []
     for domain in domains:
-        width = (domain.high - domain.low) / domain.cells
+        cell = (domain.high - domain.low) / domain.cells
         if domain.closed:
-            places.append(domain.low + width * (np.arange(domain.cells) + FIRST))
+            places.append(domain.low + cell * (np.arange(domain.cells) + FIRST))
         else:
-            inner = domain.low + width * (np.arange(domain.cells - 1) + 1.0 + FIRST / 2.0)
+            inner = domain.low + cell * (np.arange(domain.cells - 1) + 1.0 + FIRST / 2.0)
             hair = HAIR * (domain.high - domain.low)
             places.append(np.concatenate([[domain.low + hair], inner, [domain.high - hair]]))
     row = np.repeat(np.arange(len(domains)), [len(p) for p in places])
     at = np.concatenate(places)
     samples = Samples(row, at, *_known(function, row, at))
     closing = np.array([n for n, domain in enumerate(domains) if domain.closed], np.int64)
-    first = np.searchsorted(row, closing)
+    begins = np.searchsorted(row, closing)
     length = np.array([domain.high - domain.low for domain in domains])
-    again = Samples(closing, at[first] + length[closing], samples.value[first], samples.rate[first])
+    again = Samples(closing, at[begins] + length[closing], samples.value[begins], samples.rate[begins])
     samples = samples.merged(again)
+    first = np.array([domain.cells for domain in domains])
     narrow = NARROW * length
     noise = np.full(len(domains), VANISHES)
     np.maximum.at(noise, samples.row, NOISE * np.abs(samples.value))
@@ -177,7 +188,9 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
         same = (left.value > 0.0) == (right.value > 0.0)
         allowed = np.maximum(change, np.where(same, values.min(axis=0), 0.0))
         rough = ~(off <= CELL_ERROR * allowed) & (width > narrow[left.row]) & (values.max(axis=0) > noise[left.row])
-        half = [Samples(*(column[rough] for column in part)) for part in (left, middle, right)]
+        crowded = np.bincount(left.row[rough], minlength=len(domains)) > CROWD * first
+        rough &= ~crowded[left.row]
+        half = [samples.part(rough) for samples in (left, middle, right)]
         left, right = half[0].merged(half[1]), half[1].merged(half[2])
     return found[0].merged(*found[1:])
 
