@@ -548,6 +548,6 @@ def test_class_three_reference_at_a_toggle_is_refused() -> None:
     folded = catalogue.sixbar("stephenson_2", joints)
     with pytest.raises(DimensionError, match="toggle"):
         drive(folded, [folded.reference_input + 0.01])
-    beside = catalogue.sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-6})
+    beside = catalogue.sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-3})
     way = np.array([-1e-3, 0.0, 1e-3])
     assert drive(beside, beside.reference_input + way).valid.sum() == 2
