@@ -60,15 +60,18 @@ def parse_problem(statement: dict[str, Any]) -> Problem:
     return _PROBLEM.validate_python(statement)
 
 
-def example(kind: str) -> dict[str, Any]:
-    """The runnable example of a kind, as a client would post it."""
+def examples(kind: str) -> list[dict[str, Any]]:
+    """The runnable examples of a kind, as a client would post them."""
     schema_extra = KINDS[kind].problem.model_config["json_schema_extra"]
     assert isinstance(schema_extra, dict)
-    examples = schema_extra["examples"]
-    assert isinstance(examples, list)
-    first = examples[0]
-    assert isinstance(first, dict)
-    return first
+    found = schema_extra["examples"]
+    assert isinstance(found, list)
+    return [one for one in found if isinstance(one, dict)]
+
+
+def example(kind: str) -> dict[str, Any]:
+    """The first of them."""
+    return examples(kind)[0]
 
 
 _PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem)
