@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
 
 from pydantic import Discriminator, Tag, TypeAdapter
 
-from synthesis.designs import GearTrainResult, MotionResult, PlanetaryResult, Result
-from synthesis.problems import GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
+from synthesis.designs import CamResult, GearTrainResult, MotionResult, PlanetaryResult, Result
+from synthesis.problems import CamProblem, GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
 
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
@@ -31,6 +31,7 @@ KINDS: dict[str, Kind] = {
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"
     ),
+    "cam": Kind(CamProblem, CamResult, "synthesis.cam.solver:solve_cam"),
 }
 """Every kind of problem by its name."""
 

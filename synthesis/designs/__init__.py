@@ -5,6 +5,7 @@ is the designs and how they were found. One module a kind of problem, and one fo
 """
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
+from synthesis.designs.cam import CamDesign, CamResult
 from synthesis.designs.gear_train import (
     GearTrainDesign,
     GearTrainMechanism,
@@ -44,6 +45,8 @@ from synthesis.designs.planetary_train import (
 __all__ = [
     "Answer",
     "BurmesterBranch",
+    "CamDesign",
+    "CamResult",
     "Check",
     "CouplerPoint",
     "FixedPivots",
