@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
 from service.render.svg import Box, Points
-from synthesis.designs import LinkageDesign
+from synthesis.designs import FourbarMechanism, LinkageDesign
 from synthesis.linkages import DrivenFourbar, driven_fourbar
 from synthesis.problems import MotionProblem
 
@@ -116,9 +116,16 @@ class Scene:
         return needed
 
 
+def fourbar_of(design: LinkageDesign) -> FourbarMechanism:
+    """The fourbar that a design is."""
+    mechanism = design.mechanism
+    assert isinstance(mechanism, FourbarMechanism)
+    return mechanism
+
+
 def scene(design: LinkageDesign, problem: MotionProblem) -> Scene:
     """What is drawn of a fourbar design and of the problem that it answers."""
-    driven = driven_fourbar(design.mechanism)
+    driven = driven_fourbar(fourbar_of(design))
     linkage = driven.linkage
     demands = [Demand(k, p.point, math.radians(p.angle)) for k, p in enumerate(problem.positions)]
     configurations = _configurations(design, driven, demands)

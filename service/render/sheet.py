@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from service.render import tables
-from service.render.fourbar import Scene, details, scene
+from service.render.fourbar import Scene, details, fourbar_of, scene
 from service.render.svg import Box, Element, Viewport, clean, element, line, shortened, text, text_width
 from service.render.symbols import CURVE, DEMANDED, GREY, INK, INPUT, PALE
 from service.render.view import FOOT, MARGIN, Detail, panel
@@ -82,9 +82,10 @@ def fourbar_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> 
 
 def _title(design: LinkageDesign, heading: str, unit: str) -> list[Element]:
     room = WIDTH - 2.0 * EDGE
-    mechanism, failed = design.mechanism, [c for c in design.verification.checks if not c.passed]
-    kind = tables.GRASHOF[design.metrics.grashof]
-    words = f"Fourbar linkage, {mechanism.assembly} assembly, {kind}; lengths in {UNITS[unit]}"
+    mechanism, failed = fourbar_of(design), [c for c in design.verification.checks if not c.passed]
+    grashof = design.metrics.grashof
+    kind = "" if grashof is None else f", {tables.GRASHOF[grashof]}"
+    words = f"Fourbar linkage, {mechanism.assembly} assembly{kind}; lengths in {UNITS[unit]}"
     verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
     return [
         text(EDGE, 34.0, shortened(heading, 20.0, room), 20.0, font_weight="bold", fill=INK),
@@ -93,7 +94,8 @@ def _title(design: LinkageDesign, heading: str, unit: str) -> list[Element]:
 
 
 def _description(design: LinkageDesign, problem: MotionProblem, shown: Scene) -> str:
-    mechanism, links = design.mechanism, design.mechanism.links
+    mechanism = fourbar_of(design)
+    links = mechanism.links
     unit = problem.length_unit
     sizes = ", ".join(
         f"{name} {value:.6g} {unit}"

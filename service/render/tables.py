@@ -6,7 +6,7 @@ import math
 
 from service.render import blocks
 from service.render.blocks import GAP, ROW, SIZE, SMALL, Block, block_start, value_at
-from service.render.fourbar import Scene
+from service.render.fourbar import Scene, fourbar_of
 from service.render.numbers import NONE, angle, length, small
 from service.render.svg import Element, clean, element, line, text, text_width
 from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT
@@ -31,7 +31,7 @@ GRASHOF = {
 
 def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Links, coupler point, assembly, pivots and reference angle."""
-    mechanism = design.mechanism
+    mechanism = fourbar_of(design)
     links, point, pivots = mechanism.links, mechanism.coupler_point, mechanism.fixed_pivots
     size = max(links.ground, links.input, links.coupler, links.output)
 
@@ -116,8 +116,8 @@ def checks(design: LinkageDesign) -> Block:
 def metrics(design: LinkageDesign, unit: str) -> Block:
     """Measured properties that nothing was demanded of."""
     found = design.metrics
-    rows = [
-        ("type", f"{GRASHOF[found.grashof]} ({clean(found.barker)})"),
+    rows = [] if found.grashof is None else [("type", f"{GRASHOF[found.grashof]} ({clean(found.barker or '')})")]
+    rows += [
         ("min transmission angle", angle(found.min_transmission_angle, 2)),
         ("input rotation", angle(found.input_rotation, 2)),
         ("input turns fully", _yes(found.full_rotation)),

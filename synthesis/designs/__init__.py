@@ -5,7 +5,6 @@ is the designs and how they were found. One module a kind of problem, and one fo
 """
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
-from synthesis.designs.cam import CamDesign, CamResult
 from synthesis.designs.gear_train import (
     GearTrainDesign,
     GearTrainMechanism,
@@ -19,16 +18,24 @@ from synthesis.designs.gear_train import (
     Stage,
 )
 from synthesis.designs.linkage import (
+    BlockSlide,
     CouplerPoint,
     FixedPivots,
     FourbarLinks,
     FourbarMechanism,
     GearPair,
+    InvertedLinks,
+    InvertedSliderCrankMechanism,
+    Line,
     Link,
     LinkageDesign,
+    LinkageMechanism,
     LinkageMetrics,
+    SixbarMechanism,
     Skeleton,
     Slide,
+    SliderCrankLinks,
+    SliderCrankMechanism,
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
@@ -44,9 +51,8 @@ from synthesis.designs.planetary_train import (
 
 __all__ = [
     "Answer",
+    "BlockSlide",
     "BurmesterBranch",
-    "CamDesign",
-    "CamResult",
     "Check",
     "CouplerPoint",
     "FixedPivots",
@@ -59,8 +65,12 @@ __all__ = [
     "GearTrainResult",
     "GearTrainSearch",
     "Idler",
+    "InvertedLinks",
+    "InvertedSliderCrankMechanism",
+    "Line",
     "Link",
     "LinkageDesign",
+    "LinkageMechanism",
     "LinkageMetrics",
     "MeshContact",
     "MeshGeometry",
@@ -76,8 +86,11 @@ __all__ = [
     "Ratio",
     "Result",
     "Search",
+    "SixbarMechanism",
     "Skeleton",
     "Slide",
+    "SliderCrankLinks",
+    "SliderCrankMechanism",
     "Stage",
     "Target",
     "Verification",

@@ -15,7 +15,8 @@ class Answer(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def _blank(value: float | None) -> bool:
+def blank(value: float | None) -> bool:
+    """Whether a field that may be left out is."""
     return value is None
 
 
@@ -24,8 +25,8 @@ class Check(Answer):
 
     name: str
     passed: bool
-    value: float | None = Field(default=None, exclude_if=_blank)
-    limit: float | None = Field(default=None, exclude_if=_blank)
+    value: float | None = Field(default=None, exclude_if=blank)
+    limit: float | None = Field(default=None, exclude_if=blank)
 
 
 class Verification(Answer):

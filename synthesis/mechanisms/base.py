@@ -19,6 +19,9 @@ AGREES = 1e-6
 FIRST_TRIED = 30
 """Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
 
+BODY = "Angle of the body that a design guides in the reference, degrees; not looked at."
+"""What a field of designs means that an analysis has no use for."""
+
 Assembly = Literal["open", "crossed"]
 
 

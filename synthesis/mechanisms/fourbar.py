@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from kinematics.errors import DimensionError
 from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.fourbar import Fourbar
 from kinematics.linkage.mechanism import Mechanism
-from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
+from synthesis.mechanisms.base import BODY, Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
 from synthesis.mechanisms.skeleton import StatedSkeleton
 from synthesis.problems import Number, PositiveNumber, Statement
 
@@ -32,6 +34,7 @@ class GivenFourbar(Statement):
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     assembly: Assembly = "open"
     reference_input_angle: Number | None = None
+    reference_body_angle: Number | None = Field(default=None, description=BODY)
     skeleton: StatedSkeleton | None = None
 
     def mechanism(self) -> Mechanism:

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.mechanism import GearPair, Mechanism, Slide
-from synthesis.mechanisms.base import MechanismError, StatedLine
+from synthesis.mechanisms.base import BODY, MechanismError, StatedLine
 from synthesis.problems import Number, Point, Statement
 
 
@@ -88,6 +88,7 @@ class GivenSkeleton(Statement):
     skeleton: StatedSkeleton
     links: dict[str, Number] | None = None
     fixed_pivots: dict[str, Point] | None = None
+    reference_body_angle: Number | None = Field(default=None, description=BODY)
 
     def mechanism(self) -> Mechanism:
         """The mechanism in its reference configuration."""

@@ -6,12 +6,14 @@ import cmath
 import math
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.mechanism import Mechanism, Slide
 from synthesis.mechanisms.base import (
+    BODY,
     Assembly,
     MechanismError,
     StatedCouplerPoint,
@@ -43,6 +45,7 @@ class GivenSliderCrank(Statement):
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     driven_by: Literal["crank", "slider"] = "crank"
     reference_input_angle: Number | None = Field(default=None, description="Crank angle of the reference, degrees.")
+    reference_body_angle: Number | None = Field(default=None, description=BODY)
     skeleton: StatedSkeleton | None = None
 
     def mechanism(self) -> Mechanism:
@@ -90,25 +93,49 @@ class GivenInvertedSliderCrank(Statement):
     fixed_pivots: StatedPivots
     links: InvertedLengths
     slide: OutputSlide
+    coupler_point: StatedCouplerPoint | None = Field(
+        default=None,
+        description="P on the body that slides: its distance from A, and the angle from the line A → O4 to the line "
+        "A → P in the reference, which must then be stated.",
+    )
     assembly: Assembly = "open"
     reference_input_angle: Number | None = None
+    reference_body_angle: Number | None = Field(default=None, description=BODY)
     skeleton: StatedSkeleton | None = None
 
     def mechanism(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o4 - o2))
-        return assembled(
-            lambda angle: catalogue.inverted_slider_crank(
-                o2,
-                o4,
-                self.links.input,
-                self.links.output,
-                math.radians(self.slide.angle),
-                angle,
-                ASSEMBLY[self.assembly],
-            ),
-            self.reference_input_angle,
+        if self.coupler_point is not None:
+            if self.reference_input_angle is None:
+                raise MechanismError("/reference_input_angle", "the coupler point is stated for it; it must be given")
+            return self._with_body(assembled(self._at, self.reference_input_angle), self.coupler_point.vector)
+        return assembled(self._at, self.reference_input_angle)
+
+    def _with_body(self, bare: Mechanism, local: complex) -> Mechanism:
+        """The mechanism with the link that slides, and P on it: it keeps its line at a distance from O4."""
+        o2, o4, a = (complex(bare.joints[joint]) for joint in ("O2", "O4", "A"))
+        if a == o4:
+            raise MechanismError("/reference_input_angle", "the crank pin is on O4; the coupler point has no direction")
+        p = a + local * (o4 - a) / abs(o4 - a)
+        return Mechanism(
+            {"O2": o2, "O4": o4, "A": a, "P": p},
+            {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "P")},
+            "input",
+            # The parallel through O4: a line that keeps its distance from O4 has one there that passes through it.
+            (Slide("O4", "coupler", np.asarray(o4), bare.slides[0].angle),),
+        )
+
+    def _at(self, angle: float) -> Mechanism:
+        return catalogue.inverted_slider_crank(
+            complex(*self.fixed_pivots.input),
+            complex(*self.fixed_pivots.output),
+            self.links.input,
+            self.links.output,
+            math.radians(self.slide.angle),
+            angle,
+            ASSEMBLY[self.assembly],
         )
 
 

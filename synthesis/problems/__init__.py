@@ -20,10 +20,18 @@ from synthesis.problems.base import (
     StatedProblem,
     Statement,
 )
-from synthesis.problems.cam import CamProblem
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
-from synthesis.problems.motion import CouplerVector, DyadChoices, GroundLine, MotionProblem, Position, whole_point
+from synthesis.problems.motion import (
+    CouplerVector,
+    DriverDyad,
+    DyadChoices,
+    GroundLine,
+    MotionProblem,
+    Position,
+    Tolerance,
+    whole_point,
+)
 from synthesis.problems.planetary_train import (
     PlanetaryProblem,
     PlanetaryTeeth,
@@ -31,12 +39,12 @@ from synthesis.problems.planetary_train import (
 )
 
 __all__ = [
-    "CamProblem",
     "Constraints",
     "Contradiction",
     "ContradictionError",
     "Count",
     "CouplerVector",
+    "DriverDyad",
     "DyadChoices",
     "Flag",
     "GearTrainProblem",
@@ -57,6 +65,7 @@ __all__ = [
     "Statement",
     "StockedGear",
     "TeethRange",
+    "Tolerance",
     "ToothRange",
     "whole_point",
 ]

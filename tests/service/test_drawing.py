@@ -60,7 +60,10 @@ def _case(
     passed = len(set(signs)) == 1
     return LinkageDesign(
         mechanism=mechanism,
-        targets=[Target(index=k, input_angle=t, residual=1e-15) for k, t in enumerate(angles)],
+        targets=[
+            Target(index=k, input_angle=t, residual=1e-15, point_residual=1e-13, angle_residual=1e-13)
+            for k, t in enumerate(angles)
+        ],
         verification=Verification(
             passed=passed,
             checks=[
@@ -73,11 +76,13 @@ def _case(
             grashof="rocker_rocker",
             barker="RRR1",
             min_transmission_angle=41.23,
+            transmission_angles={"coupler": 41.23},
             same_branch=passed,
             visits_in_order=True,
             full_rotation=False,
             input_rotation=angles[-1] - angles[0],
             link_ratio=3.0,
+            rms_residual=1e-15,
             size=100.0,
             quality=0.5,
         ),
@@ -315,7 +320,10 @@ def test_a_target_of_the_other_branch_is_shown_with_the_assembly_that_meets_it()
 
 def test_a_target_out_of_reach_has_no_ghost_but_is_still_demanded() -> None:
     design, problem = _norton_5_2()
-    targets = [*design.targets[:2], Target(index=2, input_angle=-120.0, residual=math.inf)]
+    targets = [
+        *design.targets[:2],
+        Target(index=2, input_angle=-120.0, residual=math.inf, point_residual=math.inf, angle_residual=math.inf),
+    ]
     root = _parsed(design.model_copy(update={"targets": targets}), problem)
     drawn = {e.get("data-configuration") for e in root.iter()} - {None}
     assert drawn == {"1", "2"}

@@ -90,6 +90,34 @@ def plant(rng: np.random.Generator, n: int, scale: float = 1.0, offset: complex 
         return Planted(positions, dyad(o2, pins_a), dyad(o4, pins_b))
 
 
+def plant_many(rng: np.random.Generator, n: int) -> Planted:
+    """As :func:`plant`, with n positions at equal steps of the input, however many."""
+    while True:
+        o2, o4 = (complex(*rng.uniform(-3.0, 3.0, 2)) for _ in range(2))
+        a = o2 + cmath.rect(rng.uniform(0.5, 4.0), rng.uniform(-math.pi, math.pi))
+        b = o4 + cmath.rect(rng.uniform(0.5, 4.0), rng.uniform(-math.pi, math.pi))
+        p = a + complex(*rng.uniform(-2.0, 2.0, 2))
+        turn = rng.choice([-1.0, 1.0]) * rng.uniform(0.6, 1.4)
+        path = _followed(o2, a, b, o4, np.linspace(0.0, turn, max(n, 60)))
+        if path is None:
+            continue
+        picks = np.linspace(0, len(path[0]) - 1, n).astype(int)
+        pins_a, pins_b = path[0][picks], path[1][picks]
+        couplers = (pins_b - pins_a) / (b - a)
+        points = pins_a + couplers * (p - a)
+        positions = [
+            {"x": z.real, "y": z.imag, "angle": math.degrees(cmath.phase(turned))}
+            for z, turned in zip(points, couplers, strict=True)
+        ]
+
+        def dyad(pivot: complex, pins: np.ndarray, p: complex = p) -> PlantedDyad:
+            links = pins - pivot
+            rotations = tuple(math.degrees(cmath.phase(link / links[0])) for link in links[1:])
+            return PlantedDyad(pivot, complex(pins[0]), rotations, p - complex(pins[0]))
+
+        return Planted(positions, dyad(o2, pins_a), dyad(o4, pins_b))
+
+
 def _followed(
     o2: complex, a: complex, b: complex, o4: complex, turns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray] | None:

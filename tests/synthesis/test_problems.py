@@ -29,7 +29,7 @@ def statement(**changes: Any) -> dict[str, Any]:
     [
         ({"positions": POSITIONS[:1]}, ("positions",)),
         ({"positions": []}, ("positions",)),
-        ({"positions": POSITIONS * 2}, ("positions",)),
+        ({"positions": POSITIONS * 70}, ("positions",)),
         ({"positions": [*POSITIONS[:2], {"x": float("nan"), "y": 0, "angle": 0}]}, ("positions", 2, "x")),
         ({"positions": [*POSITIONS[:2], {"x": 0, "y": float("inf"), "angle": 0}]}, ("positions", 2, "y")),
         ({"positions": [*POSITIONS[:2], {"x": 0, "y": 1e12, "angle": 0}]}, ("positions", 2, "y")),
