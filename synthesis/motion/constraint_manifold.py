@@ -1,0 +1,233 @@
+"""A dyad as a surface in the space of the body's poses, and how far a pose is from it.
+
+A pose is (x, y, φ): where P is and how far the body has turned from the first position. A dyad holds the body to a
+surface f = 0 in the space of poses. With A = P + e^{iφ} α the place of a point α of the body, and V = e^{−iφ}(O − P)
+the place of a fixed point O as the body sees it,
+
+    forward     w = A − w₀:   the point A of the body moves on a circle or a line fixed in the ground;
+    inverted    w = V − w₀:   the fixed point O lies on a circle or a line fixed in the body;
+
+    f = κ|w|²/2 + n·w − d,    n = e^{iν},    ν, d, κ and the point (α or O) the five numbers of the dyad.
+
+The circle passes near w₀ with the normal n and has the curvature κ. κ = 0 is a line: a PR dyad (the pin A slides on a
+line of the ground) or, inverted, an RP dyad (a line of the body slides through a block pinned at O). With κ ≠ 0 both
+forms are an RR dyad, and that form is chosen whose point (α or O) is the nearer, so that no number gets large as the
+other pivot runs off to infinity: it arrives at the slider.
+
+Poses are weighed by variances D = diag(τ²), one tolerance a coordinate, 0 where the coordinate is held. The pose
+nearest to a demanded pose t that two dyads allow is t + D Jᵀλ, by repeated linearization; with S = J D Jᵀ = L Lᵀ the
+weighed distance is |Lᵀλ|. By the envelope theorem its derivative by a number of a dyad is that of L⁻¹f at the nearest
+pose as far as first order goes, so that a Gauss–Newton step in the ten numbers needs no poses among its unknowns
+(orthogonal distance regression; Ahn, *Least Squares Orthogonal Distance Fitting of Curves and Surfaces*, 2004).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+NUMBERS = 5
+"""Numbers of a dyad: two coordinates of its point, ν, d, κ."""
+
+LINEARIZATIONS = 30
+"""Linearizations at most on the way to the nearest pose; a few are usual."""
+
+ARRIVED = 1e-14
+"""Change of the nearest pose (task sizes, radians) at which it has been found."""
+
+LOST = 1e6
+"""Residual of a pose whose nearest neighbour was not found: worse than any that can be."""
+
+FOLDED = 1e-12
+"""Share of s₁₁s₂₂ that s₁₁s₂₂ − s₁₂² keeps at least: below it both dyads allow the same motions."""
+
+
+class Surface(NamedTuple):
+    """One dyad's surface but for its five numbers: its form, the reference w₀, and whether κ is free or 0."""
+
+    inverted: bool
+    origin: complex
+    curved: bool
+
+
+@njit(cache=True, nogil=True)
+def constraint(
+    inverted: bool,
+    origin: complex,
+    p: NDArray[np.float64],
+    pose: NDArray[np.float64],
+    by_pose: NDArray[np.float64],
+    by_number: NDArray[np.float64],
+) -> float:
+    """Value of f at a pose; writes its derivatives by the pose (3,) and by the dyad's numbers (5,).
+
+    Parameters
+    ----------
+    inverted, origin
+        Form and w₀ of the surface.
+    p : float, shape (5,)
+        The dyad's numbers: point (two coordinates), ν, d, κ.
+    pose : float, shape (3,)
+        x, y, φ.
+    """
+    spin = complex(math.cos(pose[2]), math.sin(pose[2]))
+    if inverted:
+        spin = spin.conjugate()
+        arm = spin * (complex(p[0], p[1]) - complex(pose[0], pose[1]))
+        w = arm - origin
+        by_x, by_turn = -spin, -1j * arm
+    else:
+        arm = spin * complex(p[0], p[1])
+        w = complex(pose[0], pose[1]) + arm - origin
+        by_x, by_turn = complex(1.0, 0.0), 1j * arm
+    n = complex(math.cos(p[2]), math.sin(p[2]))
+    g = (p[4] * w + n).conjugate()
+    by_pose[0] = (g * by_x).real
+    by_pose[1] = (g * 1j * by_x).real
+    by_pose[2] = (g * by_turn).real
+    by_number[0] = (g * spin).real
+    by_number[1] = (g * 1j * spin).real
+    by_number[2] = ((1j * n).conjugate() * w).real
+    by_number[3] = -1.0
+    square = w.real * w.real + w.imag * w.imag
+    by_number[4] = 0.5 * square
+    value: float = 0.5 * p[4] * square + (n.conjugate() * w).real - p[3]
+    return value
+
+
+@njit(cache=True, nogil=True)
+def nearest_poses(
+    inverted: NDArray[np.bool_],
+    origins: NDArray[np.complex128],
+    numbers: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    variances: NDArray[np.float64],
+    linearizations: int,
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+    poses: NDArray[np.float64],
+) -> None:
+    """Nearest poses that two dyads allow, and weighed residuals with their Jacobian.
+
+    Parameters
+    ----------
+    inverted, origins, numbers
+        Surfaces of the two dyads, shapes (2,), (2,) and (2, 5).
+    targets, variances : float, shape (n, 3)
+        Demanded poses and τ².
+    linearizations : int
+        1 for the first-order distance (Sampson's), more for the distance itself.
+    residuals, jacobian, poses : float, shapes (n, 2), (n, 2, 10) and (n, 3)
+        Written: residuals whose squares add up to the weighed distance, and the nearest poses.
+    """
+    by_pose, by_number = np.empty((2, 3)), np.empty((2, NUMBERS))
+    value, weighed, x, ahead = np.empty(2), np.empty((2, 3)), np.empty(3), np.empty(2)
+    for k in range(len(targets)):
+        target, variance = targets[k], variances[k]
+        x[:] = target
+        found = linearizations == 1
+        l11 = l21 = l22 = first = second = 0.0
+        for _ in range(linearizations):
+            for side in range(2):
+                value[side] = constraint(
+                    inverted[side], origins[side], numbers[side], x, by_pose[side], by_number[side]
+                )
+                for c in range(3):
+                    weighed[side, c] = by_pose[side, c] * variance[c]
+                ahead[side] = value[side]
+                for c in range(3):
+                    ahead[side] += by_pose[side, c] * (target[c] - x[c])
+            s11 = s12 = s22 = 0.0
+            for c in range(3):
+                s11 += by_pose[0, c] * weighed[0, c]
+                s12 += by_pose[0, c] * weighed[1, c]
+                s22 += by_pose[1, c] * weighed[1, c]
+            rest = s11 * s22 - s12 * s12
+            if not rest > FOLDED * s11 * s22:
+                found = False
+                break
+            first = -(s22 * ahead[0] - s12 * ahead[1]) / rest
+            second = -(s11 * ahead[1] - s12 * ahead[0]) / rest
+            l11 = math.sqrt(s11)
+            l21 = s12 / l11
+            l22 = math.sqrt(rest / s11)
+            if linearizations == 1:
+                break
+            moved = 0.0
+            for c in range(3):
+                step = target[c] + weighed[0, c] * first + weighed[1, c] * second - x[c]
+                x[c] += step
+                moved = max(moved, abs(step))
+            if not moved < 1e6:
+                break
+            if moved < ARRIVED * (1.0 + abs(x[0]) + abs(x[1])):
+                found = True
+                break
+        poses[k] = x
+        if not found:
+            residuals[k] = LOST
+            jacobian[k] = 0.0
+            continue
+        # r = −Lᵀλ, and its derivative L⁻¹ ∂f/∂p.
+        residuals[k, 0] = -(l11 * first + l21 * second)
+        residuals[k, 1] = -l22 * second
+        jacobian[k] = 0.0
+        for c in range(NUMBERS):
+            jacobian[k, 0, c] = by_number[0, c] / l11
+            jacobian[k, 1, c] = -l21 / l22 * jacobian[k, 0, c]
+            jacobian[k, 1, NUMBERS + c] = by_number[1, c] / l22
+
+
+@njit(cache=True, nogil=True)
+def surface_distances(
+    inverted: bool,
+    origin: complex,
+    numbers: NDArray[np.float64],
+    targets: NDArray[np.float64],
+    variances: NDArray[np.float64],
+    residuals: NDArray[np.float64],
+    jacobian: NDArray[np.float64],
+) -> None:
+    """First-order weighed distances of poses from one dyad's surface, f/√(J D Jᵀ), with their Jacobian.
+
+    ``residuals`` (n,) and ``jacobian`` (n, 5) are written. Where all coordinates are held the residual is f itself.
+    """
+    by_pose = np.empty(3)
+    for k in range(len(targets)):
+        value = constraint(inverted, origin, numbers, targets[k], by_pose, jacobian[k])
+        s = 0.0
+        for c in range(3):
+            s += by_pose[c] * by_pose[c] * variances[k, c]
+        scale = 1.0 / math.sqrt(s) if s > 0.0 else 1.0
+        residuals[k] = scale * value
+        for c in range(NUMBERS):
+            jacobian[k, c] *= scale
+
+
+def of_pivots(fixed: complex, moving: complex) -> tuple[Surface, Real]:
+    """Surface and numbers of an RR dyad by its fixed pivot and its moving pivot in the pose (0, 0, 0)."""
+    inverted = abs(fixed) < abs(moving)
+    point, centre = (fixed, moving) if inverted else (moving, fixed)
+    arm = point - centre
+    numbers = np.array([point.real, point.imag, math.atan2(arm.imag, arm.real), 0.0, 1.0 / abs(arm)])
+    return Surface(inverted, point, True), numbers
+
+
+def pivots_of(surface: Surface, numbers: Real) -> tuple[complex, complex]:
+    """Fixed pivot, and moving pivot in the pose (0, 0, 0), of an RR dyad; κ must not be 0."""
+    point = complex(numbers[0], numbers[1])
+    centre = complex(surface.origin - np.exp(1j * numbers[2]) / numbers[4])
+    return (point, centre) if surface.inverted else (centre, point)
+
+
+def line_of(surface: Surface, numbers: Real) -> tuple[complex, complex, float]:
+    """Point (α or O), foot of the line's normal from w₀, and the line's angle, of a surface with κ = 0."""
+    n = complex(np.exp(1j * numbers[2]))
+    return complex(numbers[0], numbers[1]), surface.origin + numbers[3] * n, float(numbers[2]) + 0.5 * math.pi

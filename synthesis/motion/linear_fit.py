@@ -1,0 +1,124 @@
+"""Dyads fitted to many poses at once by linear algebra.
+
+The condition that a point α of the body keeps its distance from a fixed point O is linear in eight products of the
+dyad's numbers. For a pose p = x + iy, φ, and with q = conj(p) e^{iφ},
+
+    a|p|² + Re(u q) + Re(conj(v) p) + Re(c e^{iφ}) + k = 0,    u = 2aα,  v = −2aO,  c = −2a conj(O) α,
+
+so that 2ac = conj(v) u. Sliders are in it too: a = 0 and u = 0 is a PR dyad, a = 0 and v = 0 an RP dyad. In planar
+quaternions these are the quadrics of a dyad's constraint manifold (Ge, Purwar, Zhao & Deshpande, J. Comput. Inf. Sci.
+Eng. 16 (2016) 041004, doi:10.1115/1.4033252). Poses give the rows of a matrix; five poses leave a null space of three
+dimensions, and more poses the three least singular vectors. The two real quadrics 2ac = conj(v) u meet in that plane in
+at most four points: the dyads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+REAL = 1e-6
+"""Imaginary part, as a share of 1 + |root|, below which a root of the quartic counts as real: starts may be rough."""
+
+FLAT = 1e-9
+"""|a| below which a dyad of unit coefficients has a pivot so far away that it is a slider."""
+
+
+def dyads_of_poses(points: Complex, angles: Real) -> tuple[Complex, Complex]:
+    """Dyads (O, α) through sets of five poses, or near larger sets.
+
+    Parameters
+    ----------
+    points, angles : complex and float, shape (sets, m), m ≥ 5
+        Poses of each set.
+
+    Returns
+    -------
+    fixed, moving : complex, shape (found,)
+        Fixed pivots, and moving pivots in the pose (0, 0); of all sets together, at most four a set. Dyads with a pivot
+        at infinity are left out.
+    """
+    q = np.conj(points) * np.exp(1j * angles)
+    rows = np.stack(
+        [
+            np.abs(points) ** 2,
+            q.real,
+            q.imag,
+            points.real,
+            points.imag,
+            np.cos(angles),
+            np.sin(angles),
+            np.ones_like(angles),
+        ],
+        axis=-1,
+    )
+    basis = np.linalg.svd(rows)[2][:, -3:, :]
+    # A fixed rotation of the basis, so that no dyad has the last coordinate zero but by chance.
+    basis = np.einsum("ij,sjk->sik", _TURN, basis)
+    a, c = basis[..., 0].astype(np.complex128), basis[..., 5] - 1j * basis[..., 6]
+    u, v = basis[..., 1] - 1j * basis[..., 2], basis[..., 3] + 1j * basis[..., 4]
+    form = 2.0 * a[:, :, None] * c[:, None, :] - np.conj(v)[:, :, None] * u[:, None, :]
+    form = 0.5 * (form + np.swapaxes(form, 1, 2))
+    x, y, which = _meets(form.real, form.imag)
+    k = np.einsum("nd,ndk->nk", np.stack([x, y, np.ones_like(x)], axis=1), basis[which])
+    k /= np.linalg.norm(k, axis=1, keepdims=True)
+    finite = np.abs(k[:, 0]) > FLAT
+    k = k[finite]
+    twice = 2.0 * k[:, 0]
+    return -(k[:, 3] + 1j * k[:, 4]) / twice, (k[:, 1] - 1j * k[:, 2]) / twice
+
+
+_TURN = np.linalg.qr(np.array([[1.0, 0.7, -0.4], [-0.3, 1.0, 0.9], [0.6, -0.8, 1.0]]))[0]
+
+
+def _meets(one: Real, other: Real) -> tuple[Real, Real, NDArray[np.int64]]:
+    """Where conics meet in the plane z = 1: x, y, and the set; forms are symmetric, shape (sets, 3, 3)."""
+    # Each form is A y² + (B x + D) y + (C x² + E x + F); the resultant in y is a quartic in x.
+    (a1, b1, c1), (a2, b2, c2) = _by_powers_of_y(one), _by_powers_of_y(other)
+    ac = _minus(_times(a1, c2), _times(a2, c1))
+    ab = _minus(_times(a1, b2), _times(a2, b1))
+    bc = _minus(_times(b1, c2), _times(b2, c1))
+    quartic = _minus(_times(ac, ac), _times(ab, bc))
+    leading = quartic[:, 0]
+    sound = np.abs(leading) > np.finfo(float).tiny ** 0.5
+    which = np.flatnonzero(sound)
+    companion = np.zeros((len(which), 4, 4))
+    companion[:, 0, :] = -quartic[which, 1:] / leading[which, None]
+    companion[:, [1, 2, 3], [0, 1, 2]] = 1.0
+    roots = np.linalg.eigvals(companion)
+    x = roots.real
+    real = np.abs(roots.imag) <= REAL * (1.0 + np.abs(x))
+    s, n = np.nonzero(real)
+    x, which = x[s, n], which[s]
+    numerator = np.array([np.polyval(ac[k], at) for k, at in zip(which, x, strict=True)])
+    denominator = np.array([np.polyval(ab[k], at) for k, at in zip(which, x, strict=True)])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        y = -numerator / denominator
+    good = np.isfinite(y)
+    return x[good], y[good], which[good]
+
+
+def _by_powers_of_y(form: Real) -> tuple[Real, Real, Real]:
+    """Coefficients of y², y and 1 as polynomials in x, highest power first, shapes (sets, 1), (sets, 2), (sets, 3)."""
+    return (
+        form[:, 1:2, 1],
+        2.0 * np.stack([form[:, 0, 1], form[:, 1, 2]], axis=1),
+        np.stack([form[:, 0, 0], 2.0 * form[:, 0, 2], form[:, 2, 2]], axis=1),
+    )
+
+
+def _times(one: Real, other: Real) -> Real:
+    """Products of polynomials in x, highest power first."""
+    found = np.zeros((len(one), one.shape[1] + other.shape[1] - 1))
+    for k in range(one.shape[1]):
+        found[:, k : k + other.shape[1]] += one[:, k : k + 1] * other
+    return found
+
+
+def _minus(one: Real, other: Real) -> Real:
+    """Differences of polynomials in x of one degree."""
+    assert one.shape == other.shape
+    return np.asarray(one - other)
