@@ -21,8 +21,11 @@ from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism, to_point
 from synthesis.motion.burmester import Window, branches, burmester_curve
 from synthesis.motion.choices import Cloud, side_dyads
+from synthesis.motion.driver_dyad import undriven, with_driver_dyads
 from synthesis.motion.dyads import DyadConditions, Dyads
+from synthesis.motion.least_squares import solve_least_squares
 from synthesis.motion.screening import SHORTEST_LINK, Screening, demands, screen
+from synthesis.motion.slider_search import solve_sliders, with_sliders
 from synthesis.motion.task import MotionTask, motion_task
 from synthesis.problems import Constraints, DyadChoices, MotionProblem, whole_point
 from synthesis.ranking import distinct, ranked
@@ -71,7 +74,20 @@ _NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
 
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Solve a motion-generation problem of two to five positions."""
+    """Solve a motion-generation problem, each way of asking by its own method."""
+    if problem.driver is not None:
+        bare = solve_motion(undriven(problem), lambda fraction, message: progress(0.8 * fraction, message))
+        return with_driver_dyads(problem, bare, progress)
+    if problem.approximate:
+        return solve_least_squares(problem, progress)
+    if problem.slider is not None:
+        return solve_sliders(problem, problem.slider, progress)
+    result = _solve_fourbars(problem, progress)
+    return result if result.designs else with_sliders(problem, result, progress)
+
+
+def _solve_fourbars(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Fourbars for two to five positions."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding dyads")

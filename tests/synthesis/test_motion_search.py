@@ -208,13 +208,17 @@ class TestNoDesign:
         assert "rotation about one point" in result.summary
 
     def test_moving_pivot_with_collinear_images(self) -> None:
-        """P goes along a line while the body turns: no pin joint can stand at P, elsewhere it can."""
+        """P goes along a line while the body turns: no pin joint can stand at P, elsewhere it can, and a slider can."""
         positions = [{"x": x, "y": 0.0, "angle": a} for x, a in ((0.0, 0.0), (1.0, 20.0), (3.0, 50.0))]
-        result = run(positions=positions, input_side={"moving_pivot": [0.0, 0.0]})
+        result = run(positions=positions, input_side={"moving_pivot": [0.0, 0.0], "dyad": "RR"})
         assert result.designs == []
         assert result.search.complete
         assert "slider" in result.summary
         assert run(positions=positions).designs
+        sliding = run(positions=positions, output_side={"moving_pivot": [0.0, 0.0]}).designs[0].mechanism
+        assert sliding.type == "slider_crank"
+        assert sliding.slide.angle % 180.0 == pytest.approx(0.0, abs=1e-9)
+        assert sliding.skeleton.joints["B"] == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
 class TestPoles:
