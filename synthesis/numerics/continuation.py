@@ -215,6 +215,21 @@ def _follow(
 @njit(
     types.void(
         types.FunctionType(SYSTEM), _INDICES, types.Array(types.complex128, 2, "C"),
+        types.Array(types.complex128, 2, "C"), _VECTOR, types.int64, types.Array(types.float64, 1, "C"),
+    ),
+    cache=True,
+    nogil=True,
+)  # fmt: skip
+def _refine_all(system: Any, groups: Any, y: Complex, low: Complex, p: Complex, scratch: int, moved: Any) -> None:
+    work, still = np.empty(scratch, np.complex128), np.zeros(p.size, np.complex128)
+    newton, tangent = np.empty(y.shape[1], np.complex128), np.empty(y.shape[1], np.complex128)
+    for n in range(y.shape[0]):
+        moved[n] = _refine(system, groups, y[n], low[n], p, still, newton, tangent, work)
+
+
+@njit(
+    types.void(
+        types.FunctionType(SYSTEM), _INDICES, types.Array(types.complex128, 2, "C"),
         types.Array(types.complex128, 2, "C"), _VECTOR, _VECTOR, _VECTOR,
         types.float64, types.int64, types.int64, _INDICES, _INDICES,
     ),
@@ -314,9 +329,7 @@ def refine(
         Relative size of the last step; at rounding level, times the condition, where it has converged.
     """
     y, low = np.array(y, np.complex128, order="C"), np.array(low, np.complex128, order="C")
-    work, still = np.empty(scratch, np.complex128), np.zeros(len(p), np.complex128)
-    spare = np.empty((2, y.shape[1]), np.complex128)
     moved = np.empty(len(y))
-    for n in range(len(y)):
-        moved[n] = _refine(system, groups, y[n], low[n], p, still, spare[0], spare[1], work)
+    kernel: Any = _refine_all
+    kernel(system, groups, y, low, np.ascontiguousarray(p, np.complex128), scratch, moved)
     return y, low, moved

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
 from synthesis.path.nine_point_start import is_linkage, start
@@ -180,31 +181,44 @@ class _Orbits:
 
     def add(self, y: Complex, low: Complex) -> Mask:
         """Add those solutions that are sound; tells which of them were new."""
-        new = np.zeros(len(y), np.bool_)
         keys = orbit_keys(y, self.p, low)
-        sound = np.isfinite(keys).all(axis=-1) & is_linkage(y) & (residuals(y, self.p, low) <= RESIDUAL)
-        for n in np.flatnonzero(sound):
-            if not self._known(keys[n]):
-                new[n] = True
-                self.y, self.low = np.concatenate([self.y, y[n : n + 1]]), np.concatenate([self.low, low[n : n + 1]])
-                self._keys = np.concatenate([self._keys, keys[n : n + 1]])
-        return new
+        new = np.isfinite(keys).all(axis=-1) & is_linkage(y) & (residuals(y, self.p, low) <= RESIDUAL)
+        new[new] = ~self._known(keys[new])
+        first = np.flatnonzero(new)
+        same = _same(keys[first])
+        # Of several paths with one end the first counts.
+        new[first] = ~np.tril(same, -1).any(axis=-1)
+        self.y, self.low = np.concatenate([self.y, y[new]]), np.concatenate([self.low, low[new]])
+        self._keys = np.concatenate([self._keys, keys[new]])
+        return np.asarray(new)
 
     def holds(self, y: Complex) -> bool:
         """Whether all these solutions are known."""
-        return all(self._known(key) for key in orbit_keys(y, self.p))
+        return bool(self._known(orbit_keys(y, self.p)).all())
 
     def add_conjugates(self) -> None:
         """Add the conjugate of every orbit where it is missing."""
         mirrored = conjugate(self.y)
-        alone = [n for n, key in enumerate(orbit_keys(mirrored, self.p)) if not self._known(key)]
-        if alone:
-            low = np.concatenate([_mirrored(self.low[alone]), np.zeros((len(alone), 8))], axis=-1)
+        alone = ~self._known(orbit_keys(mirrored, self.p))
+        if alone.any():
+            low = np.concatenate([_mirrored(self.low[alone]), np.zeros((np.count_nonzero(alone), 8))], axis=-1)
             y, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, mirrored[alone], low, self.p)
             self.add(y[moved < CONVERGED], low[moved < CONVERGED])
 
-    def _known(self, key: Complex) -> bool:
-        return bool((np.abs(self._keys - key).max(axis=-1) <= SAME_ORBIT * np.abs(key).max()).any())
+    def _known(self, keys: Complex) -> Mask:
+        if not len(self._keys) or not len(keys):
+            return np.zeros(len(keys), np.bool_)
+        radius = SAME_ORBIT * np.abs(keys).max(axis=-1)
+        near = cKDTree(self._keys.view(np.float64)).query_ball_point(
+            np.ascontiguousarray(keys).view(np.float64), radius, p=np.inf, return_length=True
+        )
+        return np.asarray(near > 0)
+
+
+def _same(keys: Complex) -> Mask:
+    """Which keys of some are which others of them, shape (keys, keys)."""
+    gaps = np.abs(keys[:, None] - keys[None]).max(axis=-1)
+    return np.asarray(gaps <= SAME_ORBIT * np.abs(keys).max(axis=-1, initial=0.0)[:, None])
 
 
 def _run(found: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
