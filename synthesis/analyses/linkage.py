@@ -13,6 +13,7 @@ from pydantic import ConfigDict, Field, TypeAdapter
 
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
+from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
 from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.designs import Answer
@@ -44,6 +45,11 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     mechanism: GivenMechanism
     motion: StatedMotion = Sweep()
+    include: list[Topic] = Field(
+        default=[],
+        max_length=4,
+        description="What else is wanted, of a pin-jointed fourbar only.",
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
@@ -64,9 +70,11 @@ class LinkageAnalysisRequest(AnalysisRequest):
         if effort(mechanism) > MOST_EFFORT:
             raise MechanismError("", "this has too many assemblies to be analysed at once")
         at, speed, time = self.motion.inputs()
+        more = fourbar_analysis(mechanism, np.radians(at), self.include) if self.include else None
         return {
             "time": None if time is None else time.tolist(),
             **analysis(mechanism, at, speed, self.motion.acceleration),
+            "fourbar": more,
         }
 
     @classmethod
@@ -76,7 +84,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
         low, high = cycle_of(given)
         at = np.linspace(low, high, steps + 1)
         stated = at if given.driven_by_slide else np.degrees(at)
-        return {"time": None, **analysis(given, stated, np.ones(steps + 1), 0.0)}
+        return {"time": None, **analysis(given, stated, np.ones(steps + 1), 0.0), "fourbar": None}
 
 
 class Series(Answer):
@@ -108,13 +116,6 @@ class Travel(Answer):
     velocity: list[float | None]
     acceleration: list[float | None]
     jerk: list[float | None]
-
-
-class Points(Answer):
-    """A point over the positions."""
-
-    x: list[float | None]
-    y: list[float | None]
 
 
 class Classification(Answer):
@@ -168,6 +169,7 @@ class LinkageAnalysis(Answer):
     limits: dict[str, list[float] | None] = Field(
         description="Extreme angles (positions) of the grounded links (slides) on the reference's branch; null: turns."
     )
+    fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
 
 
 FAMILY = Family(LinkageAnalysisRequest, LinkageAnalysis)

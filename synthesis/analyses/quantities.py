@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import Fourbar, barker_type
+from kinematics.linkage import barker_type
 from kinematics.linkage.classification import BARKER
 from kinematics.linkage.drive import MechanismMotion, drive
 from kinematics.linkage.instant_centers import instant_centers
 from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
+from synthesis.analyses.fourbar import fourbar_of
 
 Real = NDArray[np.float64]
 
@@ -102,9 +103,9 @@ def _grounded(mechanism: Mechanism) -> list[str]:
 
 def _classification(mechanism: Mechanism) -> dict[str, Any]:
     kind = 0
-    linkage = fourbar_of(mechanism)
-    if linkage is not None:
-        kind = int(barker_type(linkage))
+    stated = fourbar_of(mechanism)
+    if stated is not None:
+        kind = int(barker_type(stated.linkage))
     row = BARKER[kind - 1] if kind else None
     return {
         "grashof": None if row is None else row.motion,
@@ -112,29 +113,6 @@ def _classification(mechanism: Mechanism) -> dict[str, Any]:
         "barker_code": None if row is None else row.code,
         "mobility": mechanism.mobility,
     }
-
-
-def fourbar_of(mechanism: Mechanism) -> Fourbar | None:
-    """The pin-jointed fourbar that a mechanism is, or None."""
-    if len(mechanism.links) != 4 or mechanism.slides or mechanism.gears:
-        return None
-    output = _grounded(mechanism)
-    if len(output) != 1:
-        return None
-    (coupler,) = (n for n in mechanism.links if n not in (GROUND, mechanism.input, output[0]))
-    places = []
-    for one, other in (
-        (GROUND, mechanism.input),
-        (mechanism.input, coupler),
-        (coupler, output[0]),
-        (output[0], GROUND),
-    ):
-        (joint,) = set(mechanism.links[one]) & set(mechanism.links[other])
-        places.append(complex(mechanism.joints[joint]))
-    o2, a, b, o4 = places
-    if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) == 0.0:
-        return None
-    return Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4))
 
 
 def _global(mechanism: Mechanism) -> dict[str, Any]:

@@ -47,4 +47,4 @@ GivenMechanism = Annotated[
 ]
 """Any stated mechanism; the field ``type`` tells which."""
 
-__all__ = ["GivenMechanism", "MechanismError"]
+__all__ = ["GivenFourbar", "GivenGearedFivebar", "GivenMechanism", "GivenSkeleton", "MechanismError"]
