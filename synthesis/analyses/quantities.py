@@ -127,7 +127,7 @@ def _global(mechanism: Mechanism) -> dict[str, Any]:
     for branch in found:
         listed = circuits.setdefault(branch.circuit, [])
         listed.append(
-            {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch == here}
+            {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}
         )
     limits: dict[str, list[float] | None] = {}
     if here is not None:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from kinematics.errors import DimensionError
 from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.fourbar import Fourbar
 from kinematics.linkage.mechanism import Mechanism
-from synthesis.mechanisms.base import BODY, Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
-from synthesis.mechanisms.skeleton import StatedSkeleton
-from synthesis.problems import Number, PositiveNumber, Statement
+from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
+from synthesis.mechanisms.skeleton import GivenByDimensions
+from synthesis.problems import PositiveNumber, Statement
 
 
 class FourbarLengths(Statement):
@@ -25,7 +23,7 @@ class FourbarLengths(Statement):
     output: PositiveNumber
 
 
-class GivenFourbar(Statement):
+class GivenFourbar(GivenByDimensions):
     """A pin-jointed fourbar."""
 
     type: Literal["fourbar"]
@@ -33,11 +31,8 @@ class GivenFourbar(Statement):
     links: FourbarLengths
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     assembly: Assembly = "open"
-    reference_input_angle: Number | None = None
-    reference_body_angle: Number | None = Field(default=None, description=BODY)
-    skeleton: StatedSkeleton | None = None
 
-    def mechanism(self) -> Mechanism:
+    def assembled(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o4 - o2))

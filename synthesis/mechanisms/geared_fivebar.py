@@ -11,7 +11,7 @@ from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
-from synthesis.mechanisms.skeleton import StatedSkeleton
+from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.problems import Number, PositiveNumber, Statement
 
 
@@ -25,7 +25,7 @@ class FivebarLengths(Statement):
     output: PositiveNumber
 
 
-class GivenGearedFivebar(Statement):
+class GivenGearedFivebar(GivenByDimensions):
     """A geared fivebar; ``phase`` is the output's angle from the ground line when the input lies along it."""
 
     type: Literal["geared_fivebar"]
@@ -35,10 +35,8 @@ class GivenGearedFivebar(Statement):
     phase: Number
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     assembly: Assembly = "open"
-    reference_input_angle: Number | None = None
-    skeleton: StatedSkeleton | None = None
 
-    def mechanism(self) -> Mechanism:
+    def assembled(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o5 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o5 - o2))

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
+from itertools import combinations
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from kinematics.linkage.mechanism import GearPair, Mechanism, Slide
-from synthesis.mechanisms.base import BODY, MechanismError, StatedLine
-from synthesis.problems import Number, Point, Statement
+from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide
+from synthesis.mechanisms.base import AGREES, BODY, MechanismError, StatedLine
+from synthesis.problems import Number, Point, PositiveNumber, Statement
+
+MOST_SHOWN = 6
+"""Distances that a message lists."""
 
 
 class StatedSlide(StatedLine):
@@ -64,7 +69,7 @@ class StatedSkeleton(Statement):
 
 
 class GivenSkeleton(Statement):
-    """Any planar linkage by its skeleton; ``links`` and ``fixed_pivots`` may stand beside it and are not looked at."""
+    """Any planar linkage by its skeleton; ``links`` and ``fixed_pivots`` beside it must be its own."""
 
     type: Literal[
         "skeleton",
@@ -83,13 +88,80 @@ class GivenSkeleton(Statement):
         "drag_link_slider",
         "dwell_rocker",
         "dwell_slider",
+        "dwell_slot",
         "peaucellier",
     ] = "skeleton"
     skeleton: StatedSkeleton
-    links: dict[str, Number] | None = None
-    fixed_pivots: dict[str, Point] | None = None
+    links: dict[str, PositiveNumber] = Field(
+        default={},
+        max_length=20,
+        description="Lengths by name: each is the distance between two joints of the skeleton's link of that name, or, "
+        "where none has the name, of any link.",
+    )
+    fixed_pivots: dict[str, Point] = Field(
+        default={}, max_length=20, description="Each is a joint of the skeleton's ground, by any name."
+    )
     reference_body_angle: Number | None = Field(default=None, description=BODY)
 
     def mechanism(self) -> Mechanism:
-        """The mechanism in its reference configuration."""
-        return self.skeleton.mechanism()
+        """The mechanism in its reference configuration.
+
+        Raises
+        ------
+        MechanismError
+            For a skeleton that is none, and for dimensions beside it that it does not have.
+        """
+        made = self.skeleton.mechanism()
+        for name, stated in self.links.items():
+            listed = [made.links[name]] if name in made.links else list(made.links.values())
+            found = [distance for joints in listed for distance in _distances(made, joints)]
+            if not any(abs(stated - distance) <= AGREES * max(stated, distance) for distance in found):
+                of = f"the skeleton's link {name!r} has" if name in made.links else "the skeleton has a link with"
+                shown = ", ".join(f"{distance:.9g}" for distance in found[:MOST_SHOWN])
+                raise MechanismError(f"/links/{name}", f"{of} joints {shown} apart; leave the field out or correct it")
+        size = max((abs(complex(z)) for z in made.joints.values()), default=1.0)
+        for name, pivot in self.fixed_pivots.items():
+            ground = [complex(made.joints[joint]) for joint in made.links[GROUND]]
+            if not any(abs(complex(*pivot) - z) <= AGREES * size for z in ground):
+                raise MechanismError(f"/fixed_pivots/{name}", "no joint of the skeleton's ground lies there")
+        return made
+
+
+class GivenByDimensions(Statement, ABC):
+    """A type whose dimensions say it all. A skeleton beside them must have the same links, and is what is driven."""
+
+    reference_input_angle: Number | None = Field(
+        default=None, description="Input angle of the reference configuration, absolute, degrees."
+    )
+    reference_body_angle: Number | None = Field(default=None, description=BODY)
+    skeleton: StatedSkeleton | None = None
+
+    @abstractmethod
+    def assembled(self) -> Mechanism:
+        """The mechanism at its reference input angle, or at one where it can be assembled."""
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism in its reference configuration.
+
+        Raises
+        ------
+        MechanismError
+            For dimensions that give no mechanism, and for a skeleton with other ones.
+        """
+        own = self.assembled()
+        if self.skeleton is None:
+            return own
+        made = self.skeleton.mechanism()
+        for joints in own.links.values():
+            for one, other in combinations([joint for joint in joints if joint in made.joints], 2):
+                stated, found = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, made))
+                if abs(stated - found) > AGREES * max(stated, found):
+                    raise MechanismError(
+                        "/skeleton/joints", f"{one} and {other} are {found:.9g} apart; the dimensions give {stated:.9g}"
+                    )
+        return made
+
+
+def _distances(mechanism: Mechanism, joints: tuple[str, ...]) -> list[float]:
+    places = [complex(mechanism.joints[joint]) for joint in joints]
+    return [abs(one - other) for one, other in combinations(places, 2)]

@@ -13,7 +13,6 @@ from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.mechanism import Mechanism, Slide
 from synthesis.mechanisms.base import (
-    BODY,
     Assembly,
     MechanismError,
     StatedCouplerPoint,
@@ -22,7 +21,7 @@ from synthesis.mechanisms.base import (
     agree,
     assembled,
 )
-from synthesis.mechanisms.skeleton import StatedSkeleton
+from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.problems import Number, Point, PositiveNumber, Statement
 
 
@@ -33,7 +32,7 @@ class SliderCrankLengths(Statement):
     coupler: PositiveNumber
 
 
-class GivenSliderCrank(Statement):
+class GivenSliderCrank(GivenByDimensions):
     """A slider-crank; ``offset``, the distance of the pivot from the slide's line, follows from the slide."""
 
     type: Literal["slider_crank"]
@@ -44,11 +43,8 @@ class GivenSliderCrank(Statement):
     assembly: Assembly = "open"
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     driven_by: Literal["crank", "slider"] = "crank"
-    reference_input_angle: Number | None = Field(default=None, description="Crank angle of the reference, degrees.")
-    reference_body_angle: Number | None = Field(default=None, description=BODY)
-    skeleton: StatedSkeleton | None = None
 
-    def mechanism(self) -> Mechanism:
+    def assembled(self) -> Mechanism:
         """The mechanism at its reference crank angle, or at one where it can be assembled."""
         pivot, angle = complex(*self.fixed_pivot), math.radians(self.slide.angle)
         line = complex(*self.slide.point)
@@ -86,7 +82,7 @@ class OutputSlide(Statement):
     angle: Number
 
 
-class GivenInvertedSliderCrank(Statement):
+class GivenInvertedSliderCrank(GivenByDimensions):
     """An inverted slider-crank (Norton, Sec. 4.7): the crank pin slides in the output link."""
 
     type: Literal["inverted_slider_crank"]
@@ -99,11 +95,8 @@ class GivenInvertedSliderCrank(Statement):
         "A → P in the reference, which must then be stated.",
     )
     assembly: Assembly = "open"
-    reference_input_angle: Number | None = None
-    reference_body_angle: Number | None = Field(default=None, description=BODY)
-    skeleton: StatedSkeleton | None = None
 
-    def mechanism(self) -> Mechanism:
+    def assembled(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o4 - o2))
@@ -148,7 +141,7 @@ class QuickReturnLengths(Statement):
     coupler: PositiveNumber
 
 
-class GivenQuickReturn(Statement):
+class GivenQuickReturn(GivenByDimensions):
     """A crank-shaper or Whitworth mechanism: the crank pin slides in the rocker, whose end drives a ram."""
 
     type: Literal["crank_shaper", "whitworth"]
@@ -156,10 +149,8 @@ class GivenQuickReturn(Statement):
     links: QuickReturnLengths
     slide: StatedLine = Field(description="The ram's line on the ground.")
     assembly: Assembly = "open"
-    reference_input_angle: Number | None = None
-    skeleton: StatedSkeleton | None = None
 
-    def mechanism(self) -> Mechanism:
+    def assembled(self) -> Mechanism:
         """The mechanism at its reference input angle, or at one where it can be assembled."""
         o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
         agree("/links/ground", self.links.ground, abs(o4 - o2))

@@ -1,0 +1,166 @@
+"""Analyses of every type of linkage, and of those at the edge of what a linkage is."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from synthesis.analyses import parse_request
+from synthesis.mechanisms import MechanismError
+from tests.kinematics.mechanism_sampling import EVERY, take
+
+KINDS = {
+    "fourbar": "fourbar", "slider-crank": "slider_crank", "slider-crank driven by its slider": "slider_crank",
+    "inverted slider-crank": "inverted_slider_crank", "crank-shaper": "crank_shaper", "Whitworth": "whitworth",
+    "geared fivebar": "geared_fivebar", "drag link and rocker": "drag_link_rocker",
+    "drag link and slider": "drag_link_slider", "Peaucellier": "peaucellier",
+}  # fmt: skip
+
+FOURBAR = {
+    "type": "fourbar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+    "coupler_point": {"distance": 6.0, "angle": 30.0},
+}
+
+
+def answer(mechanism, **motion):
+    return parse_request({"mechanism": mechanism, "motion": motion} if motion else {"mechanism": mechanism}).answer()
+
+
+def stated(name):
+    """A random mechanism of a type by its skeleton and the lengths of its links of two joints."""
+    mechanism = take(EVERY[name](np.random.default_rng(3), 1), 0)
+    kind = KINDS.get(name, name.split()[0])
+    pair = lambda z: [complex(z).real, complex(z).imag]  # noqa: E731
+    binary = {n: j for n, j in mechanism.links.items() if len(j) == 2}
+    return {
+        "type": kind,
+        "links": {n: abs(complex(mechanism.joints[i] - mechanism.joints[j])) for n, (i, j) in binary.items()},
+        "skeleton": {
+            "joints": {n: pair(z) for n, z in mechanism.joints.items()},
+            "links": [{"name": n, "joints": list(j)} for n, j in mechanism.links.items()],
+            "slides": [
+                {"joint": s.joint, "link": s.link, "point": pair(s.point), "angle": math.degrees(s.angle)}
+                for s in mechanism.slides
+            ],
+            "gears": [{"links": [g.first, g.second], "ratio": g.ratio} for g in mechanism.gears],
+            "input_link": mechanism.input,
+        },
+    }
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_every_type_has_all_quantities(name):
+    mechanism = stated(name)
+    found = answer(mechanism)
+    names = {link["name"] for link in mechanism["skeleton"]["links"]} - {"ground"}
+    assert set(found["links"]) == names
+    assert set(found["joints"]) == set(mechanism["skeleton"]["joints"])
+    assert len(found["slides"]) == len(mechanism["skeleton"]["slides"])
+    assert found["classification"]["mobility"] == 1
+    (here,) = [b for circuit in found["circuits"] for b in circuit["branches"] if b["reference"]]
+    ends = [] if here["full"] else [here["from"], here["to"]]
+    period = 1e300 if mechanism["skeleton"]["input_link"] not in names else 360.0
+    assert all(min(abs((end - t + period / 2) % period - period / 2) for t in found["toggles"]) < 1e-6 for end in ends)
+    assert found["limits"]
+    grounded = set(found["torque_ratio"])
+    assert grounded <= set(found["limits"])
+    one = answer(mechanism, at=(here["from"] + here["to"]) / 2.0)
+    links = len(mechanism["skeleton"]["links"])
+    assert len(one["instant_centers"]) == links * (links - 1) // 2
+
+
+@pytest.mark.parametrize("name", ["watt_1 driven by its input", "drag link and slider", "Peaucellier"])
+def test_dimensions_beside_a_skeleton_must_be_its_own(name):
+    mechanism = stated(name)
+    link = next(n for n in mechanism["links"] if n != "ground")
+    wrong = copy.deepcopy(mechanism)
+    wrong["links"][link] *= 1.01
+    with pytest.raises(MechanismError) as told:
+        answer(wrong, at=0.0)
+    assert told.value.path == f"/links/{link}"
+    with pytest.raises(MechanismError) as told:
+        answer({**mechanism, "links": {"other": 1e3}}, at=0.0)
+    assert told.value.path == "/links/other"
+    with pytest.raises(MechanismError) as told:
+        answer({**mechanism, "fixed_pivots": {"O2": [77.0, 0.0]}}, at=0.0)
+    assert told.value.path == "/fixed_pivots/O2"
+    ground = next(link["joints"][0] for link in mechanism["skeleton"]["links"] if link["name"] == "ground")
+    answer({**mechanism, "fixed_pivots": {"input": mechanism["skeleton"]["joints"][ground]}}, at=0.0)
+
+
+def test_a_skeleton_beside_dimensions_must_have_them_and_is_driven():
+    by_dimensions = answer(FOURBAR, at=75.0)
+    joints = {n: [track["x"][0], track["y"][0]] for n, track in by_dimensions["joints"].items()}
+    names = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B", "P"], "output": ["O4", "B"]}
+    skeleton = {
+        "joints": joints, "links": [{"name": n, "joints": j} for n, j in names.items()], "input_link": "input",
+    }  # fmt: skip
+    both = {**FOURBAR, "skeleton": skeleton, "reference_body_angle": 12.0}
+    assert answer(both, at=75.0)["joints"]["B"]["x"] == pytest.approx(by_dimensions["joints"]["B"]["x"])
+    moved = copy.deepcopy(both)
+    moved["skeleton"]["joints"]["P"][0] += 0.01
+    with pytest.raises(MechanismError) as told:
+        answer(moved, at=75.0)
+    assert told.value.path == "/skeleton/joints"
+
+
+def coordinates(found):
+    return {n: np.array([t["x"], t["y"]], float) for n, t in found["joints"].items()}
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e8])
+def test_a_unit_of_length_changes_nothing_but_lengths(scale):
+    small = copy.deepcopy(FOURBAR)
+    small["fixed_pivots"]["output"][0] *= scale
+    small["links"] = {n: length * scale for n, length in small["links"].items()}
+    small["coupler_point"]["distance"] *= scale
+    found, expected = answer(small), answer(FOURBAR)
+    for name, track in coordinates(expected).items():
+        assert np.allclose(coordinates(found)[name] / scale, track, atol=1e-9)
+    assert found["limits"]["output"] == pytest.approx(expected["limits"]["output"])
+    assert found["classification"] == expected["classification"]
+
+
+@pytest.mark.parametrize(
+    ("links", "ground"),
+    [((2.0, 6.0, 2.0), 6.0), ((2.0, 2.0, 6.0), 6.0), ((6.0, 2.0, 2.0), 6.0), ((2.0, 5.0, 3.0), 6.0)],
+    ids=["parallelogram", "kite", "kite, long crank", "S + L = P + Q"],
+)
+@pytest.mark.parametrize("turn", [0.0, 17.0])
+def test_at_change_points_the_answer_is_right_or_null(links, ground, turn):
+    """Links keep their lengths wherever numbers are given, also in degrees that are change points."""
+    o4 = [ground * math.cos(math.radians(turn)), ground * math.sin(math.radians(turn))]
+    a, b, c = links
+    mechanism = {
+        "type": "fourbar", "fixed_pivots": {"input": [0.0, 0.0], "output": o4},
+        "links": {"input": a, "coupler": b, "output": c}, "coupler_point": {"distance": 3.0, "angle": 0.0},
+    }  # fmt: skip
+    found = answer(mechanism, **{"from": turn - 180.0, "to": turn + 180.0, "steps": 72})
+    assert found["classification"]["grashof"] == "change_point" or found["classification"]["barker"] > 8
+    assert len(found["circuits"]) == 1
+    joints, valid = coordinates(found), np.array(found["valid"])
+    assert valid.sum() >= 10
+    for one, other, length in (("O2", "A", a), ("A", "B", b), ("O4", "B", c), ("A", "P", 3.0)):
+        gap = np.hypot(*(joints[one] - joints[other]))
+        assert (np.isfinite(gap) == valid).all()
+        assert np.allclose(gap[valid], length, atol=1e-9)
+    for track in found["links"].values():
+        assert np.isfinite(np.array(track["angle"], float)[valid]).all()
+
+
+def test_a_collinear_coupler_point_stays_on_the_line():
+    found = answer({**FOURBAR, "coupler_point": {"distance": 3.5, "angle": 180.0}})
+    joints = coordinates(found)
+    along = (joints["B"] - joints["A"]) / 7.0
+    assert np.allclose(joints["P"], joints["A"] - 3.5 * along, atol=1e-12)
+
+
+def test_a_link_without_length_in_a_skeleton_is_refused():
+    mechanism = stated("fourbar")
+    mechanism["links"] = {}
+    mechanism["skeleton"]["joints"]["B"] = mechanism["skeleton"]["joints"]["A"]
+    with pytest.raises(ValueError, match="length of coupler"):
+        answer(mechanism, at=0.0)
