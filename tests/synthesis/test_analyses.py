@@ -8,7 +8,7 @@ import pytest
 
 from synthesis.analyses import parse_request
 from synthesis.mechanisms import MechanismError
-from tests.kinematics.mechanism_sampling import EVERY, take
+from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
 
 KINDS = {
     "fourbar": "fourbar", "slider-crank": "slider_crank", "slider-crank driven by its slider": "slider_crank",
@@ -31,7 +31,9 @@ def answer(mechanism, **motion):
 
 def stated(name):
     """A random mechanism of a type by its skeleton and the lengths of its links of two joints."""
-    mechanism = take(EVERY[name](np.random.default_rng(3), 1), 0)
+    rng = np.random.default_rng(3)
+    # With a ratio that does not repeat, circuits would not be listed.
+    mechanism = take(geared_fivebar(rng, 1, -2.0) if name == "geared fivebar" else EVERY[name](rng, 1), 0)
     kind = KINDS.get(name, name.split()[0])
     pair = lambda z: [complex(z).real, complex(z).imag]  # noqa: E731
     binary = {n: j for n, j in mechanism.links.items() if len(j) == 2}
