@@ -5,7 +5,8 @@
 Every row does the same work in the same run: designs × input angles of crank-rockers (or slider-cranks whose crank
 turns through), the input angles common to all designs. Compiled sweeps stand beside the same formulas in NumPy, over
 all designs at once and in chunks that stay in the cache, and beside the compiled stepper of pylinkage where that is
-installed. ``Δ`` is the greatest difference from the compiled row above, in units of the linkage's size.
+installed. ``Δ`` is the greatest difference from the compiled row above, in units of the linkage's size. The last table
+has the processor times of whole analyses, type by type, as the service answers them.
 """
 
 from __future__ import annotations
@@ -18,13 +19,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
+from benchmarks.mechanisms import STATED
 from kinematics.linkage import fourbar, slider_crank
 from kinematics.linkage import fourbar_kernels as fourbar_sweeps
 from kinematics.linkage import slider_crank_kernels as slider_sweeps
 from kinematics.linkage.batch import sweep
 from kinematics.linkage.fourbar import Fourbar
 from kinematics.linkage.slider_crank import SliderCrank
+from synthesis.analyses import parse_request
 from tests.kinematics import twins
 
 REPEATS = 9
@@ -258,6 +262,18 @@ def calls() -> None:
         print(f"  {name:<66}{seconds(lambda call=call: [call() for _ in range(200)]) / 200 * 1e6:>10.1f}")
 
 
+def answers() -> None:
+    """Processor times of whole analyses as the service gives them: 361 positions, all quantities, into JSON."""
+    print(f"\n{'an analysis with 360 steps, request to JSON':<68}{'ms':>10}{'kB':>12}")
+    for name, mechanism in STATED.items():
+        content, times = b"", []
+        for _ in range(REPEATS):
+            start = time.process_time()
+            content = to_json(parse_request({"mechanism": mechanism}).answer(), inf_nan_mode="null")
+            times.append(time.process_time() - start)
+        print(f"  {name:<66}{min(times) * 1e3:>10.1f}{len(content) / 1e3:>12.0f}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--designs", type=int, default=2000)
@@ -270,6 +286,7 @@ def main() -> None:
     fourbars(crank_rockers(rng, designs), theta)
     sliders(slider_cranks(rng, designs), theta)
     calls()
+    answers()
 
 
 if __name__ == "__main__":
