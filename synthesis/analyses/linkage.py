@@ -44,7 +44,10 @@ class LinkageAnalysisRequest(AnalysisRequest):
     )
 
     mechanism: GivenMechanism
-    motion: StatedMotion = Sweep()
+    motion: StatedMotion = Field(
+        default=Sweep(),
+        description="By default a full turn in 360 steps; a driven slider goes between toggles.",
+    )
     include: list[Topic] = Field(
         default=[],
         max_length=4,
@@ -69,11 +72,17 @@ class LinkageAnalysisRequest(AnalysisRequest):
         mechanism = self.mechanism.mechanism()
         if effort(mechanism) > MOST_EFFORT:
             raise MechanismError("", "this has too many assemblies to be analysed at once")
-        at, speed, time = self.motion.inputs()
+        slide, motion = mechanism.driven_by_slide, self.motion
+        if slide and motion.speed_rpm is not None:
+            raise MechanismError("", "a slider drives this; state its speed as `speed`, length units a second")
+        if slide and "motion" not in self.model_fields_set:
+            low, high = cycle_of(mechanism)
+            motion = Sweep(start=low, end=high)
+        at, speed, time = motion.inputs(slide=slide)
         more = fourbar_analysis(mechanism, np.radians(at), self.include) if self.include else None
         return {
             "time": None if time is None else time.tolist(),
-            **analysis(mechanism, at, speed, self.motion.acceleration),
+            **analysis(mechanism, at, speed, motion.acceleration),
             "fourbar": more,
         }
 

@@ -42,7 +42,7 @@ class Sweep(_Motion):
     end: Number = Field(default=360.0, alias="to", description="Last input angle, degrees.")
     steps: Annotated[Count, Field(ge=1, le=MOST_POSITIONS - 1)] = 360
 
-    def inputs(self) -> tuple[Real, Real, Real | None]:
+    def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs, speeds and no times."""
         at = np.asarray(np.linspace(self.start, self.end, self.steps + 1), np.float64)
         return at, np.full(len(at), self.rate), None
@@ -53,7 +53,7 @@ class OnePosition(_Motion):
 
     at: Number = Field(description="Input angle, degrees.")
 
-    def inputs(self) -> tuple[Real, Real, Real | None]:
+    def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Input, speed and no time."""
         return np.array([self.at]), np.array([self.rate]), None
 
@@ -72,12 +72,13 @@ class Run(_Motion):
     time: TimeSpan
     at: Number = Field(default=0.0, description="Input angle at time 0, degrees.")
 
-    def inputs(self) -> tuple[Real, Real, Real | None]:
-        """Inputs, speeds and times."""
+    def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
+        """Inputs (degrees, or lengths along the input ``slide``), speeds and times."""
         count = math.floor((self.time.end - self.time.start) / self.time.step * (1.0 + 1e-12)) + 1
         t = np.asarray(self.time.start + self.time.step * np.arange(max(count, 1)), np.float64)
         turned = self.rate * t + 0.5 * self.acceleration * t * t
-        return np.asarray(self.at + np.degrees(turned)), np.asarray(self.rate + self.acceleration * t), t
+        moved = turned if slide else np.degrees(turned)
+        return np.asarray(self.at + moved), np.asarray(self.rate + self.acceleration * t), t
 
 
 def _motion_tag(statement: Any) -> str:

@@ -166,3 +166,39 @@ def test_a_link_without_length_in_a_skeleton_is_refused():
     mechanism["skeleton"]["joints"]["B"] = mechanism["skeleton"]["joints"]["A"]
     with pytest.raises(ValueError, match="length of coupler"):
         answer(mechanism, at=0.0)
+
+
+DRIVEN = {
+    "type": "slider_crank", "fixed_pivot": [0.0, 0.0], "links": {"crank": 2.0, "coupler": 7.0},
+    "slide": {"point": [0.0, 1.0], "angle": 0.0}, "driven_by": "slider",
+}  # fmt: skip
+
+
+def test_a_driven_slider_goes_between_its_toggles_unless_told_otherwise():
+    found = answer(DRIVEN)
+    ends = [math.sqrt(5.0**2 - 1.0), math.sqrt(9.0**2 - 1.0)]
+    assert [found["input_angle"][0], found["input_angle"][-1]] == pytest.approx(ends)
+    assert found["toggles"] == pytest.approx([-ends[1], -ends[0], *ends]), "of both circuits"
+    assert all(found["valid"])
+    with pytest.raises(MechanismError):
+        answer(DRIVEN, at=7.0, speed_rpm=60.0)
+
+
+def test_a_slider_runs_in_time_by_lengths():
+    found = answer(DRIVEN, time={"start": 0.0, "end": 1.0, "step": 0.25}, at=6.0, speed=1.0, acceleration=0.5)
+    t = np.array(found["time"])
+    assert found["input_angle"] == pytest.approx(list(6.0 + t + 0.25 * t * t))
+    assert found["slides"]["B"]["velocity"] == pytest.approx(list(1.0 + 0.5 * t))
+
+
+@pytest.mark.parametrize("mechanism", [FOURBAR, stated("stephenson_2 driven by its input")], ids=["dyads", "class III"])
+def test_a_run_in_time_that_turns_back_passes_the_same_positions_again(mechanism):
+    """It stands still at 0.5 s; before and after, positions and accelerations are the same, velocities opposite."""
+    start = math.degrees(parse_request({"mechanism": mechanism}).mechanism.mechanism().reference_input)
+    found = answer(mechanism, time={"start": 0.0, "end": 1.0, "step": 0.05}, at=start, speed=0.02, acceleration=-0.04)
+    assert all(found["valid"])
+    assert found["input_angle"][10] == pytest.approx(max(found["input_angle"]))
+    for track in found["joints"].values():
+        for name, sign in (("x", 1.0), ("vx", -1.0), ("ax", 1.0), ("jy", -1.0)):
+            values = np.array(track[name], float)
+            assert values == pytest.approx(sign * values[::-1], abs=1e-9)
