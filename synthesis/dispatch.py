@@ -7,7 +7,7 @@ from typing import Any
 
 from kinematics import linkage
 from synthesis.designs import Result
-from synthesis.kinds import KINDS, Progress, example, parse_problem
+from synthesis.kinds import KINDS, Progress, examples, parse_problem
 from synthesis.problems import StatedProblem
 
 __all__ = ["Progress", "solve", "warm_up"]
@@ -36,7 +36,8 @@ def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
 
 
 def warm_up() -> None:
-    """Compile the kernels, or load them from their cache: the analysis core's, then by an example of each kind."""
+    """Compile the kernels, or load them from their cache: the analysis core's, then by the examples of each kind."""
     linkage.warm_up()
     for kind in KINDS:
-        solve(parse_problem(example(kind)), lambda fraction, message: None)
+        for example in examples(kind):
+            solve(parse_problem(example), lambda fraction, message: None)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
 
 from pydantic import Discriminator, Tag, TypeAdapter
 
-from synthesis.designs import GearTrainResult, MotionResult, PlanetaryResult, Result
-from synthesis.problems import GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
+from synthesis.designs import CamResult, GearTrainResult, MotionResult, PlanetaryResult, Result
+from synthesis.problems import CamProblem, GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
 
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
@@ -31,6 +31,7 @@ KINDS: dict[str, Kind] = {
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"
     ),
+    "cam": Kind(CamProblem, CamResult, "synthesis.cam.solver:solve_cam"),
 }
 """Every kind of problem by its name."""
 
@@ -60,15 +61,18 @@ def parse_problem(statement: dict[str, Any]) -> Problem:
     return _PROBLEM.validate_python(statement)
 
 
-def example(kind: str) -> dict[str, Any]:
-    """The runnable example of a kind, as a client would post it."""
+def examples(kind: str) -> list[dict[str, Any]]:
+    """The runnable examples of a kind, as a client would post them."""
     schema_extra = KINDS[kind].problem.model_config["json_schema_extra"]
     assert isinstance(schema_extra, dict)
-    examples = schema_extra["examples"]
-    assert isinstance(examples, list)
-    first = examples[0]
-    assert isinstance(first, dict)
-    return first
+    found = schema_extra["examples"]
+    assert isinstance(found, list)
+    return [one for one in found if isinstance(one, dict)]
+
+
+def example(kind: str) -> dict[str, Any]:
+    """The first of them."""
+    return examples(kind)[0]
 
 
 _PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem)

@@ -1,48 +1,36 @@
-"""All circuits and branches of a mechanism, its toggles, and the limits of its links, by root finding.
+"""All circuits and branches of a mechanism that closes by dyads from its input link, by root finding.
 
-Every dyadic closure has two assemblies and a margin, a smooth function of the input that is positive where the closure
-exists. For each choice of assemblies the least of the margins is bracketed on a grid, its minima and maxima near zero
-are searched between grid points so that no narrow gap is missed, and each end of the motion is found as a root. At such
-an end the two assemblies of the closure that folds flat meet: there the branch goes over into the one with that sign
-reversed. Branches that are joined so, directly or through others, make a circuit.
+The configurations form curves (:mod:`kinematics.linkage.configuration_curves`). Cut where the input turns back, and
+where curves cross, they are the branches. Each toggle stands between two neighbours on its curve, hence no branch can
+be listed without the one that it goes over into, and the number of ends is even.
 
 Words: see :mod:`kinematics.linkage.circuits`.
 """
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
 from fractions import Fraction
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import assembly_signs, drive
+from kinematics.linkage.configuration_curves import Closures, Curve, circuits, configuration_curves
+from kinematics.linkage.drive import assembly_signs
 from kinematics.linkage.mechanism import Mechanism, TopologyError
-from kinematics.linkage.roots import find_roots
 
 Real = NDArray[np.float64]
 
-GRID = 720
-"""Grid points a turn of the input."""
-
-NEAR_ZERO = 0.05
-"""A grid minimum (or maximum) of the margin nearer to zero than this is searched for a gap between grid points."""
-
-TOUCHES = 1e-12
-"""A least margin below this is a change point: branches meet there, and no direction of motion is determined."""
-
 SAME_END = 1e-7
-"""Ends of branches closer than this, radians, are one toggle: two computations of one root."""
+"""The reference belongs to a branch when it is at most so far beyond its ends, radians."""
 
-ROUNDING = 1e-14
-"""Margins below this are zero: a few roundings of the lengths, less than what driving allows a folded closure."""
+TURNS_AT_MOST = 200
+"""Turns of the input until a geared mechanism repeats, at most."""
 
-TURNS_AT_MOST = 60
-"""Turns of the input until a geared mechanism repeats, at most; a ratio that needs more is taken as not repeating."""
+REPEATS = 1e-9
+"""Angle by which a geared link may miss its place after a cycle, radians."""
 
 
 class Branch(NamedTuple):
@@ -77,191 +65,68 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     Raises
     ------
     TopologyError
-        For a class III mechanism or one that is driven by a slide.
+        For a class III mechanism or one that is driven by a slide; where the gears do not bring it back within
+        ``TURNS_AT_MOST`` turns; or where a link swings freely at a change point and others depend on it.
     """
     decomposition = decompose(mechanism)
     if decomposition.left or mechanism.driven_by_slide:
         raise TopologyError("expected a mechanism that closes by dyads and is driven by a link")
-    closing = [step.link for step in decomposition.steps if step.has_two_solutions]
-    position = [n for n, step in enumerate(decomposition.steps) if step.has_two_solutions]
-    choices = list(itertools.product((1, -1), repeat=len(closing)))
     period = cycle(mechanism)
-
-    if not closing:
-        return [Branch(0, 0.0, period, True, (), "", "")]
-
-    def margins(theta: Real, choice: NDArray[np.int64]) -> tuple[Real, Real, NDArray[np.int64]]:
-        """Least margin, its rate and the closure that has it, shape (n,), each input with its own choice of signs."""
-        rows = np.array(choices, np.int64)[choice]
-        signs = [np.ones(len(theta), np.int64)] * len(decomposition.steps)
-        for n, k in enumerate(position):
-            signs[k] = rows[:, n]
-        motion = drive(mechanism, theta[:, None], signs=tuple(signs), order=1)
-        found = np.stack([motion.margins[link][..., 0] for link in closing], axis=1)
-        # Where an earlier closure does not exist the later ones are NaN, and the earlier one is the least.
-        value = np.where(np.isnan(found[0]), np.inf, found[0])
-        which = value.argmin(axis=0)
-        here = which, np.arange(len(theta))
-        return value[here], found[1][here], which
-
-    intervals = _positive_intervals(lambda theta, row: margins(theta, row)[:2], len(choices), period)
-    listed = [(row, *interval) for row, some in enumerate(intervals) for interval in some]
-    rows = np.array([row for row, *_ in listed for _ in (0, 1)], np.int64)
-    ends = np.array([end for _, low, high, _ in listed for end in (low, high)])
-    folded = margins(ends, rows)[2] if listed else np.empty(0, np.int64)
+    for gear in mechanism.gears:
+        turned = gear.ratio * period
+        if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEATS:
+            raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {TURNS_AT_MOST} turns")
+    closures = Closures(mechanism, decomposition)
+    curves = configuration_curves(mechanism, closures, period)
     found = [
-        Branch(
-            0,
-            low,
-            high,
-            full,
-            choices[row],
-            *(("", "") if full else (closing[folded[2 * n]], closing[folded[2 * n + 1]])),
-        )
-        for n, (row, low, high, full) in enumerate(listed)
+        branch
+        for curve, circuit in zip(curves, circuits(curves), strict=True)
+        for branch in _branches_of(curve, circuit, closures.links, period)
     ]
-    return _by_circuits(found, closing, period, _holding_reference(mechanism, found, position, period))
+    if not found:
+        return []
+    signs = assembly_signs(mechanism, decomposition.steps)
+    choice = tuple(int(signs[n]) for n in closures.position)
+    return reference_first(found, _holding(found, choice, float(mechanism.reference_input), period))
 
 
-Margins = Callable[[Real, NDArray[np.int64]], tuple[Real, Real]]
-"""A function of the input and of the row (choice of assemblies), with its rate by the input."""
-
-
-def _positive_intervals(least: Margins, rows: int, period: float) -> list[list[tuple[float, float, bool]]]:
-    """Where periodic functions are positive, by rows: (low, high, whether it is a whole period), 0 ≤ low < period."""
-    count = int(GRID * period / (2.0 * np.pi))
-    grid = np.linspace(0.0, period, count, endpoint=False)
-    value = least(np.tile(grid, rows), np.repeat(np.arange(rows), count))[0].reshape(rows, count)
-    extra_row, extra_theta, extra_value = _extremes_near_zero(least, grid, value, period)
-    brackets: list[Bracket] = []
-    plans: list[tuple[Real, NDArray[np.bool_]] | bool] = []  # ends known so far and which of them are, or all or none
-    for row in range(rows):
-        theta = np.concatenate([grid, extra_theta[extra_row == row]])
-        order = np.argsort(theta, kind="stable")
-        theta, here = theta[order], np.concatenate([value[row], extra_value[extra_row == row]])[order]
-        inside = here > TOUCHES
-        if inside.all() or not inside.any():
-            plans.append(bool(inside.all()))
-            continue
-        start = int(np.flatnonzero(~inside)[0])
-        theta, here, inside = np.roll(theta, -start), np.roll(here, -start), np.roll(inside, -start)
-        theta = np.append(np.where(theta < theta[0], theta + period, theta), theta[0] + period)
-        here = np.append(here, here[0])
-        edges = np.flatnonzero(np.diff(np.append(inside, False).astype(int)))
-        # Outside an edge at a change point stands the searched extreme: it is the end itself.
-        outer = np.where(inside[edges], edges + 1, edges)
-        touching = np.abs(here[outer]) <= TOUCHES
-        plans.append((theta[outer], touching))
-        for edge in edges[~touching]:
-            brackets.append(Bracket(row, *map(float, (theta[edge], theta[edge + 1], here[edge], here[edge + 1]))))
-    roots = iter(_ends(least, brackets))
-    found: list[list[tuple[float, float, bool]]] = []
-    for plan in plans:
-        if isinstance(plan, bool):
-            found.append([(0.0, period, True)] if plan else [])
-            continue
-        ends = [float(known) if touching else next(roots) for known, touching in zip(*plan, strict=True)]
-        spans = zip(ends[::2], ends[1::2], strict=True)
-        found.append(
-            [(float(np.mod(low, period)), float(np.mod(low, period) + high - low), False) for low, high in spans]
-        )
+def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) -> list[Branch]:
+    """A curve cut at its turns."""
+    cuts = [(turn.at, turn.theta, links[turn.level]) for turn in curve.turns]
+    if curve.closed:
+        if not cuts:
+            signs = tuple(int(s) for s in curve.place(np.array([curve.low])).signs[:, 0])
+            return [Branch(circuit, 0.0, period, True, signs, "", "")]
+        cuts.append((cuts[0][0] + curve.high - curve.low, *cuts[0][1:]))
+    else:
+        low, high = ((end.theta, links[end.point.level]) for end in curve.ends)
+        cuts = [(curve.low, *low), *cuts, (curve.high, *high)]
+    middles = curve.place(np.array([0.5 * (one[0] + other[0]) for one, other in pairwise(cuts)])).signs
+    found = []
+    rising = [other[1] > one[1] for one, other in pairwise(cuts)]
+    if any(one == other for one, other in pairwise(rising)) or (curve.closed and len(rising) % 2):
+        raise TopologyError("two limits lie closer together than they can be told apart; circuits are not known")
+    for n, (one, other) in enumerate(pairwise(cuts)):
+        (_, low_at, low_link), (_, high_at, high_link) = (one, other) if rising[n] else (other, one)
+        start = float(np.mod(low_at, period))
+        signs = tuple(int(s) for s in middles[:, n])
+        found.append(Branch(circuit, start, start + high_at - low_at, False, signs, low_link, high_link))
     return found
 
 
-class Bracket(NamedTuple):
-    """Inputs between which the margin of a row vanishes, and the margins there."""
-
-    row: int
-    low: float
-    high: float
-    at_low: float
-    at_high: float
-
-
-def _ends(least: Margins, brackets: list[Bracket]) -> list[float]:
-    """Where the margins of rows vanish between two inputs; of the last bracket the end where it is not negative."""
-    if not brackets:
-        return []
-    row, low, high, at_low, at_high = (np.array(column) for column in zip(*brackets, strict=True))
-    found = find_roots(lambda theta: _lifted(least(theta, row)[0]), low, high, _lifted(at_low), _lifted(at_high))
-    ends: list[float] = found[0].tolist()
-    return ends
-
-
-def _lifted(margin: Real) -> Real:
-    """Margins with those that are zero to rounding counted as zero."""
-    return np.asarray(np.where(np.abs(margin) <= ROUNDING, 0.0, margin))
-
-
-def _extremes_near_zero(least: Margins, grid: Real, value: Real, period: float) -> tuple[NDArray[np.int64], Real, Real]:
-    """Row, input and value of minima above zero and maxima below it that come near zero, found between grid points."""
-    before, after = np.roll(value, 1, axis=1), np.roll(value, -1, axis=1)
-    dips = (value > 0.0) & (value <= before) & (value <= after) & (value < NEAR_ZERO)
-    bumps = (value <= 0.0) & (value >= before) & (value >= after) & (value > -NEAR_ZERO)
-    row, at = np.nonzero(dips | bumps)
-    if not len(row):
-        return row, np.empty(0), np.empty(0)
-    step = period / len(grid)
-    theta = np.mod(find_roots(lambda theta: least(theta, row)[1], grid[at] - step, grid[at] + step)[0], period)
-    return row, theta, least(theta, row)[0]
-
-
-def _holding_reference(mechanism: Mechanism, found: list[Branch], position: list[int], period: float) -> int:
+def _holding(found: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
     """Index of the branch that holds the reference configuration."""
-    signs = assembly_signs(mechanism, decompose(mechanism).steps)
-    choice = tuple(int(signs[k]) for k in position)
-    at = float(mechanism.reference_input)
     for n, branch in enumerate(found):
-        if (
-            branch.signs == choice
-            and np.mod(at - branch.low + SAME_END, period) <= branch.high - branch.low + 2.0 * SAME_END
-        ):
+        within = branch.high - branch.low + 2.0 * SAME_END
+        if branch.signs == choice and np.mod(at - branch.low + SAME_END, period) <= within:
             return n
     return 0
 
 
-def _by_circuits(found: list[Branch], closing: list[str], period: float, first: int) -> list[Branch]:
-    """The branches with their circuits numbered: those that meet at an end belong together."""
-    parent = list(range(len(found)))
-
-    def root(n: int) -> int:
-        while parent[n] != n:
-            n = parent[n]
-        return n
-
-    for n, m in itertools.combinations(range(len(found)), 2):
-        if _meet(found[n], found[m], closing, period):
-            parent[root(n)] = root(m)
-    numbers: dict[int, int] = {root(first): 0} if found else {}
-    for n in range(len(found)):
-        numbers.setdefault(root(n), len(numbers))
-    numbered = [branch._replace(circuit=numbers[root(n)]) for n, branch in enumerate(found)]
+def reference_first(found: list[Branch], first: int) -> list[Branch]:
+    """The branches by circuits, which are counted from the first one's."""
+    numbers = {found[first].circuit: 0}
+    for branch in found:
+        numbers.setdefault(branch.circuit, len(numbers))
+    numbered = [branch._replace(circuit=numbers[branch.circuit]) for branch in found]
     return sorted(numbered, key=lambda branch: (branch.circuit, branch.low))
-
-
-def _meet(one: Branch, other: Branch, closing: list[str], period: float) -> bool:
-    """Whether two branches have an end in common: a toggle joins the two assemblies on one side of it.
-
-    A change point also joins the branches on its two sides.
-    """
-    if any(meet_at(one, other, closing, high=high, period=period) for high in (True, False)):
-        return True
-    flipped = {link for link, a, b in zip(closing, one.signs, other.signs, strict=True) if a != b}
-    for low, high in ((one, other), (other, one)):
-        if not (low.full or high.full) and low.low_closure == high.high_closure and flipped <= {low.low_closure}:
-            return _same(low.low, high.high, period)
-    return False
-
-
-def meet_at(one: Branch, other: Branch, closing: list[str], *, high: bool, period: float) -> bool:
-    """Whether two branches fold flat together at their high (or low) ends: only the folded closure's sign reversed."""
-    if one.full or other.full:
-        return False
-    ends = (one.high, other.high) if high else (one.low, other.low)
-    folded = (one.high_closure, other.high_closure) if high else (one.low_closure, other.low_closure)
-    flipped = {link for link, a, b in zip(closing, one.signs, other.signs, strict=True) if a != b}
-    return folded[0] == folded[1] and flipped == {folded[0]} and _same(*ends, period)
-
-
-def _same(one: float, other: float, period: float) -> bool:
-    return bool(abs(np.mod(one - other + period / 2.0, period) - period / 2.0) < SAME_END)

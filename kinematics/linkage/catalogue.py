@@ -89,36 +89,33 @@ def inverted_slider_crank(
     """The inverted slider-crank (Norton, Sec. 4.7): pin A of the crank slides on a line fixed in the output link.
 
     The line passes through B, the end of the output link of length c from O4, at ``line_angle`` (Norton's γ, the angle
-    of link 3 minus that of link 4) from the line O4 → B. With c = 0 the line passes through O4 itself. ``open`` and
-    ``crossed`` are Norton's: B − A along the line is c sin(γ)-wise positive for open, negative for crossed.
+    of link 3 minus that of link 4) from the line O4 → B. It has a direction, from B on at that angle, and a point
+    nearest to O4: in an ``open`` mechanism A lies ahead of that point, in a ``crossed`` one behind it. With c = 0 the
+    line passes through O4 itself, and B only marks the direction of the output link.
+
+    Raises
+    ------
+    DimensionError
+        Where A lies on O4 or does not reach the line, and for an assembly other than +1 and −1.
     """
+    _require_sign("assembly", assembly)
     pin_a = o2 + crank * np.exp(1j * crank_angle)
     reach = pin_a - o4
-    if abs(reach) == 0.0:
+    if abs(reach) <= ON_PIVOT * abs(o4 - o2):
         raise DimensionError("crank_angle", "one at which the crank pin is not on O4", crank_angle)
     # The line's distance from O4 is c sin γ: the output stands where a line at that distance passes through A.
-    ratio = output * np.sin(line_angle) / abs(reach)
-    if abs(ratio) > 1.0:
+    if abs(output * np.sin(line_angle)) > abs(reach):
         raise DimensionError("crank_angle", "one at which the inverted slider-crank can be assembled", crank_angle)
     # In the output's frame A lies on the line at t along it from B: |c + t e^{iγ}| = |reach|.
     along = -output * np.cos(line_angle) + assembly * np.sqrt(abs(reach) ** 2 - (output * np.sin(line_angle)) ** 2)
     local = output + along * np.exp(1j * line_angle)
     turned = reach / local
     turned = turned / abs(turned)
-    joints = {"O2": o2, "O4": o4, "A": pin_a}
-    if output > 0.0:
-        joints["B"] = o4 + output * turned
-        second = "B"
-    else:
-        joints["B"] = o4 + np.exp(1j * line_angle) * turned * abs(reach)
-        second = "B"
-    angle = float(np.angle(turned * np.exp(1j * line_angle)))
-    point = o4 + output * turned
     return Mechanism(
-        joints,
-        {"ground": ("O2", "O4"), "input": ("O2", "A"), "output": ("O4", second)},
+        {"O2": o2, "O4": o4, "A": pin_a, "B": o4 + (output if output > 0.0 else abs(reach)) * turned},
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "output": ("O4", "B")},
         "input",
-        slides=(Slide("A", "output", np.asarray(point), np.asarray(angle)),),
+        slides=(Slide("A", "output", np.asarray(o4 + output * turned), np.angle(turned * np.exp(1j * line_angle))),),
     )
 
 

@@ -16,7 +16,7 @@ from kinematics.linkage.closures import RECENT, decompose
 from kinematics.linkage.fourbar import one_shape, require
 from kinematics.linkage.mechanism import Mechanism, Real
 from kinematics.linkage.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
-from kinematics.linkage.triads import Loops, Track, loop_equations, rates
+from kinematics.linkage.triads import STALLED, Loops, Track, loop_equations, rates
 
 Jet = NDArray[np.complex128]
 """Complex jet, shape (n, ...) with n from 1 to 4: value, velocity, acceleration and jerk, or the first few of them."""
@@ -101,8 +101,9 @@ def drive(
     TopologyError
         For a class III mechanism with slides or gears.
     DimensionError
-        For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, or a
-        link without length between the joints by which it closes.
+        For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, a
+        link without length between the joints by which it closes, or a class III mechanism whose reference is at a
+        toggle: two branches meet there, and only signs, which it has not, could say which one is meant.
     ShapeError
         For inputs that do not broadcast.
     """
@@ -184,7 +185,10 @@ def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     """The loops of one design of a class III mechanism and what is known of their solutions."""
     joints = program_of(mechanism).joints[design]
     loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
-    return loops, Track(loops)
+    track = Track(loops)
+    at = program_of(mechanism).reference_input[design : design + 1]
+    require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= STALLED))
+    return loops, track
 
 
 __all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "unit_frame"]

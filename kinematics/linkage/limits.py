@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.branches import GRID, Branch, cycle, dyadic_branches
+from kinematics.linkage.branches import Branch, cycle, dyadic_branches
 from kinematics.linkage.closures import decompose
 from kinematics.linkage.drive import assembly_signs, drive
 from kinematics.linkage.mechanism import Mechanism
@@ -15,6 +15,9 @@ from kinematics.linkage.other_driver import branches_by_other_driver
 from kinematics.linkage.roots import find_roots, sign_changes
 
 Real = NDArray[np.float64]
+
+GRID = 720
+"""Inputs along the branch at which limit positions are looked for."""
 
 SAME_TOGGLE = 1e-8
 """Toggles closer than this (radians, or task units along a slide) are listed once."""

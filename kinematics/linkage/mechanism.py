@@ -27,6 +27,10 @@ OFF_SLIDE = 1e-6
 """Distance of a joint from its slide in the reference, as a share of the mechanism's size: inputs may be rounded."""
 
 
+TOO_SHORT = 1e-13
+"""Length as a share of the mechanism's size below which two joints lie on each other: rounding is as large."""
+
+
 class TopologyError(MechanismError, ValueError):
     """Links, slides or gears that do not make one mechanism with a mobility of one."""
 
@@ -68,7 +72,9 @@ class Mechanism:
     TopologyError
         For names that do not exist, a link without joints, or a mobility other than one.
     DimensionError
-        For coordinates or gear ratios that are not finite, or a joint that is not on its slide.
+        For coordinates or gear ratios that are not finite, a joint that is not on its slide, or a link in motion whose
+        first two joints lie on each other: it has no angle, and a crank without length drives nothing. Fixed pivots may
+        lie on each other; the mechanism then turns about them as one body.
     ShapeError
         For coordinates that do not broadcast.
     """
@@ -115,6 +121,7 @@ class Mechanism:
             object.__setattr__(self, name, value)
         self._check_names()
         self._check_slides()
+        self._check_lengths()
         if self.mobility != 1:
             raise TopologyError(f"expected a mobility of 1, got {self.mobility}; look for a link or joint too many")
 
@@ -167,6 +174,16 @@ class Mechanism:
             spread = np.max([np.abs(z - self.joints[slide.joint]) for z in self.joints.values()], axis=0)
             reach = np.maximum(spread, np.abs(offset))
             require(f"distance of {slide.joint} from its slide", "zero", across, across <= OFF_SLIDE * reach)
+
+    def _check_lengths(self) -> None:
+        anywhere = next(iter(self.joints.values()))
+        size = np.max([np.abs(z - anywhere) for z in self.joints.values()], axis=0)
+        for link, listed in self.links.items():
+            if link != GROUND:
+                first, second = listed[:2]
+                length = np.abs(self.joints[second] - self.joints[first])
+                name = f"length of {link} from {first} to {second}"
+                require(name, "positive", length, length > TOO_SHORT * size)
 
     @property
     def driven_by_slide(self) -> bool:

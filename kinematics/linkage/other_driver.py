@@ -2,37 +2,41 @@
 
 Which configurations a mechanism can reach does not depend on which link is called ground or input. Where the input
 leaves a class III group, or is a slide, another pair of links is taken for ground and input such that all closures are
-dyads. Their branches are known by root finding (:mod:`kinematics.linkage.branches`); strung together at their toggles
-they are the circuits, as closed curves. Along these the true input is a smooth function; where it turns back is a
-toggle, and what lies between two such points is a branch.
+dyads. The configurations are then known as curves (:mod:`kinematics.linkage.configuration_curves`), along which the
+true input is a smooth function; where it turns back is a toggle, and what lies between two such points is a branch.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.branches import GRID, Branch, dyadic_branches, meet_at
+from kinematics.linkage.branches import Branch, reference_first
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import MechanismMotion, drive
+from kinematics.linkage.configuration_curves import (
+    CELLS,
+    Closures,
+    Curve,
+    Place,
+    circuits,
+    configuration_curves,
+    places,
+)
+from kinematics.linkage.drive import MechanismMotion, assembly_signs, drive
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
-from kinematics.linkage.roots import find_roots, sign_changes
+from kinematics.linkage.positive_arcs import HAIR, Domain, positive_arcs
 
 Real = NDArray[np.float64]
+Rows = NDArray[np.int64]
 FULL_TURN = 2.0 * np.pi
 
 DEAD = 1e-9
-"""Rate of the true input by the other one (in units of the mechanism) below which the true input stands still."""
+"""Way of the true input along a curve, in units of the mechanism, below which it stands still."""
 
-
-class Piece(NamedTuple):
-    """A part of a circuit on which the true input moves one way: from ``start`` to ``end``, unwrapped."""
-
-    start: float
-    end: float
+LEAP = 0.5
+"""Change of an angle between neighbouring samples, radians, above which they stand too far apart to be unwrapped."""
 
 
 def other_driver(mechanism: Mechanism) -> Mechanism:
@@ -59,75 +63,134 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
 
 
 def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
-    """All branches of one design, circuit by circuit, the reference's first; ``signs`` and closures are left empty."""
+    """All branches of one design, circuit by circuit, the reference's first; ``signs`` and closures are left empty.
+
+    Raises
+    ------
+    TopologyError
+        Where no pair of links closes the mechanism by dyads, or a link swings freely while the other driver stands
+        still: such a motion is on none of its curves.
+    """
     other = other_driver(mechanism)
-    parts = dyadic_branches(other)
-    pieces = _pieces(mechanism, other, parts)
-    found: list[Branch] = []
-    closing = [step.link for step in decompose(other).steps if step.has_two_solutions]
-    left = list(range(len(parts)))
-    number: dict[int, int] = {}
-    while left:
-        loop = _loop(parts, left, closing)
-        for n, _ in loop:
-            left.remove(n)
-        circuit = number.setdefault(parts[loop[0][0]].circuit, len(number))
-        found += _branches_of(loop, pieces, circuit, mechanism.driven_by_slide)
-    return sorted(found, key=lambda branch: (branch.circuit, branch.low))
+    decomposition = decompose(other)
+    closures = Closures(other, decomposition)
+    curves = configuration_curves(other, closures, FULL_TURN)
+    if any(end.point.swings for curve in curves for end in curve.ends):
+        raise TopologyError("a link swings freely while the link that stands in for the input stands still")
+    true_input = _TrueInput(mechanism, other, closures, curves)
+    numbers = circuits(curves)
+    signs = assembly_signs(other, decomposition.steps)
+    choice = np.array([int(signs[n]) for n in closures.position])
+    at = float(other.reference_input)
+    held = {n for n, curve in enumerate(curves) if _passes(curve, at, choice)}
+    found = [(branch, n in held) for n in range(len(curves)) for branch in true_input.branches(n, numbers[n])]
+    first = next((k for k, (_, holds) in enumerate(found) if holds), 0)
+    return reference_first([branch for branch, _ in found], first)
 
 
-def _pieces(mechanism: Mechanism, other: Mechanism, parts: list[Branch]) -> list[list[Piece]]:
-    """The true input along each branch of the other driver, cut at its turning points, by rising other input."""
-    base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
-    steps = decompose(other).steps
-    closing = [n for n, step in enumerate(steps) if step.has_two_solutions]
-    table = np.ones((len(parts), len(steps)), np.int64)
-    for row, branch in enumerate(parts):
-        table[row, closing] = branch.signs
+def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
+    """Whether a curve of the other driver passes an input of it on certain assemblies."""
+    cuts = [turn.at for turn in curve.turns]
+    cuts = [*cuts, cuts[0] + curve.high - curve.low] if curve.closed and cuts else [curve.low, *cuts, curve.high]
+    for low, high in pairwise(cuts):
+        ends = sorted((curve.input_at(low), curve.input_at(high)))
+        middle = curve.place(np.array([0.5 * (low + high)])).signs[:, 0]
+        hair = 1e-7
+        if np.mod(theta - ends[0] + hair, FULL_TURN) <= ends[1] - ends[0] + 2.0 * hair and np.all(middle == choice):
+            return True
+    return False
 
-    def true_input(at: Real, row: NDArray[np.int64], order: int) -> Real:
-        """Jet of the true input where the other input is ``at``, on the branches ``row``; shape (n, len(at))."""
-        motion = drive(other, at[:, None], signs=tuple(table[row].T), order=order)
-        if mechanism.driven_by_slide:
-            return np.asarray(motion.slides[mechanism.input][..., 0])
-        name = {GROUND: base, base: GROUND}.get(mechanism.input, mechanism.input)
-        turned = _rotation(other, motion, name) - _rotation(other, motion, base)
-        turned[0] += mechanism.reference_input
+
+class _TrueInput:
+    """The true input along the curves of the other driver."""
+
+    def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
+        self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
+        self.slide = mechanism.driven_by_slide
+        self.base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
+        self.link = {GROUND: self.base, self.base: GROUND}.get(mechanism.input, mechanism.input)
+        arcs = positive_arcs(self._rates, [Domain(c.low, c.high, c.closed, 2 * CELLS) for c in curves])
+        self.turns = [
+            sorted(
+                {at for arc in own for at, kind in ((arc.low, arc.at_low), (arc.high, arc.at_high)) if kind == "zero"}
+            )
+            for own in arcs
+        ]
+
+    def _jet(self, place: Place, order: int) -> Real:
+        """Jet of the true input by the other one; shape (order + 1, n)."""
+        signs = self.closures.signs(place.signs)
+        motion = drive(self.other, place.theta[:, None], signs=signs, order=order)
+        if self.slide:
+            return np.asarray(motion.slides[self.mechanism.input][..., 0])
+        turned = _rotation(self.other, motion, self.link) - _rotation(self.other, motion, self.base)
+        turned[0] += self.mechanism.reference_input
         return turned
 
-    # The ends are folded positions, where the rates are infinite; a hair inside they are only large.
-    grids = []
-    for branch in parts:
-        hair = 0.0 if branch.full else 1e-9 * (branch.high - branch.low)
-        grids.append(np.linspace(branch.low + hair, branch.high - hair, GRID))
-    rows = np.repeat(np.arange(len(parts)), GRID)
-    known, rate = (row.reshape(len(parts), GRID) for row in true_input(np.concatenate(grids), rows, 1))
-    # A true input that stands still on a branch of the other driver (a dead branch) has no turning points.
-    rate[np.abs(rate).max(axis=1, initial=0.0, where=np.isfinite(rate)) <= DEAD] = 0.0
-    changes = [(row, n) for row in range(len(parts)) for n in sign_changes(rate[row])]
-    turns = np.empty(0)
-    of = np.array([row for row, _ in changes], np.int64)
-    if changes:
-        low, high = (np.array([grids[row][n + k] for row, n in changes]) for k in (0, 1))
-        at_low, at_high = (np.array([rate[row][n + k] for row, n in changes]) for k in (0, 1))
-        turns = find_roots(lambda at: true_input(at, of, 1)[1], low, high, at_low, at_high)[0]
-    ends = np.array([end for branch in parts for end in (branch.low, branch.high)])
-    extra_of = np.concatenate([np.repeat(np.arange(len(parts)), 2), of])
-    extra = np.concatenate([ends, turns])
-    extra_known = true_input(extra, extra_of, 0)[0]
-    points, cut = [], []
-    for row, grid in enumerate(grids):
-        at, first = np.unique(np.concatenate([grid, extra[extra_of == row]]), return_index=True)
-        points.append(at)
-        value = np.concatenate([known[row], extra_known[extra_of == row]])[first]
-        # A folded end may miss its assembly by rounding; the point next to it is a hair away.
-        for end, inner_end in ((0, 1), (-1, -2)):
-            if np.isnan(value[end]):
-                value[end] = value[inner_end]
-        smooth = value if mechanism.driven_by_slide else np.unwrap(value)
-        inner = [float(smooth[np.searchsorted(points[row], t)]) for t in np.sort(turns[of == row])]
-        cut.append([Piece(float(a), float(b)) for a, b in pairwise([smooth[0], *inner, smooth[-1]])])
-    return cut
+    def _rates(self, row: Rows, at: Real) -> tuple[Real, Real]:
+        """First two derivatives of the true input by the parameters of curves."""
+        place = places(self.curves, row, at)
+        jet = self._jet(place, 2)
+        return jet[1] * place.rate, jet[2] * place.rate**2 + jet[1] * place.second
+
+    def branches(self, n: int, circuit: int) -> list[Branch]:
+        """The branches along one curve."""
+        curve, turns = self.curves[n], self.turns[n]
+        length = curve.high - curve.low
+        if curve.closed:
+            start = turns[0] if turns else curve.low + 0.1 * length
+            cuts = [t for t in turns if t - start < length * (1.0 - 1e-12)] if turns else [start]
+            if turns and len(cuts) % 2:
+                raise TopologyError(
+                    "two limits lie closer together than they can be told apart; circuits are not known"
+                )
+            cuts.append(cuts[0] + length)
+        else:
+            cuts = [curve.low, *turns, curve.high]
+        values = self._along(curve, cuts)
+        found = []
+        for one, another in pairwise(values):
+            low, high = min(one, another), max(one, another)
+            if high - low <= DEAD:
+                continue
+            start = low if self.slide else float(np.mod(low, FULL_TURN))
+            found.append(Branch(circuit, start, start + high - low, curve.closed and not turns, (), "", ""))
+        return found
+
+    def _along(self, curve: Curve, cuts: list[float]) -> list[float]:
+        """The true input at places on a curve, unwrapped."""
+        length = curve.high - curve.low
+        inner = np.linspace(cuts[0], cuts[-1], CELLS + 1)[1:-1] + 0.003 / CELLS * length
+        known = np.unique(np.concatenate([cuts, inner]))
+        if not curve.closed:
+            known = np.clip(known, curve.low + HAIR * length, curve.high - HAIR * length)
+        value = self._value(curve, known)
+        while not self.slide:
+            leap = np.abs(np.mod(np.diff(value) + np.pi, FULL_TURN) - np.pi) > LEAP
+            leap &= np.diff(known) > 1e-12 * length
+            if not leap.any():
+                break
+            between = 0.5 * (known[:-1] + known[1:])[leap]
+            place = np.flatnonzero(leap) + 1
+            known, value = np.insert(known, place, between), np.insert(value, place, self._value(curve, between))
+        smooth = value if self.slide else np.unwrap(value)
+        ends = np.clip(cuts, known[0], known[-1])
+        found = smooth[np.searchsorted(known, ends)]
+        if not curve.closed:
+            # Where curves cross the assembly may be lost to rounding; from a hair beside it the series leads there.
+            at = np.array([known[0], known[-1]])
+            hair = np.array([cuts[0], cuts[-1]]) - at
+            rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
+            found[[0, -1]] += hair * rate + 0.5 * hair**2 * second
+        return [float(x) for x in found]
+
+    def _value(self, curve: Curve, at: Real) -> Real:
+        """The true input, at folded places where rounding takes the assembly away from a hair beside them."""
+        value: Real = self._jet(curve.place(at), 0)[0]
+        lost = np.isnan(value)
+        if lost.any():
+            value[lost] = self._jet(curve.place(at[lost] + HAIR), 0)[0]
+        return value
 
 
 def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
@@ -137,51 +200,3 @@ def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
     rotation: Real = motion.angles[link][..., 0].copy()
     rotation[0] -= mechanism.link_angle(link)
     return rotation
-
-
-def _loop(parts: list[Branch], left: list[int], closing: list[str]) -> list[tuple[int, bool]]:
-    """Branches of one circuit strung together: (index, upwards), starting with the first one left."""
-    here, upwards = left[0], True
-    loop = [(here, upwards)]
-    if parts[here].full:
-        return loop
-    while True:
-        after = next(
-            (m for m in left if m != here and meet_at(parts[here], parts[m], closing, high=upwards, period=FULL_TURN)),
-            None,
-        )
-        if after is not None and after == loop[0][0]:
-            return loop
-        if after is None or after in [n for n, _ in loop]:
-            raise TopologyError("a circuit does not close; two of its limits lie closer than the search resolves")
-        here, upwards = after, not upwards
-        loop.append((here, upwards))
-
-
-def _branches_of(loop: list[tuple[int, bool]], cut: list[list[Piece]], circuit: int, slide: bool) -> list[Branch]:
-    """Join the pieces along a closed loop where the input goes on the same way."""
-    pieces: list[Piece] = []
-    for n, upwards in loop:
-        own = cut[n] if upwards else [Piece(p.end, p.start) for p in reversed(cut[n])]
-        for piece in own:
-            shift = 0.0 if slide or not pieces else FULL_TURN * round((pieces[-1].end - piece.start) / FULL_TURN)
-            pieces.append(Piece(piece.start + shift, piece.end + shift))
-    joined = [pieces[0]]
-    for piece in pieces[1:]:
-        if (piece.end > piece.start) == (joined[-1].end > joined[-1].start):
-            joined[-1] = Piece(joined[-1].start, piece.end)
-        else:
-            joined.append(piece)
-    first, last = joined[0], joined[-1]
-    if len(joined) > 1 and (first.end > first.start) == (last.end > last.start):
-        shift = 0.0 if slide else FULL_TURN * round((first.start - last.end) / FULL_TURN)
-        joined = [Piece(last.start + shift, first.end), *joined[1:-1]]
-    full = len(joined) == 1
-    listed = []
-    for piece in joined:
-        if abs(piece.end - piece.start) <= DEAD:
-            continue
-        low, high = min(piece), max(piece)
-        start = low if slide else float(np.mod(low, FULL_TURN))
-        listed.append(Branch(circuit, start, start + high - low, full, (), "", ""))
-    return listed

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from kinematics.linkage import drive_kernels as kernels
 from kinematics.linkage.closures import RECENT, Step, decompose
 from kinematics.linkage.fourbar import require
-from kinematics.linkage.mechanism import GROUND, Complex, Mechanism, Real
+from kinematics.linkage.mechanism import GROUND, TOO_SHORT, Complex, Mechanism, Real
 
 Signs = NDArray[np.int64]
 
@@ -208,4 +208,4 @@ def _check_arms(frame: Frame, step: Step) -> None:
     arms["carried"] = arms["RRP"]
     for link, pin in arms.get(step.kind, []):
         length = np.abs(frame.joints[step.joint] - frame.joints[pin])
-        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > 0.0)
+        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > TOO_SHORT)

@@ -127,6 +127,11 @@ class Track:
         self._loops = loops
         self._sides = {side: _Side(loops, side) for side in (1.0, -1.0)}
 
+    @property
+    def first_step(self) -> float:
+        """The step that is certified at the reference, radians; below ``STALLED`` that is a toggle."""
+        return self._sides[1.0].first_step
+
     def at(self, rotation: Real) -> Real:
         """Rotations of the unknown links for input rotations from the reference; NaN beyond a toggle.
 
@@ -157,6 +162,10 @@ class _Side:
         self._angles = np.zeros((1, len(loops.links)))
         self._ended = False
         self._reach[0] = _reach(*self._equations, 0.0, self._angles[0])
+
+    @property
+    def first_step(self) -> float:
+        return float(self._reach[0])
 
     def at(self, rotation: Real) -> Real:
         ahead = self._sign * rotation

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.analyses import linkage
+from synthesis.analyses import gear_train, linkage
 from synthesis.analyses.base import AnalysisRequest, Family
 
-FAMILIES: dict[str, Family] = {}
+FAMILIES: dict[str, Family] = {"gear_train": gear_train.FAMILY}
 """By the mechanism types that are no linkages; every other mechanism is one."""
 
 

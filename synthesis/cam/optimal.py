@@ -196,7 +196,7 @@ def best_roller_size(
     runs: Sequence[Run],
     tangents: Sequence[tuple[float, float]],
     offset: float | None,
-    rest: Sequence[tuple[float, float, float]],
+    rest: Sequence[tuple[float, int, float]],
 ) -> Best | NoMotion:
     """The motions of least prime radius of a translating roller follower under a pressure angle.
 
@@ -204,12 +204,14 @@ def best_roller_size(
     ----------
     runs : sequence of Run
         All open parts of the motion program.
-    tangents : sequence of (start, end, tan φ) by run
-        Tangent of the pressure angle allowed while rising and while falling, for each run.
+    tangents : sequence of two floats
+        For each run tan φ that is allowed while rising and while falling. Where the follower rests at its lowest,
+        |e| ≤ tan φ d for both, so that v − e ≤ tan φ (s + d) needs to be asked with the rise's limit only, and
+        e − v with the fall's.
     offset : float or None
         The follower's offset e; None leaves it free. ``scalars`` holds d, and e where it is free.
-    rest : sequence of (tan φ, least of s tan φ − v, least of s tan φ + v)
-        Of the given parts of the program.
+    rest : sequence of (tan φ, sign, least of s tan φ − sign v)
+        Of the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
     """
     unit = max(run.lift for run in runs)
     known = 0.0 if offset is None else offset / unit
@@ -226,9 +228,9 @@ def best_roller_size(
             blocks.append(replace(block, demands=(*block.demands, up, down)))
         rows = [[-1.0, *(0.0 for _ in free)]]
         right = [0.0]
-        for tangent, up_room, down_room in rest:
-            rows += [[-tangent, *(-f for f in free)], [-tangent, *free]]
-            right += [up_room / unit + known, down_room / unit - known]
+        for tangent, sign, room in rest:
+            rows.append([-tangent, *(-sign * f for f in free)])
+            right.append(room / unit + sign * known)
         objective: Literal["scalar", "norm"] = "scalar" if offset is not None else "norm"
         return ConvexProgram(
             tuple(blocks), objective, rows=np.array(rows), right=np.array(right), box=np.full(1 + len(free), 1e4)

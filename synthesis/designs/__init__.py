@@ -5,6 +5,7 @@ is the designs and how they were found. One module a kind of problem, and one fo
 """
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
+from synthesis.designs.cam import CamDesign, CamResult
 from synthesis.designs.gear_train import (
     GearTrainDesign,
     GearTrainMechanism,
@@ -53,6 +54,8 @@ __all__ = [
     "Answer",
     "BlockSlide",
     "BurmesterBranch",
+    "CamDesign",
+    "CamResult",
     "Check",
     "CouplerPoint",
     "FixedPivots",

@@ -133,8 +133,10 @@ def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
     """
     if not rule.by_mesh:
         return True
-    b = teeth[MOST_STAGES : MOST_STAGES + k].copy()
-    chosen = np.full(MOST_STAGES, -1, np.int64)
+    b, chosen = np.zeros(MOST_STAGES, np.int64), np.zeros(MOST_STAGES, np.int64)
+    for i in range(k):
+        b[i] = teeth[MOST_STAGES + i]
+    chosen[0] = -1
     stage = 0
     while stage >= 0:
         used = -1
@@ -183,7 +185,8 @@ def enter(e: float, s: int, teeth: Integers, found: Found, by_size: bool) -> Non
     """Take a train in."""
     if e < found.least_error[s]:
         found.least_error[s] = e
-        found.least_teeth[s] = teeth
+        for i in range(len(teeth)):
+            found.least_teeth[s, i] = teeth[i]
     capacity, count = len(found.error), found.kept[0]
     if count == capacity and not before(e, s, found.error[capacity - 1], found.size[capacity - 1], by_size):
         return
@@ -191,10 +194,12 @@ def enter(e: float, s: int, teeth: Integers, found: Found, by_size: bool) -> Non
     while place > 0 and before(e, s, found.error[place - 1], found.size[place - 1], by_size):
         found.error[place] = found.error[place - 1]
         found.size[place] = found.size[place - 1]
-        found.teeth[place] = found.teeth[place - 1]
+        for i in range(len(teeth)):
+            found.teeth[place, i] = found.teeth[place - 1, i]
         place -= 1
     found.error[place], found.size[place] = e, s
-    found.teeth[place] = teeth
+    for i in range(len(teeth)):
+        found.teeth[place, i] = teeth[i]
     found.kept[0] = min(count + 1, capacity)
 
 
@@ -390,7 +395,13 @@ def combine(
                 widest = max(widest, a[place[i]], b[place[i]])
             wanted = rule.target / so_far
             low = begin if rule.ordered or k == 1 else place[k - 2]
-            middle = low + np.searchsorted(ratio[low:end], wanted)
+            middle, top = low, end
+            while middle < top:
+                half = (middle + top) // 2
+                if ratio[half] < wanted:
+                    middle = half + 1
+                else:
+                    top = half
             for upward in range(2):
                 j = middle if upward else middle - 1
                 while low <= j < end:
@@ -420,9 +431,10 @@ def combine(
                             teeth[2 * MOST_STAGES + i] = mark[place[i]]
                         sound = within_limits(teeth, k, rule)
                         if sound and not coaxial and not rule.ordered:
-                            canonical[:] = teeth
-                            canonical[:k] = np.sort(teeth[:k])
-                            canonical[MOST_STAGES : MOST_STAGES + k] = np.sort(teeth[MOST_STAGES : MOST_STAGES + k])
+                            for i in range(2 * MOST_STAGES):
+                                canonical[i] = teeth[i]
+                            sort(canonical, 0, k)
+                            sort(canonical, MOST_STAGES, k)
                             sound = pair_up(canonical, k, rule) and same_meshes(teeth, canonical, k)
                         if sound and wanted_tie:
                             found.ties[0] += 1
@@ -434,6 +446,17 @@ def combine(
             stage -= 1
             if stage >= 0:
                 place[stage] += 1
+
+
+@njit(cache=True, nogil=True)
+def sort(teeth: Integers, start: int, count: int) -> None:
+    """Put some of the numbers into rising order, in place."""
+    for i in range(start + 1, start + count):
+        value, j = teeth[i], i
+        while j > start and teeth[j - 1] > value:
+            teeth[j] = teeth[j - 1]
+            j -= 1
+        teeth[j] = value
 
 
 @njit(cache=True, nogil=True)

@@ -20,6 +20,7 @@ from synthesis.problems.base import (
     StatedProblem,
     Statement,
 )
+from synthesis.problems.cam import CamProblem
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
 from synthesis.problems.motion import (
@@ -39,6 +40,7 @@ from synthesis.problems.planetary_train import (
 )
 
 __all__ = [
+    "CamProblem",
     "Constraints",
     "Contradiction",
     "ContradictionError",

@@ -82,7 +82,15 @@ class GearTrainProblem(StatedProblem):
                     "max_stages": 2,
                     "teeth": {"min": 15, "max": 100},
                     "max_designs": 5,
-                }
+                },
+                {
+                    "kind": "gear_train",
+                    "ratio": "12",
+                    "max_stages": 2,
+                    "teeth": {"min": 12, "max": 60},
+                    "reverted": True,
+                    "tolerance": 0.0,
+                },
             ]
         },
     )

@@ -1,7 +1,8 @@
-"""Circuits, branches and toggles of any mechanism against arc-length continuation of its constraints.
+"""Circuits, branches and toggles of any mechanism against two routes of their own.
 
-All configurations at some inputs are found from random starts; each is followed along its circuit, which needs no
-closure, no assembly sign and no margin. What they have in common must be what the branches say.
+Arc-length continuation of the constraints: all configurations at some inputs are found from random starts; each is
+followed along its circuit, which needs no closure, no assembly sign and no margin. Elimination: for mechanisms that
+close by dyads all toggles are roots of polynomials.
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from kinematics.linkage.branches import Branch, cycle
 from kinematics.linkage.closures import decompose
 from kinematics.linkage.drive import drive
 from kinematics.linkage.limits import branches, holding_reference, toggles
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics import mechanism_sampling as sampling
-from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
+from tests.kinematics.mechanism_sampling import DYADIC, EVERY, RATIOS, take
 from tests.kinematics.sampling import random_fourbars
 from tests.kinematics.sampling import take as take_fourbar
 from tests.oracles.constraints import SAME, Constraints, Trace
+from tests.oracles.elimination import Elimination
 
 TURN = 2.0 * np.pi
 
@@ -151,6 +153,77 @@ def test_circuits_branches_and_toggles(name: str) -> None:
     check(take(EVERY[name](rng, 2), 0), rng, 1)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["stephenson_3 driven by its output", "stephenson_2 driven by its output"])
+def test_closures_that_fold_close_together(name: str) -> None:
+    """Two closures bound a branch within half a degree: the least of their margins has a corner there."""
+    design = 4 if "3" in name else 0
+    mechanism = take(EVERY[name](np.random.default_rng([42, TYPES.index(name)]), 5), design)
+    check(mechanism, np.random.default_rng(47), 0)
+
+
+# -- elimination -------------------------------------------------------------------------------------------------------
+
+
+ELIMINATED = [name for name in DYADIC if name not in ("Peaucellier", "geared fivebar") and "slider-crank d" not in name]
+
+
+def same_branches(mechanism: Mechanism, turns: int = 1) -> int:
+    """Branches, whose ends and number must be those by elimination; how many there are."""
+    found = branches(mechanism)
+    mine = sorted((b.low, b.high, b.full) for b in found)
+    theirs = Elimination.of(mechanism, turns).branches()
+    assert [b[2] for b in mine] == [b[2] for b in theirs]
+    ends, others = (np.array([b[:2] for b in listed]).reshape(-1, 2) for listed in (mine, theirs))
+    assert np.abs(np.exp(1j * ends / turns) - np.exp(1j * others / turns)).max(initial=0.0) < 1e-9
+    shared(found, [step.link for step in decompose(mechanism).steps if step.has_two_solutions], turns * TURN)
+    return len(found)
+
+
+def shared(found: list[Branch], closing: list[str], period: float) -> None:
+    """Each toggle of a mechanism without change points is the end of two branches: only the folded assembly differs."""
+    for high in (False, True):
+        for branch in found:
+            if branch.full:
+                continue
+            at, link = (branch.high, branch.high_closure) if high else (branch.low, branch.low_closure)
+            partners = 0
+            for other in found:
+                if other.full:
+                    continue
+                there, folded = (other.high, other.high_closure) if high else (other.low, other.low_closure)
+                apart = abs(np.mod(there - at + period / 2.0, period) - period / 2.0)
+                differ = [k for k, a, b in zip(closing, branch.signs, other.signs, strict=True) if a != b]
+                partners += folded == link and differ == [link] and apart < 1e-9 and other.circuit == branch.circuit
+            assert partners == 1
+
+
+@pytest.mark.parametrize("name", ELIMINATED)
+def test_branches_are_those_by_elimination(name: str) -> None:
+    mechanism = EVERY[name](np.random.default_rng([48, list(EVERY).index(name)]), 3)
+    for k in range(3):
+        same_branches(take(mechanism, k))
+
+
+def test_branches_of_geared_fivebars_are_those_by_elimination() -> None:
+    for n, ratio in enumerate((*RATIOS, -0.75)):
+        mechanism = take(sampling.geared_fivebar(np.random.default_rng([49, n]), 1, ratio), 0)
+        same_branches(mechanism, round(period_of(mechanism) / TURN))
+
+
+def test_short_branch_between_two_closures() -> None:
+    """This one has a branch of 0.6° that the least of its margins does not show at 720 places a turn."""
+    name = "stephenson_3 driven by its rocker"
+    mechanism = take(EVERY[name](np.random.default_rng([42, list(EVERY).index(name)]), 5), 4)
+    assert same_branches(mechanism) == 12
+
+
+def test_gears_that_do_not_repeat_are_refused() -> None:
+    mechanism = take(sampling.geared_fivebar(np.random.default_rng(50), 1, float(np.sqrt(2.0))), 0)
+    with pytest.raises(TopologyError, match="repeat"):
+        branches(mechanism)
+
+
 def test_cycle_is_as_many_turns_as_the_gears_need() -> None:
     for ratio in (*RATIOS, 0.0, 1.2, -0.75):
         mechanism = take(sampling.geared_fivebar(np.random.default_rng(46), 1, ratio), 0)
@@ -215,3 +288,84 @@ def test_change_points_join_all_into_one_circuit(name: str) -> None:
         if points is not None:
             ends = np.mod([x for b in found for x in (b.low, b.high)], TURN)
             assert all(np.abs(np.exp(1j * ends) - np.exp(1j * point)).min() < 1e-7 for point in points)
+
+
+# -- other change points -----------------------------------------------------------------------------------------------
+
+
+def crossing(found: list[Branch], at: float) -> list[Branch]:
+    """Branches that hold an input in their inside."""
+    return [b for b in found if 1e-6 < np.mod(at - b.low, TURN) < b.high - b.low - 1e-6]
+
+
+def test_flat_rhombus_of_peaucelliers_cell_is_a_change_point() -> None:
+    """Where A and P meet, |O4 A|² = arm² − side², the motion on the line and the one with P on A cross."""
+    crank, arm, side = 1.3, 2.5, 1.1
+    mechanism = catalogue.peaucellier(0j, -crank + 0j, crank, arm, side, 0.6)
+    found = branches(mechanism)
+    flat = np.arccos((arm**2 - side**2) / (2.0 * crank**2) - 1.0)
+    assert {b.circuit for b in found} == {0}
+    assert len(found) == 12
+    for at in (flat, -flat):
+        assert not crossing(found, at)
+        ends = np.array([end for b in found for end in (b.low, b.high)])
+        assert (np.abs(np.exp(1j * ends) - np.exp(1j * at)) < 1e-12).sum() == 8
+    held = holding_reference(mechanism, found)
+    assert held is not None
+    assert held.high_closure == "side_3"
+    motion = drive(mechanism, np.linspace(-flat, flat, 9)[1:-1])
+    assert motion.valid.all()
+    assert np.ptp(motion.joints["P"][0].real) < 1e-12
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.4])
+def test_pin_that_passes_the_pivot_of_its_slide(offset: float) -> None:
+    """A sliding line through the pivot, and a crank as long as the ground: there the output swings freely.
+
+    Beside it the motion goes on with the other assembly, which turns the output on smoothly. With the line beside the
+    pivot the mechanism ends before.
+    """
+    crank = catalogue.inverted_slider_crank(0j, 1.0, 1.0, offset, np.pi / 2.0, 2.0)
+    found = branches(crank)
+    assert not crossing(found, 0.0)
+    if offset:
+        ends = sorted((b.low, b.high) for b in found)
+        folded = 2.0 * np.arcsin(offset / 2.0)
+        np.testing.assert_allclose(ends, [(folded, TURN - folded)] * 2, atol=1e-12)
+        return
+    assert sorted(np.round((b.high - b.low) / TURN, 12) for b in found) == [1.0, 1.0]
+    assert {b.circuit for b in found} == {0}
+    assert not any(b.full for b in found)
+    near = np.array([-1e-4, 1e-4])
+    before, after = (drive(crank, near, signs=(np.array(sign),)).angles["output"][0] for sign in (1, -1))
+    assert abs(np.exp(1j * before[0]) - np.exp(1j * after[1])) < 1e-3
+    assert abs(np.exp(1j * before[0]) - np.exp(1j * before[1])) > 1.9
+    assert not drive(crank, [0.0]).valid[0]
+
+
+def test_ram_on_a_rocker_that_swings_freely_is_refused() -> None:
+    """There the ram may go with the rocker or stop it: the circuits are not listed, and it is said why."""
+    with pytest.raises(TopologyError, match="'rocker' swings freely"):
+        branches(catalogue.quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5))
+
+
+def test_slider_that_drives_a_crank_as_long_as_its_coupler() -> None:
+    """With the slider on the pivot the crank turns freely: a branch for it, and a change point for the slider."""
+    by_slider = catalogue.slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3, driven_by="slider")
+    found = branches(catalogue.slider_crank(0j, 0j, 0.0, 1.0, 1.0, 0.3))
+    assert {b.circuit for b in found} == {0}
+    spans = branches(by_slider)
+    assert sorted((round(b.low, 9), round(b.high, 9)) for b in spans) == [(-2.0, 0.0)] * 2 + [(0.0, 2.0)] * 2
+
+
+def test_slide_of_a_link_without_a_way() -> None:
+    """Where no assembly exists but the reference, at which all links are in line, there is no branch."""
+    line = Slide("B", "ground", np.asarray(3.0 + 0j), np.asarray(np.pi / 2.0))
+    mechanism = Mechanism(
+        {"O2": 0.0, "A": 1.0, "B": 3.0},
+        {"ground": ("O2",), "crank": ("O2", "A"), "coupler": ("A", "B")},
+        "crank",
+        (line,),
+    )
+    assert branches(mechanism) == []
+    assert holding_reference(mechanism, []) is None

@@ -377,6 +377,18 @@ def slider(point: complex, angle: float) -> Mechanism:
 WRONG: dict[str, tuple[type[Exception], str, Callable]] = {
     "no coupler": (DimensionError, "coupler", lambda: drive(Mechanism({**JOINTS, "B": 1j}, LINKS, "input"), [0.0])),
     "no output": (DimensionError, "output", lambda: drive(Mechanism({**JOINTS, "B": 3.0}, LINKS, "input"), [0.0])),
+    "no crank": (DimensionError, "input from O2 to A", lambda: Mechanism({**JOINTS, "A": 0.0}, LINKS, "input")),
+    "crank of rounding": (DimensionError, "input", lambda: Mechanism({**JOINTS, "A": 1e-16}, LINKS, "input")),
+    "inversion's assembly": (
+        DimensionError,
+        "assembly",
+        lambda: catalogue.inverted_slider_crank(0j, 2.0, 1.0, 0.5, 1.0, 0.4, 0),
+    ),
+    "inversion's pin on O4": (
+        DimensionError,
+        "O4",
+        lambda: catalogue.inverted_slider_crank(0j, 1.0, 1.0, 0.0, 1.0, 0.0),
+    ),
     "not a number": (DimensionError, "B", lambda: Mechanism({**JOINTS, "B": np.nan}, LINKS, "input")),
     "off its slide": (DimensionError, "slide", lambda: slider(2.0 + 0.1j, 0.0)),
     "slide without a place": (DimensionError, "slide", lambda: slider(np.nan, 0.0)),
@@ -456,7 +468,6 @@ ODD: dict[str, Callable[[], Mechanism]] = {
     "crank pin that passes O4": lambda: catalogue.quick_return(0j, -1.0, 1.0, 1.0, 3.0, 1j, 0.0, 0.5),
     "gear that stands still": lambda: catalogue.geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, 0.0, 0.5, 0.3),
     "irrational ratio": lambda: catalogue.geared_fivebar(0j, 3.0, 1.0, 3.0, 3.0, 1.0, np.sqrt(2.0), 0.5, 0.3),
-    "crank without length": lambda: Mechanism({**JOINTS, "A": 0.0}, LINKS, "input"),
     "pivots on each other": lambda: Mechanism({**JOINTS, "O4": 0.0}, LINKS, "input"),
     "three links at one joint": lambda: Mechanism(
         {**JOINTS, "O6": 6.0, "C": 5.0 + 2j},
@@ -500,3 +511,43 @@ def test_parallelogram_at_its_change_points() -> None:
     np.testing.assert_allclose(one.joints["B"][0], other.joints["B"][0], atol=1e-7)
     moved = drive(mechanism, np.array([0.5, 2.5]), signs=(np.array(-1),))
     np.testing.assert_allclose(moved.angles["output"][1], 1.0, rtol=1e-12)
+
+
+def test_pivots_on_each_other_turn_as_one_body() -> None:
+    found = drive(ODD["pivots on each other"](), TURN)
+    for link in ("input", "coupler", "output"):
+        np.testing.assert_allclose(found.angles[link][1:, :, ...].reshape(3, -1)[0], 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("output", [0.7, 0.0])
+def test_open_inversions_have_the_pin_ahead_on_the_line(output: float) -> None:
+    """Ahead of the point of the line that is nearest to O4, by the line's own direction, γ from O4 → B."""
+    gamma = 0.8
+    for assembly in (1, -1):
+        made = catalogue.inverted_slider_crank(0j, 2.0, 1.0, output, gamma, 0.4, assembly)
+        along = np.exp(1j * gamma) * (made.joints["B"] - 2.0) / np.abs(made.joints["B"] - 2.0)
+        point = made.slides[0].point
+        nearest = point + along * ((2.0 - point) * np.conj(along)).real
+        assert ((made.joints["A"] - point) * np.conj(along)).imag == pytest.approx(0.0, abs=1e-14)
+        assert assembly * ((made.joints["A"] - nearest) * np.conj(along)).real > 0.0
+
+
+def test_links_on_each_other_have_no_rotation() -> None:
+    """A rhombus folded with B on C leaves P free on a circle: no position is given, on whichever assembly."""
+    cell = catalogue.peaucellier(0j, -1.3 + 0j, 1.3, 2.5, 1.1, 0.6)
+    signs = tuple(np.array(s) for s in (1, 1, 1))
+    assert not drive(cell, np.linspace(-0.5, 0.5, 50), signs=signs).valid.any()
+
+
+def test_class_three_reference_at_a_toggle_is_refused() -> None:
+    """A link on three legs, A B, C D and O4 E, is at a toggle where the three lines meet in one point."""
+    joints = {"O2": 0j, "O4": 3.0 + 0j, "A": 0.2 + 1j, "C": 1.0 + 0.7j, "P": 2.0 + 3j}
+    meet = 1.7 + 2.1j
+    for leg, foot, part in (("B", "A", 0.6), ("D", "C", 1.4), ("E", "O4", 0.5)):
+        joints[leg] = joints[foot] + part * (meet - joints[foot])
+    folded = catalogue.sixbar("stephenson_2", joints)
+    with pytest.raises(DimensionError, match="toggle"):
+        drive(folded, [folded.reference_input + 0.01])
+    beside = catalogue.sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-3})
+    way = np.array([-1e-3, 0.0, 1e-3])
+    assert drive(beside, beside.reference_input + way).valid.sum() == 2

@@ -1,0 +1,303 @@
+"""All configurations of a mechanism that closes by dyads, as curves on which everything is smooth.
+
+Take the closures in their order. Before the first one, configurations are the input's circle. Each closure has a margin
+m on the curves found so far: a smooth function that is positive where the closure exists. Where m is positive all along
+a closed curve there are two closed curves of configurations, one for each assembly. An arc a < u < b at whose ends m
+vanishes gives one closed curve: there the two assemblies meet, and with
+
+    u = (a + b)/2 − (b − a)/2 · cos v,    assembly + for 0 < v < π, − for π < v < 2π
+
+everything is smooth in v, the square root of the margin too. So curve comes from curve, closure by closure; a fold can
+neither be met by one assembly only nor lost between two closures, because each margin is searched alone, on a curve
+where it has no corner.
+
+Where m only touches zero two motions cross, a *change point*. Arcs end there openly: a curve between two of them has
+two ends, and one between a change point and a fold, with u = a + (b − a) v² for −1 < v < 1, has two as well.
+
+The *turns* of a curve are the places where the input turns back: where its own closure is folded flat, and the turns of
+the curves that it comes from.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.closures import Decomposition
+from kinematics.linkage.drive import drive
+from kinematics.linkage.mechanism import Mechanism, TopologyError
+from kinematics.linkage.positive_arcs import Arc, Domain, positive_arcs
+
+Real = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+CELLS = 64
+"""Cells that a curve is divided into at first, and for each turn that a link makes along it."""
+
+INSIDE = 1e-7
+"""A turn nearer than this (as part of an arc) to the arc's folded end is that end: the input differs by rounding."""
+
+SWING = 0.1
+"""Directions of a link on the two assemblies at a change point that differ by this, radians, are not one."""
+
+
+class Turn(NamedTuple):
+    """Where the input turns back on a curve: parameter, input, and number of the closure that folds flat."""
+
+    at: float
+    theta: float
+    level: int
+
+
+@dataclass(frozen=True, eq=False)
+class ChangePoint:
+    """Where curves of one closure cross: the closure's number. ``swings``: a link is free there, its pins coincide."""
+
+    level: int
+    swings: bool
+
+
+class End(NamedTuple):
+    """Open end of a curve: input, the change point, and the closures whose assemblies meet there."""
+
+    theta: float
+    point: ChangePoint
+    folded: frozenset[int]
+
+
+class Place(NamedTuple):
+    """Places on a curve: the input, its first two derivatives by the parameter, and signs (closures so far, n)."""
+
+    theta: Real
+    rate: Real
+    second: Real
+    signs: Rows
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Configurations by a parameter from ``low`` to ``high``, round a circle where ``closed``.
+
+    ``shape`` says how the parameter v gives that of the curve ``below``, u: both alike (``straight``), by a cosine
+    between two folds (``round``), or as v² from the fold ``a`` to the open end ``b`` (``bend``).
+    """
+
+    below: Curve | None
+    shape: Literal["straight", "round", "bend"]
+    a: float
+    b: float
+    sign: int
+    low: float
+    high: float
+    closed: bool
+    turns: tuple[Turn, ...]
+    ends: tuple[End, ...]
+
+    def place(self, v: Real) -> Place:
+        """Input and signs along the curve."""
+        if self.below is None:
+            return Place(v, np.ones(len(v)), np.zeros(len(v)), np.empty((0, len(v)), np.int64))
+        if self.shape == "straight":
+            below, sign = self.below.place(v), np.full(len(v), self.sign)
+            return below._replace(signs=np.vstack([below.signs, sign]))
+        half = self.b - self.a
+        if self.shape == "round":
+            half *= 0.5
+            sine, cosine = np.sin(v), np.cos(v)
+            u, rate, second, sign = self.a + half * (1.0 - cosine), half * sine, half * cosine, sine
+        else:
+            u, rate, second, sign = self.a + half * v * v, 2.0 * half * v, np.full(len(v), 2.0 * half), v
+        below = self.below.place(u)
+        return Place(
+            below.theta,
+            below.rate * rate,
+            below.second * rate * rate + below.rate * second,
+            np.vstack([below.signs, np.where(sign >= 0.0, 1, -1)]),
+        )
+
+    def input_at(self, v: float) -> float:
+        """The input at one place."""
+        return float(self.place(np.array([v])).theta[0])
+
+
+class Closures:
+    """What the search needs of a mechanism: the margins of its closures with two assemblies, by their numbers."""
+
+    def __init__(self, mechanism: Mechanism, decomposition: Decomposition) -> None:
+        self.mechanism, self.steps = mechanism, decomposition.steps
+        self.position = [n for n, step in enumerate(self.steps) if step.has_two_solutions]
+        self.links = [self.steps[n].link for n in self.position]
+
+    def signs(self, chosen: Rows) -> tuple[Rows, ...]:
+        """Signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
+        every = [np.ones(chosen.shape[1], np.int64)] * len(self.steps)
+        for row, sign in enumerate(chosen):
+            every[self.position[row]] = sign
+        return tuple(every)
+
+    def margin(self, level: int, place: Place) -> tuple[Real, Real]:
+        """Margin of a closure and its rate by the curve's parameter."""
+        motion = drive(self.mechanism, place.theta[:, None], signs=self.signs(place.signs), order=1)
+        margin = motion.margins[self.links[level]][..., 0]
+        return margin[0], margin[1] * place.rate
+
+    def swings(self, level: int, curve: Curve, v: float) -> bool:
+        """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
+        place = curve.place(np.array([v - 1e-7, v - 1e-7, v + 1e-7, v + 1e-7]))
+        signs = np.vstack([place.signs, [1, -1, 1, -1]])
+        motion = drive(self.mechanism, place.theta[:, None], signs=self.signs(signs), order=0)
+        angle = motion.angles[self.links[level]][0, :, 0]
+        apart = np.abs(np.angle(np.exp(1j * (angle[::2] - angle[1::2]))))
+        return bool(np.nanmax(apart, initial=0.0) > SWING)
+
+
+def configuration_curves(mechanism: Mechanism, closures: Closures, period: float) -> list[Curve]:
+    """All curves of configurations of one design, in the parameters of its last closure.
+
+    Raises
+    ------
+    TopologyError
+        Where a link swings freely at a change point while others depend on it.
+    """
+    waves = max([1.0, *(abs(gear.ratio) for gear in mechanism.gears), *(abs(1.0 / g.ratio) for g in mechanism.gears)])
+    curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
+    for level in range(len(closures.links)):
+
+        def margin(row: Rows, at: Real, level: int = level, curves: list[Curve] = curves) -> tuple[Real, Real]:
+            return closures.margin(level, places(curves, row, at))
+
+        turns = [waves * _way(curve, period) / (2.0 * np.pi) for curve in curves]
+        domains = [
+            Domain(c.low, c.high, c.closed, int(CELLS * max(n, 1.0))) for c, n in zip(curves, turns, strict=True)
+        ]
+        arcs = positive_arcs(margin, domains)
+        curves = [new for curve, own in zip(curves, arcs, strict=True) for new in _next(closures, level, curve, own)]
+    return curves
+
+
+def places(curves: Sequence[Curve], row: Rows, at: Real) -> Place:
+    """Places on many curves."""
+    order = np.argsort(row, kind="stable")
+    found = [curves[n].place(at[part]) for n, part in _parts(row, order)]
+    back = np.empty(len(row), np.int64)
+    back[order] = np.arange(len(row))
+
+    def whole(columns: list[Real]) -> Real:
+        return np.asarray(np.concatenate(columns, axis=-1)[..., back])
+
+    signs = np.concatenate([place.signs for place in found], axis=1)[:, back]
+    return Place(
+        whole([p.theta for p in found]), whole([p.rate for p in found]), whole([p.second for p in found]), signs
+    )
+
+
+def _parts(row: Rows, order: Rows) -> list[tuple[int, Rows]]:
+    """Rows that occur, and where."""
+    cuts = np.flatnonzero(np.diff(row[order])) + 1
+    return [(int(row[part[0]]), part) for part in np.split(order, cuts)]
+
+
+def _way(curve: Curve, period: float) -> float:
+    """The input's way along a curve, forth and back."""
+    if curve.closed and not curve.turns:
+        return period
+    cuts = [turn.theta for turn in curve.turns]
+    cuts = [*cuts, cuts[0]] if curve.closed else [curve.ends[0].theta, *cuts, curve.ends[1].theta]
+    return float(np.abs(np.diff(cuts)).sum())
+
+
+def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
+    """The curves of the next closure over a curve's arcs."""
+    found: list[Curve] = []
+    points: dict[float, ChangePoint] = {}
+    length = curve.high - curve.low
+
+    def end(at: float, kind: str, side: int) -> End:
+        if kind == "end":
+            own = curve.ends[side]
+            margin = closures.margin(level, curve.place(np.array([at + (1e-6 - 2e-6 * side) * length])))[0][0]
+            return own._replace(folded=own.folded | {level}) if margin < 1e-9 else own
+        around = round(float(np.mod(at - curve.low, length)), 9) if curve.closed else at
+        if around not in points:
+            points[around] = ChangePoint(level, closures.swings(level, curve, at))
+            if points[around].swings and level + 1 < len(closures.links):
+                raise TopologyError(
+                    f"{closures.links[level]!r} swings freely at a change point, its pins on each other, and other "
+                    "links with it; its circuits are not known"
+                )
+        return End(curve.input_at(at), points[around], frozenset({level}))
+
+    for arc in arcs:
+        shift = length * np.floor((arc.low - curve.low) / length) if curve.closed and arc.at_low != "whole" else 0.0
+        low, high = float(arc.low - shift), float(arc.high - shift)
+        turns = [
+            turn._replace(at=turn.at + k * length)
+            for k in ((0, 1) if curve.closed else (0,))
+            for turn in curve.turns
+            if arc.at_low == "whole" or low < turn.at + k * length < high
+        ]
+        if arc.at_low == "whole":
+            found += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
+        elif arc.at_low == arc.at_high == "zero":
+            found.append(_round(curve, level, low, high, turns))
+        elif "zero" not in (arc.at_low, arc.at_high):
+            ends = end(low, arc.at_low, 0), end(high, arc.at_high, 1)
+            inner = tuple(t for t in turns if INSIDE < (t.at - low) / (high - low) < 1.0 - INSIDE)
+            found += [Curve(curve, "straight", low, high, sign, low, high, False, inner, ends) for sign in (1, -1)]
+        elif arc.at_low == "zero":
+            found.append(_bend(curve, level, low, high, turns, end(high, arc.at_high, 1)))
+        else:
+            found.append(_bend(curve, level, high, low, turns, end(low, arc.at_low, 0)))
+    return found
+
+
+def _round(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
+    own = [Turn(0.0, curve.input_at(a), level), Turn(np.pi, curve.input_at(b), level)]
+    for turn in turns:
+        part = (turn.at - a) / (b - a)
+        if INSIDE < part < 1.0 - INSIDE:
+            v = float(np.arccos(1.0 - 2.0 * part))
+            own += [turn._replace(at=v), turn._replace(at=2.0 * np.pi - v)]
+    return Curve(curve, "round", a, b, 1, 0.0, 2.0 * np.pi, True, tuple(sorted(own)), ())
+
+
+def _bend(curve: Curve, level: int, fold: float, opening: float, turns: list[Turn], end: End) -> Curve:
+    own = [Turn(0.0, curve.input_at(fold), level)]
+    for turn in turns:
+        part = (turn.at - fold) / (opening - fold)
+        if INSIDE < part < 1.0 - INSIDE:
+            own += [turn._replace(at=float(np.sqrt(part))), turn._replace(at=-float(np.sqrt(part)))]
+    return Curve(curve, "bend", fold, opening, 1, -1.0, 1.0, False, tuple(sorted(own)), (end, end))
+
+
+def circuits(curves: Sequence[Curve]) -> list[int]:
+    """Number of the circuit of each curve: those that meet at a change point belong together."""
+    parent = list(range(len(curves)))
+
+    def root(n: int) -> int:
+        while parent[n] != n:
+            n = parent[n]
+        return n
+
+    ends = [
+        (n, end, curve.place(np.array([at])).signs[:, 0])
+        for n, curve in enumerate(curves)
+        if not curve.closed
+        for end, at in zip(curve.ends, _near_ends(curve), strict=True)
+    ]
+    for (n, one, mine), (m, other, theirs) in itertools.combinations(ends, 2):
+        if one.point is other.point:
+            later = set(range(one.point.level + 1, len(mine)))
+            if all(mine[k] == theirs[k] for k in later - one.folded - other.folded):
+                parent[root(n)] = root(m)
+    return [root(n) for n in range(len(curves))]
+
+
+def _near_ends(curve: Curve) -> tuple[float, float]:
+    hair = 1e-6 * (curve.high - curve.low)
+    return curve.low + hair, curve.high - hair

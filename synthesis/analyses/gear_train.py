@@ -1,0 +1,291 @@
+"""The analysis of an ordinary gear train: speeds, torques, mesh geometry, forces and losses.
+
+Speeds are exact fractions of the input's. The torque on a shaft is the power that reaches it over its speed; each mesh
+passes on a stated share of the power, or 1 − μ H with the friction coefficient μ and the loss factor H of its teeth.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from kinematics.gear.teeth import Gear, Mesh
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.designs import Answer, Ratio
+from synthesis.designs.gear_train import MeshGeometry
+from synthesis.gear_train.verification import mesh_geometries
+from synthesis.problems import Number, PositiveNumber, Statement
+from synthesis.problems.gear_train import ToothNumber
+
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+
+FRICTION = 0.05
+"""Friction coefficient of lubricated steel teeth, where none is stated."""
+
+
+class GivenStage(Statement):
+    """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
+
+    driver: ToothNumber
+    driven: ToothNumber
+    module: PositiveNumber = Field(default=1.0, description="Module in length units.")
+
+
+class GivenIdler(Statement):
+    """A gear between driver and driven gear of a stage; several of one stage stand in the order of the list."""
+
+    stage: Annotated[int, Field(strict=True, ge=1, le=16)]
+    teeth: ToothNumber
+
+
+class GivenRatio(Statement):
+    """A ratio as in a design; it is compared with that of the teeth."""
+
+    numerator: Annotated[int, Field(strict=True)]
+    denominator: Annotated[int, Field(strict=True, ge=1)]
+    value: Number
+
+
+class GivenGearTrain(Statement):
+    """An ordinary gear train as in a design."""
+
+    type: Literal["gear_train"]
+    stages: list[GivenStage] = Field(min_length=1, max_length=16)
+    idlers: list[GivenIdler] = Field(default=[], max_length=64)
+    ratio: GivenRatio | None = None
+    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = 20.0
+
+    def train(self) -> OrdinaryTrain:
+        """The train for the analysis core."""
+        idlers = {k: tuple(i.teeth for i in self.idlers if i.stage == k) for k in range(1, len(self.stages) + 1)}
+        stages = tuple(TrainStage(s.driver, s.driven, s.module, idlers[k]) for k, s in enumerate(self.stages, 1))
+        return OrdinaryTrain(stages, math.radians(self.pressure_angle))
+
+
+class GearTrainAnalysisRequest(AnalysisRequest):
+    """A gear train, how its input turns, and what it carries."""
+
+    model_config = ConfigDict(
+        title="Gear train, how it is driven",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "gear_train",
+                        "stages": [
+                            {"driver": 25, "driven": 51, "module": 2.0},
+                            {"driver": 50, "driven": 77, "module": 2.0},
+                        ],
+                    },
+                    "motion": {"at": 0.0, "speed_rpm": 1500.0},
+                    "input_torque": 20.0,
+                    "mesh_efficiency": 0.98,
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenGearTrain
+    motion: StatedMotion = Sweep()
+    length_unit: Literal["mm", "cm", "m", "in"] = "mm"
+    input_torque: Number = Field(default=1.0, description="Torque on the input shaft, N m.")
+    mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
+        default=None, description="Share of the power that every mesh passes on; from the friction where left out."
+    )
+    friction: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = Field(
+        default=FRICTION, description="Friction coefficient between the teeth."
+    )
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        found = []
+        if self.motion.speed is not None and self.motion.speed_rpm is not None:
+            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
+        if isinstance(self.motion, Run):
+            span = self.motion.time
+            if span.end < span.start:
+                found.append(("/motion/time/end", "the end lies before the start"))
+            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
+                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        for number, idler in enumerate(self.mechanism.idlers):
+            if idler.stage > len(self.mechanism.stages):
+                found.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
+        if not found and self.mechanism.ratio is not None:
+            ratio, stated = self.mechanism.train().ratio, self.mechanism.ratio
+            if stated.numerator != ratio * stated.denominator:
+                found.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        return _analysis(self, at, speed, time)
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """One turn of the input at 1 rad/s."""
+        request = cls(mechanism=GivenGearTrain.model_validate(mechanism))
+        return _analysis(request, np.linspace(0.0, 360.0, steps + 1), np.ones(steps + 1), None)
+
+
+class TurningGear(Answer):
+    """A gear and its motion; gears of one shaft turn alike."""
+
+    stage: int
+    role: Literal["driver", "idler", "driven"]
+    teeth: int
+    module: float
+    pitch_diameter: float
+    outside_diameter: float
+    root_diameter: float
+    base_diameter: float
+    tooth_thickness: float = Field(description="On the pitch circle.")
+    undercut: bool = Field(description="By a rack that cuts it.")
+    speed_ratio: float = Field(description="Speed over the input's; negative: the other way.")
+    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
+    omega: list[float] = Field(description="rad/s")
+    alpha: list[float] = Field(description="rad/s²")
+
+
+class LoadedMesh(MeshGeometry):
+    """A mesh with its contact and its load."""
+
+    path_of_contact: float
+    approach: float = Field(description="Part of the path before the pitch point, with the driver driving.")
+    recess: float
+    clearance: float
+    efficiency: float | None = Field(description="Null where fewer than one pair of teeth is in contact.")
+    pitch_line_velocity: float = Field(description="At the first position, length units per second.")
+    tangential_force: float = Field(description="N")
+    radial_force: float = Field(description="N")
+
+
+class Shaft(Answer):
+    """A shaft that passes torque on, from the input shaft to the output shaft."""
+
+    speed_ratio: float
+    torque: float = Field(description="N m, with the losses before it.")
+
+
+class GearTrainAnalysis(Answer):
+    """What the analysis core knows of a gear train; degrees, rad/s, length units."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool]
+    ratio: Ratio
+    efficiency: float | None = Field(description="Output power over input power.")
+    shafts: list[Shaft]
+    gears: list[TurningGear]
+    meshes: list[LoadedMesh]
+    centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
+
+
+def _analysis(
+    request: GearTrainAnalysisRequest,
+    at: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    time: NDArray[np.float64] | None,
+) -> dict[str, Any]:
+    train = request.mechanism.train()
+    shares = tuple(tuple(_share(request, mesh) for mesh in stage) for stage in train.meshes)
+    passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
+    known = all(share is not None for stage in shares for share in stage)
+    torques = train.torques(request.input_torque, passed)
+    ratio = train.ratio
+    speeds = [1.0, *(float(stage[-1]) for stage in train.speeds)]
+    return {
+        "input_angle": at.tolist(),
+        "time": None if time is None else time.tolist(),
+        "valid": [True] * len(at),
+        "ratio": {"numerator": ratio.numerator, "denominator": ratio.denominator, "value": float(ratio)},
+        "efficiency": math.prod(share for stage in passed for share in stage) if known else None,
+        "shafts": [{"speed_ratio": w, "torque": t} for w, t in zip(speeds, torques, strict=True)],
+        "gears": _gears(request, train, at, speed),
+        "meshes": _meshes(request, train, shares, torques, float(speed[0])),
+        "centre_distances": list(train.centre_distances),
+    }
+
+
+def _share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
+    """Share of the power that a mesh passes on; None where it cannot run."""
+    if mesh.contact_ratio < 1.0:
+        return None
+    if request.mesh_efficiency is not None:
+        return request.mesh_efficiency
+    return max(0.0, 1.0 - request.friction * mesh.loss_factor)
+
+
+def _gears(
+    request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
+) -> list[dict[str, Any]]:
+    found = []
+    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
+        roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
+        for role, teeth, share in zip(roles, stage.gears, speeds, strict=True):
+            gear, turns = Gear(teeth, stage.module, train.pressure_angle), float(share)
+            found.append(
+                {
+                    "stage": number,
+                    "role": role,
+                    "teeth": teeth,
+                    "module": gear.module,
+                    "pitch_diameter": 2.0 * gear.pitch_radius,
+                    "outside_diameter": 2.0 * gear.tip_radius,
+                    "root_diameter": 2.0 * gear.root_radius,
+                    "base_diameter": 2.0 * gear.base_radius,
+                    "tooth_thickness": gear.tooth_thickness,
+                    "undercut": gear.is_undercut,
+                    "speed_ratio": turns,
+                    "angle": (turns * at).tolist(),
+                    "omega": (turns * speed).tolist(),
+                    "alpha": [turns * request.motion.acceleration] * len(at),
+                }
+            )
+    return found
+
+
+def _meshes(
+    request: GearTrainAnalysisRequest,
+    train: OrdinaryTrain,
+    shares: tuple[tuple[float | None, ...], ...],
+    torques: tuple[float, ...],
+    speed: float,
+) -> list[dict[str, Any]]:
+    geometries = iter(mesh_geometries(train))
+    found = []
+    for stage, meshes, efficiencies, turns, torque in zip(
+        train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True
+    ):
+        # The tangential force passes through an idler; each mesh takes its losses from it.
+        force = abs(torque) / (0.5 * stage.module * stage.driver * METRES[request.length_unit])
+        for (driver, driven), mesh, share, turn in zip(
+            itertools.pairwise(stage.gears), meshes, efficiencies, turns[:-1], strict=True
+        ):
+            parts = mesh.approach, mesh.recess
+            approach, recess = parts if driver <= driven else parts[::-1]
+            found.append(
+                {
+                    **next(geometries).model_dump(),
+                    "path_of_contact": mesh.path_of_contact,
+                    "approach": approach,
+                    "recess": recess,
+                    "clearance": mesh.clearance,
+                    "efficiency": share,
+                    "pitch_line_velocity": abs(float(turn) * speed) * 0.5 * stage.module * driver,
+                    "tangential_force": force,
+                    "radial_force": force * math.tan(mesh.pressure_angle),
+                }
+            )
+            force *= 1.0 if share is None else share
+    return found
+
+
+FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

@@ -1,0 +1,237 @@
+"""The proof of a cam: its follower is laid against the finished profile, and what it does is measured.
+
+Nothing that a solver computed is taken over but the answer itself. The points of the profile alone give
+displacement, pressure angle and radius of curvature at cam angles four times as close as the design's; the
+displacement is compared with the program's table, and the program's table with what the problem states: laws by the
+analysis core, rests, heights, conditions, bands, and limits on the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.program import TURN
+from kinematics.cam.segments import Condition as PolynomialCondition
+from kinematics.cam.segments import dwell, law_segment, polynomial_segment
+from kinematics.errors import DimensionError, ShapeError
+from synthesis.cam.mechanism import core_follower, profile_points, table_angles
+from synthesis.designs import Check, Verification
+from synthesis.designs.cam import CamMechanism
+from synthesis.problems.cam import CamProblem, Dwell, Move, OscillatingRoller, Polynomial, TranslatingRoller
+
+Real = NDArray[np.float64]
+
+FINER = 4
+"""Cam angles of the verification for each one of the design."""
+
+REPRODUCED = 1e-6
+"""Deviation of the measured displacement from the program, as a share of the lift: a micrometre in a metre of lift."""
+
+REPRODUCED_WITH_JUMPS = 1e-4
+"""The same where the client accepted jumps in velocity or acceleration, which no curve through points can follow."""
+
+STATED = 1e-7
+"""Deviation of the program from the statement, as a share of the lift."""
+
+LIMIT_SLACK = 1e-6
+"""Relative slack of limits on the motion, which are kept exactly, and are read from a table."""
+
+MEASURED_SLACK = 2e-3
+"""Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points: where
+the acceleration bends, its local fifth degree is off by that much."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the finished profile does: all by cam angle, at the finer angles."""
+
+    angle: Real
+    s: Real
+    pressure_angle: Real
+    rising: NDArray[np.bool_]
+    convex_radius: float
+    concave_radius: float
+    sweep: float
+    radius: float
+
+
+def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
+    """Measure a cam against its problem.
+
+    Parameters
+    ----------
+    problem : CamProblem
+        What was asked.
+    mechanism : CamMechanism
+        The finished cam; its pitch curve is not looked at.
+
+    Returns
+    -------
+    Verification, Measured or None
+        None where the follower cannot be laid against the profile at all.
+    """
+    try:
+        contour = Contour(profile_points(mechanism))
+        follower = core_follower(mechanism)
+        count = len(mechanism.profile.angle)
+        angle: Real = np.asarray(np.arange(FINER * count) * (TURN / (FINER * count)), np.float64)
+        contact = contour.follow(follower, angle, mechanism.rotation)
+    except (DimensionError, ShapeError):
+        return Verification(passed=False, checks=[Check(name="follower_can_be_laid_on", passed=False)]), None
+    table = np.array(mechanism.program.s) * problem.displacement_unit
+    lift = float(np.ptp(table)) or 1.0
+    checks = _program_checks(problem, mechanism, table, lift)
+    touches = bool(contact.valid.all())
+    gap = float(np.abs(contact.s[::FINER] - table).max() / lift) if touches else math.inf
+    allowed = REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED
+    checks += [
+        Check(name="touches_everywhere", passed=touches),
+        Check(name="reproduces_program", passed=gap <= allowed, value=min(gap, 1e9), limit=allowed),
+        Check(name="no_cusp", passed=not contour.cusped),
+        Check(name="does_not_cross_itself", passed=len(contour.crossings) == 0),
+    ]
+    curvature = contour.curvature()
+    rising = np.repeat(np.array(mechanism.program.v), FINER) >= 0.0
+    roller = isinstance(problem.follower, TranslatingRoller | OscillatingRoller)
+    concave = float(-1.0 / curvature.min()) if curvature.min() < 0.0 else math.inf
+    reach = _reach(mechanism, contact.point, angle)
+    measured = Measured(
+        angle,
+        contact.s,
+        contact.pressure_angle,
+        rising,
+        float(1.0 / curvature.max()) if curvature.max() > 0.0 else math.inf,
+        concave,
+        float(np.ptp(reach)),
+        float(np.abs(contour.points).max()),
+    )
+    if touches:
+        checks += _limit_checks(problem, mechanism, measured, roller)
+    return Verification(passed=all(check.passed for check in checks), checks=checks), measured
+
+
+def _reach(mechanism: CamMechanism, contact: NDArray[np.complex128], angle: Real) -> Real:
+    """Where on a face the contact is, along the face; zero for a roller."""
+    if mechanism.base_radius is None:
+        return np.zeros_like(angle)
+    sign = 1.0 if mechanism.rotation == "ccw" else -1.0
+    ground = contact * np.exp(1j * sign * angle)
+    if mechanism.follower.type == "translating_flat":
+        return np.asarray(ground.imag)
+    pivot, face = mechanism.follower.pivot_distance or 0.0, mechanism.follower.face_offset or 0.0
+    return np.asarray(np.sqrt(np.maximum(np.abs(ground - pivot) ** 2 - face**2, 0.0)))
+
+
+def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured, roller: bool) -> list[Check]:
+    limits, checks = problem.limits, []
+    if roller:
+        steepest = {}
+        for name, where in (("pressure_angle", measured.rising), ("pressure_angle_fall", ~measured.rising)):
+            steepest[name] = math.degrees(float(measured.pressure_angle[where].max())) if where.any() else 0.0
+        fall = limits.pressure_angle_fall or limits.pressure_angle
+        checks.append(_at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK))
+        checks.append(_at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK))
+        radius = mechanism.follower.roller_radius or 0.0
+        ratio = pitch_radius(measured, radius) / radius
+        checks.append(_at_least("curvature_ratio", ratio, limits.curvature_ratio, MEASURED_SLACK))
+        base = (mechanism.prime_radius or 0.0) - radius
+    else:
+        checks.append(_at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK))
+        checks.append(Check(name="convex", passed=math.isinf(measured.concave_radius)))
+        if limits.face_width is not None:
+            checks.append(_at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK))
+        base = mechanism.base_radius or 0.0
+    if limits.hub_radius > 0.0:
+        checks.append(_at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK))
+    if limits.size is not None:
+        checks.append(
+            _at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK)
+        )
+    return checks
+
+
+def pitch_radius(measured: Measured, roller_radius: float) -> float:
+    """Least |radius of curvature| of the pitch curve: the roller's radius outside the profile."""
+    return min(measured.convex_radius + roller_radius, measured.concave_radius - roller_radius)
+
+
+def _program_checks(problem: CamProblem, mechanism: CamMechanism, table: Real, lift: float) -> list[Check]:
+    """The program's table against the statement, segment by segment."""
+    angle = table_angles(mechanism)
+    v, a, j = (np.array(values) for values in (mechanism.program.v, mechanism.program.a, mechanism.program.j))
+    off, start = 0.0, 0.0
+    for segment, (low, high) in zip(problem.segments, problem.heights(), strict=True):
+        span = math.radians(segment.angle)
+        inside = (angle >= start - 1e-12) & (angle <= start + span + 1e-12)
+        at, s = np.clip(angle[inside] - start, 0.0, span), table[inside]
+        if isinstance(segment, Dwell):
+            known = dwell(span, low)
+        elif isinstance(segment, Polynomial):
+            conditions = [PolynomialCondition(*c) for c in problem.polynomial_conditions(segment)]
+            known = polynomial_segment(span, conditions)
+        elif isinstance(segment, Move) and segment.law in ("auto", "optimal"):
+            off = max(off, _open_deviation(problem, segment, at, s, low, high))
+            start += span
+            continue
+        else:
+            law = segment.law if isinstance(segment, Move) else "constant_velocity"
+            known = law_segment(LAWS[law], span, low, high)
+        if len(at):
+            off = max(off, float(np.abs(known.pieces.motion(at).s - s).max()))
+        start += span
+    checks = [Check(name="keeps_the_statement", passed=off / lift <= STATED, value=off / lift, limit=STATED)]
+    open_ = any(isinstance(s, Move) and s.law in ("auto", "optimal") for s in problem.segments)
+    if open_:
+        where = _open_angles(problem, angle)
+        for name, values in (("velocity", v), ("acceleration", a), ("jerk", j)):
+            limit = getattr(problem.limits, name)
+            if limit is not None:
+                checks.append(_at_most(f"peak_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
+    return checks
+
+
+def _open_angles(problem: CamProblem, angle: Real) -> NDArray[np.bool_]:
+    """Angles within automatic and optimal segments."""
+    where = np.zeros(len(angle), dtype=bool)
+    start = 0.0
+    for segment in problem.segments:
+        end = start + math.radians(segment.angle)
+        if isinstance(segment, Move) and segment.law in ("auto", "optimal"):
+            where |= (angle > start + 1e-12) & (angle < end - 1e-12)
+        start = end
+    return where
+
+
+def _open_deviation(problem: CamProblem, segment: Move, at: Real, s: Real, low: float, high: float) -> float:
+    """How far an automatic or optimal motion is from its ends, conditions and bands, where its table has them."""
+    if not len(at):
+        return 0.0
+    span, unit = math.radians(segment.angle), problem.displacement_unit
+    off = 0.0
+    stated = [(0.0, low), (span, high)]
+    stated += [(t, x) for t, order, x in problem.polynomial_conditions(segment) if order == 0]
+    for t, x in stated:
+        nearest = int(np.abs(at - t).argmin())
+        if abs(at[nearest] - t) <= 1e-9:
+            off = max(off, abs(float(s[nearest]) - x))
+    for band in segment.bands:
+        within = s[(at >= math.radians(band.start)) & (at <= math.radians(band.end))]
+        if len(within):
+            above = float(within.max()) - band.upper * unit if band.upper is not None else 0.0
+            below = band.lower * unit - float(within.min()) if band.lower is not None else 0.0
+            off = max(off, above, below)
+    return off
+
+
+def _at_least(name: str, value: float, limit: float, slack: float) -> Check:
+    return Check(name=name, passed=value >= limit * (1.0 - slack), value=min(value, 1e9), limit=limit)
+
+
+def _at_most(name: str, value: float, limit: float, slack: float) -> Check:
+    return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit)

@@ -1,0 +1,170 @@
+"""Statements of cam problems: what is refused, and that the refusal names the field."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import pytest
+from pydantic import ValidationError
+
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.segments import Condition, polynomial_segment
+from synthesis.kinds import KINDS, parse_problem
+from synthesis.problems.cam import Law
+from synthesis.problems.cam_joints import END_RATES, polynomial_ends
+
+DOUBLE_DWELL = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"][0]
+
+
+def stated(**changes):
+    statement = copy.deepcopy(DOUBLE_DWELL)
+    for path, value in changes.items():
+        *way, last = path.split("__")
+        place = statement
+        for step in way:
+            place = place[int(step) if step.isdigit() else step]
+        if isinstance(place, list):
+            place[int(last)] = value
+        else:
+            place[last] = value
+    return parse_problem(statement)
+
+
+def test_examples_are_sound():
+    examples = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
+    assert len(examples) >= 4
+    for example in examples:
+        assert parse_problem(example).contradictions() == []
+
+
+def test_laws_are_those_of_the_analysis_core():
+    assert set(END_RATES) == set(LAWS)
+    assert set(Law.__args__) == {"auto", "optimal", *LAWS}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_rates_at_the_ends_are_the_laws_own(name):
+    law = LAWS[name]
+    first, last = law.pieces.motion(0.0), law.pieces.motion(1.0, before=True)
+    assert (first.v, first.a, last.v, last.a) == pytest.approx(END_RATES[name], abs=1e-9)
+
+
+def test_ends_of_polynomials_are_the_analysis_cores():
+    conditions = [
+        (0.0, 0, 1.0),
+        (0.0, 1, 0.3),
+        (0.0, 2, 0.0),
+        (0.7, 0, 1.6),
+        (1.3, 0, 2.0),
+        (1.3, 1, 0.0),
+        (1.3, 2, -2.0),
+    ]
+    first, last = polynomial_ends(1.3, conditions)
+    pieces = polynomial_segment(1.3, [Condition(*c) for c in conditions]).pieces
+    assert first == pytest.approx([float(x) for x in pieces.motion(0.0)[:3]], abs=1e-12)
+    assert last == pytest.approx([float(x) for x in pieces.motion(1.3, before=True)[:3]], abs=1e-11)
+    assert polynomial_ends(1.0, [(0.5, 1, 1.0), (0.5, 1, 1.0)]) is None
+
+
+FAULTS = [
+    ({"segments__0__angle": 80.0}, "/segments", "350"),
+    ({"segments__1__law": "simple_harmonic"}, "/segments/1", "acceleration jumps"),
+    ({"segments__1__law": "constant_acceleration"}, "/segments/1", "acceleration jumps"),
+    ({"segments__1__law": "half_cycloidal_start"}, "/segments/2", "velocity jumps"),
+    ({"segments__3__lift": 20.0}, "/segments/0", "come back"),
+    ({"segments__1__lift": None}, "/segments/1/lift", "needs a lift"),
+    ({"segments__1": {"motion": "fall", "angle": 90.0, "lift": 25.0}}, "/segments/3/lift", "nothing to return"),
+    (
+        {"segments__1__conditions": [{"angle": 45.0, "s": 12.0}]},
+        "/segments/1/conditions",
+        "optimal",
+    ),
+    (
+        {
+            "segments__1": {
+                "motion": "rise",
+                "angle": 90.0,
+                "lift": 25.0,
+                "law": "optimal",
+                "conditions": [{"angle": 95.0, "s": 1.0}],
+            }
+        },
+        "/segments/1/conditions/0/angle",
+        "within",
+    ),
+    (
+        {
+            "segments__1": {
+                "motion": "rise",
+                "angle": 90.0,
+                "lift": 25.0,
+                "law": "optimal",
+                "bands": [{"start": 50.0, "end": 40.0, "upper": 1.0}],
+            }
+        },
+        "/segments/1/bands/0/end",
+        "after start",
+    ),
+    (
+        {
+            "segments__1": {
+                "motion": "polynomial",
+                "angle": 90.0,
+                "conditions": [{"angle": 10.0, "v": 1.0}, {"angle": 10.0, "v": 2.0}],
+            }
+        },
+        "/segments/1/conditions",
+        "one polynomial",
+    ),
+    ({"follower__prime_radius": 8.0}, "/follower/prime_radius", "larger than the roller"),
+    (
+        {"follower": {"type": "translating_roller", "roller_radius": 5.0, "prime_radius": 50.0, "offset": "free"}},
+        "/follower/offset",
+        "free prime",
+    ),
+    (
+        {"follower": {"type": "translating_roller", "roller_radius": {"min": 5.0, "max": 4.0}}},
+        "/follower/roller_radius/max",
+        "above min",
+    ),
+    ({"minimize": "peak_contact_force"}, "/dynamics", "mass and spring"),
+    ({"dynamics": {"mass": 1.0}, "speed_rpm": None}, "/speed_rpm", "speed"),
+]
+
+
+@pytest.mark.parametrize(("changes", "path", "detail"), FAULTS, ids=[f"{row[1]} {row[2]}" for row in FAULTS])
+def test_faults_name_the_field(changes, path, detail):
+    found = stated(**changes).contradictions()
+    assert path in [fault.path for fault in found]
+    assert any(detail in fault.detail for fault in found if fault.path == path)
+
+
+def test_a_jump_is_taken_when_it_is_accepted():
+    assert stated(segments__1__law="simple_harmonic", accept_discontinuity=True).contradictions() == []
+
+
+def test_an_optimal_arm_is_not_sized_with_its_motion():
+    follower = {"type": "oscillating_roller", "roller_radius": 5.0, "arm": 60.0, "pivot_distance": 80.0}
+    segments = [dict(segment) for segment in DOUBLE_DWELL["segments"]]
+    segments[1] = {"motion": "rise", "angle": 90.0, "lift": 20.0, "law": "optimal"}
+    assert stated(follower=follower, segments=segments, minimize="size").contradictions()[0].path == "/minimize"
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"segments__1__law": "unheard_of"}, "law"),
+        ({"segments__1__angle": -1.0}, "angle"),
+        ({"segments__1__angle": math.inf}, "angle"),
+        ({"follower__type": "magnetic"}, "follower"),
+        ({"limits__pressure_angle": 90.0}, "pressure_angle"),
+        ({"minimize": "beauty"}, "minimize"),
+        ({"follower__offst": 1.0}, "offst"),
+        ({"segments": []}, "segments"),
+    ],
+)
+def test_ill_formed_statements_are_refused(changes, where):
+    with pytest.raises(ValidationError) as fault:
+        stated(**changes)
+    assert where in str(fault.value.errors()[0]["loc"]) + str(fault.value.errors()[0]["msg"])

@@ -1,0 +1,310 @@
+"""Cams from statement to verified design, and the verification held against cams that were tampered with."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kinematics.cam.motion_laws import LAWS
+from synthesis.cam.verification import verify
+from synthesis.dispatch import solve
+from synthesis.kinds import KINDS, parse_problem
+
+EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
+DOUBLE_DWELL, RISE_FALL_DWELL, CRITICAL_PATH, VALVE = EXAMPLES
+
+
+def cam(statement=None, **changes):
+    return parse_problem({**(statement or DOUBLE_DWELL), **changes})
+
+
+def answered(problem):
+    return solve(problem, lambda fraction, message: None)
+
+
+def only(result):
+    assert result.summary
+    (design,) = result.designs
+    assert design.verification.passed
+    return design
+
+
+def moves(rise_law, fall_law, lift=25.0, rise=90.0, fall=90.0):
+    rest = 0.5 * (360.0 - rise - fall)
+    return [
+        {"motion": "dwell", "angle": rest},
+        {"motion": "rise", "angle": rise, "lift": lift, "law": rise_law},
+        {"motion": "dwell", "angle": rest},
+        {"motion": "fall", "angle": fall, "lift": lift, "law": fall_law},
+    ]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=["double dwell", "rise-fall-dwell", "critical path", "valve"])
+def test_examples_are_solved_and_verified(example):
+    result = answered(cam(example))
+    design = only(result)
+    reproduced = next(c for c in design.verification.checks if c.name == "reproduces_program")
+    assert reproduced.value <= 1e-6
+    assert result.search.sizing_proven
+    assert result.search.accepted == 1
+    if design.optimality.bound is not None:
+        assert design.optimality.bound <= design.optimality.value
+        assert design.optimality.gap <= 2e-3
+
+
+def test_critical_path_motion_of_norton():
+    """Example 8-10: 190.1 in/s² under a jerk of 4800 in/s³; the polynomial of the book needs 230.9."""
+    rate = 2.0 * math.pi
+    design = only(answered(cam(CRITICAL_PATH)))
+    assert design.optimality.value * rate**2 == pytest.approx(190.1, rel=2e-3)
+    segments = [CRITICAL_PATH["segments"][0], {"motion": "return", "angle": 180.0, "law": "auto"}]
+    book = only(answered(cam(CRITICAL_PATH, segments=segments, limits={"pressure_angle": 30.0})))
+    assert book.segments[1].law == "polynomial"
+    assert book.metrics.peak_acceleration * rate**2 == pytest.approx(230.9, abs=0.05)
+
+
+@pytest.mark.parametrize(("minimize", "order"), [("peak_velocity", 0), ("peak_acceleration", 1), ("peak_jerk", 2)])
+def test_auto_takes_the_best_law(minimize, order):
+    design = only(answered(cam(segments=moves("auto", "auto"), minimize=minimize)))
+    smooth = {
+        name: law.factors[order].largest
+        for name, law in LAWS.items()
+        if abs(law.pieces.motion(0.0).a) < 1e-9
+        and abs(law.pieces.motion(1.0, before=True).a) < 1e-9
+        and law.pieces.motion(1.0, before=True).v < 1e-9
+        and law.pieces.motion(0.0).v < 1e-9
+    }
+    best = min(smooth, key=lambda name: smooth[name])
+    assert [segment.law for segment in design.segments if segment.motion != "dwell"] == [best, best]
+
+
+def test_auto_rise_and_fall_without_a_dwell_match_at_the_top():
+    """Norton Example 8-6: the double harmonic and its mirror meet at the top with one acceleration."""
+    segments = [
+        {"motion": "rise", "angle": 90.0, "lift": 1.0},
+        {"motion": "fall", "angle": 90.0, "lift": 1.0},
+        {"motion": "dwell", "angle": 180.0},
+    ]
+    design = only(answered(cam(RISE_FALL_DWELL, segments=segments, limits={"pressure_angle": 35.0, "jerk": 50.0})))
+    joint = next(joint for joint in design.joints if joint.segments == (0, 1))
+    assert {"s", "v", "a"} <= set(joint.continuous)
+    assert design.metrics.peak_acceleration <= 2.0 * math.pi / (0.5 * math.pi) ** 2
+
+
+def test_motion_and_size_together():
+    """Unit lift in 60° at 20° under modified sine's own peaks: 3.647; with modified sine itself 4.142."""
+    beta = math.pi / 3.0
+    v, a, j = (factor.largest for factor in LAWS["modified_sine"].factors)
+    limits = {"pressure_angle": 20.0, "curvature_ratio": 0.0, "acceleration": a / beta**2, "jerk": j / beta**3}
+    follower = {"type": "translating_roller", "roller_radius": 0.3}
+    segments = moves("optimal", "modified_sine", 1.0, 60.0, 200.0)
+    design = only(answered(cam(segments=segments, follower=follower, limits=limits, minimize="size")))
+    assert design.mechanism.prime_radius == pytest.approx(3.647, rel=2e-3)
+    assert design.optimality.bound == pytest.approx(3.647, rel=2e-3)
+    assert design.metrics.peak_velocity * beta < v
+    segments = moves("modified_sine", "modified_sine", 1.0, 60.0, 200.0)
+    law = only(answered(cam(segments=segments, follower=follower, limits={**limits}, minimize="size")))
+    assert law.mechanism.prime_radius == pytest.approx(4.142, abs=5e-4)
+
+
+def test_no_motion_keeps_the_limits():
+    beta = 0.5 * math.pi
+    limits = {"acceleration": 3.9 * 25.0 / beta**2}
+    result = answered(cam(segments=moves("optimal", "cycloidal"), limits=limits))
+    assert result.designs == []
+    assert result.search.complete
+    assert "1.0256" in result.summary
+
+
+def test_a_cam_that_must_be_small_is_proven_not_to_exist():
+    result = answered(cam(limits={"pressure_angle": 30.0, "size": 40.0}))
+    assert result.designs == []
+    assert result.search.complete
+    assert result.search.rejected == {"size": 1}
+    shown = answered(cam(limits={"pressure_angle": 30.0, "size": 40.0}, include_failed=True))
+    assert not shown.designs[0].verification.passed
+    assert answered(cam(limits={"pressure_angle": 30.0, "size": 44.0})).search.accepted == 1
+
+
+FOLLOWERS = [
+    {"type": "translating_roller", "roller_radius": 8.0, "offset": 6.0},
+    {"type": "translating_roller", "roller_radius": 8.0, "offset": "free"},
+    {"type": "translating_roller", "roller_radius": {"min": 4.0, "max": 30.0}},
+    {"type": "translating_roller", "roller_radius": 8.0, "prime_radius": 70.0},
+    {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 80.0, "pivot_distance": 100.0},
+    {
+        "type": "oscillating_roller",
+        "roller_radius": 8.0,
+        "arm": 80.0,
+        "pivot_distance": {"min": 70.0, "max": 130.0},
+        "sense": -1,
+    },
+    {"type": "translating_flat"},
+    {"type": "oscillating_flat", "pivot_distance": 120.0, "face_offset": 5.0},
+    {"type": "oscillating_flat", "pivot_distance": 120.0, "face_offset": -5.0, "sense": -1},
+]
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize(
+    "follower", FOLLOWERS, ids=lambda f: f"{f['type']} {len(f)} {f.get('sense', '')}{f.get('offset', '')}"
+)
+def test_every_follower_and_sense_of_rotation(follower, rotation):
+    segments = moves("modified_sine", "cycloidal", 12.0, 110.0, 120.0)
+    limits = {"pressure_angle": 30.0, "pressure_angle_fall": 40.0, "curvature_ratio": 1.5, "min_radius": 2.0}
+    design = only(answered(cam(segments=segments, follower=follower, limits=limits, rotation=rotation)))
+    mechanism = design.mechanism
+    assert mechanism.rotation == rotation
+    angle = np.unwrap(np.angle(np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)))
+    assert (angle[-1] > angle[0]) == (rotation == "cw")
+    if design.metrics.max_pressure_angle_rise is not None:
+        assert design.metrics.max_pressure_angle_rise <= 30.0 * 1.002
+        assert design.metrics.max_pressure_angle_fall <= 40.0 * 1.002
+        assert design.metrics.curvature_ratio >= 1.5 * 0.998
+    else:
+        assert design.metrics.min_convex_radius >= 2.0 * 0.998
+
+
+def test_tampering_is_found():
+    """Verification measures the profile: it must not pass a cam that was changed anywhere."""
+    problem = cam()
+    mechanism = only(answered(problem)).mechanism
+    good, _ = verify(problem, mechanism)
+    assert good.passed
+
+    def broken(**changes):
+        verdict, _ = verify(problem, mechanism.model_copy(update=changes))
+        return {check.name for check in verdict.checks if not check.passed}
+
+    def curve(scale, shift=0.0):
+        profile = mechanism.profile
+        return profile.model_copy(
+            update={"x": [scale * x + shift for x in profile.x], "y": [scale * y for y in profile.y]}
+        )
+
+    assert "reproduces_program" in broken(profile=curve(1.0001))
+    assert "reproduces_program" in broken(profile=curve(1.0, 0.001))
+    bump = list(mechanism.profile.x)
+    bump[200] += 0.002
+    assert "reproduces_program" in broken(profile=mechanism.profile.model_copy(update={"x": bump}))
+    assert "reproduces_program" in broken(prime_radius=mechanism.prime_radius * 1.0001)
+    roller = mechanism.follower.model_copy(update={"roller_radius": 10.01})
+    assert "reproduces_program" in broken(follower=roller)
+    assert "reproduces_program" in broken(rotation="cw")
+    table = mechanism.program.model_copy(update={"s": [s * 1.001 for s in mechanism.program.s]})
+    assert {"keeps_the_statement", "reproduces_program"} <= broken(program=table)
+    verdict, _ = verify(cam(limits={"pressure_angle": 29.0}), mechanism)
+    assert [check.name for check in verdict.checks if not check.passed] == ["pressure_angle_fall"]
+    verdict, _ = verify(cam(limits={"curvature_ratio": 3.6}), mechanism)
+    assert "curvature_ratio" in [check.name for check in verdict.checks if not check.passed]
+    other = cam(segments=moves("cycloidal", "cycloidal"))
+    verdict, _ = verify(other, mechanism)
+    assert "keeps_the_statement" in [check.name for check in verdict.checks if not check.passed]
+
+
+def test_undercut_is_refused():
+    """A small stated cam with a large roller."""
+    follower = {"type": "translating_roller", "roller_radius": 14.0, "prime_radius": 20.0}
+    limits = {"pressure_angle": 85.0, "curvature_ratio": 0.0}
+    result = answered(cam(segments=moves("cycloidal", "cycloidal", 25.0, 60.0, 60.0), follower=follower, limits=limits))
+    assert result.designs == []
+    assert not result.search.complete
+
+
+def test_forces_of_nortons_example_15_3():
+    """The 3-4-5-6 polynomial at 15 rad/s: 53 lb, 52 lb in, and 10 lb left, with a preload of 10 lb."""
+    polynomial = [
+        {"angle": angle, "s": s, "v": 0.0, "a": 0.0} if angle != 90.0 else {"angle": 90.0, "s": 1.0}
+        for angle, s in ((0.0, 0.0), (90.0, 1.0), (180.0, 0.0))
+    ]
+    problem = cam(
+        segments=[
+            {"motion": "polynomial", "angle": 180.0, "conditions": polynomial},
+            {"motion": "dwell", "angle": 180.0},
+        ],
+        follower={"type": "translating_roller", "roller_radius": 0.5},
+        dynamics={"mass": 0.0738, "spring_rate": 50.0, "damping_ratio": 0.15, "preload": 10.0},
+        speed_rpm=15.0 * 30.0 / math.pi,
+        length_unit="in",
+    )
+    forces = only(answered(problem)).metrics.forces
+    assert forces.max_contact_force == pytest.approx(53.0, abs=0.5)
+    assert forces.max_torque == pytest.approx(52.0, abs=0.5)
+    assert forces.min_contact_force == pytest.approx(10.0, abs=0.5)
+    assert forces.natural_frequency == pytest.approx(math.sqrt(50.0 / 0.0738))
+
+
+def test_units_of_force():
+    """The same valve in millimetres and in metres."""
+    metres = {
+        **VALVE,
+        "length_unit": "m",
+        "segments": [{**s, **({"lift": s["lift"] / 1000.0} if "lift" in s else {})} for s in VALVE["segments"]],
+        "limits": {"min_radius": 0.003, "jerk": 0.350, "face_width": 0.032},
+        "dynamics": {"mass": 0.12, "spring_rate": 30000.0, "least_force": 100.0},
+    }
+    small, large = only(answered(cam(VALVE))), only(answered(cam(metres)))
+    assert large.optimality.value == pytest.approx(small.optimality.value, rel=1e-4)
+    assert large.mechanism.base_radius * 1000.0 == pytest.approx(small.mechanism.base_radius, rel=1e-3)
+    assert large.metrics.forces.max_torque * 1000.0 == pytest.approx(small.metrics.forces.max_torque, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "minimize",
+    [
+        "peak_velocity",
+        "peak_acceleration",
+        "peak_jerk",
+        "rms_velocity",
+        "rms_acceleration",
+        "rms_jerk",
+        "peak_torque",
+        "rms_torque",
+    ],
+)
+def test_optimal_motions_by_every_criterion(minimize):
+    """Value and bound belong together, and no law is better than the bound."""
+    beta = math.radians(100.0)
+    limits = {"pressure_angle": 35.0, "jerk": 90.0 * 25.0 / beta**3}
+    best = only(
+        answered(cam(segments=moves("optimal", "optimal", 25.0, 100.0, 100.0), limits=limits, minimize=minimize))
+    )
+    assert best.optimality.bound <= best.optimality.value
+    if not minimize.endswith("torque"):
+        assert best.optimality.gap <= 2e-3
+    law = only(answered(cam(segments=moves("auto", "auto", 25.0, 100.0, 100.0), limits=limits, minimize=minimize)))
+    assert best.optimality.bound <= law.optimality.value
+    assert best.optimality.value <= law.optimality.value * 1.001
+
+
+def test_conditions_within_an_optimal_motion():
+    segments = moves("optimal", "cycloidal")
+    segments[1]["conditions"] = [{"angle": 45.0, "s": 10.0}, {"angle": 60.0, "v": 20.0}]
+    segments[1]["bands"] = [{"start": 65.0, "end": 75.0, "lower": 17.0, "upper": 21.0}]
+    design = only(answered(cam(segments=segments, limits={"pressure_angle": 35.0, "jerk": 3000.0})))
+    table = design.mechanism.program
+    at = {round(angle, 6): (s, v) for angle, s, v in zip(table.angle, table.s, table.v, strict=True)}
+    assert at[135.0][0] == pytest.approx(10.0, abs=1e-9)
+    assert at[150.0][1] == pytest.approx(20.0, abs=1e-8)
+    assert all(17.0 - 1e-6 <= at[angle][0] <= 21.0 + 1e-6 for angle in np.arange(155.0, 165.5, 0.5))
+
+
+def test_continuous_jerk():
+    beta = 0.5 * math.pi
+    limits = {"pressure_angle": 35.0, "jerk": 100.0 * 25.0 / beta**3}
+    design = only(answered(cam(segments=moves("optimal", "optimal"), limits=limits, continuity="jerk")))
+    assert all(joint.continuous == ["s", "v", "a", "j"] for joint in design.joints)
+
+
+def test_a_whole_turn_of_optimal_motions():
+    segments = [
+        {"motion": "rise", "angle": 180.0, "lift": 10.0, "law": "optimal"},
+        {"motion": "fall", "angle": 180.0, "lift": 10.0, "law": "optimal"},
+    ]
+    design = only(answered(cam(segments=segments, minimize="rms_jerk")))
+    assert design.optimality.gap <= 1e-3
+    assert all({"s", "v", "a"} <= set(joint.continuous) for joint in design.joints)
+    # An eccentric has an rms jerk of 5/√2.
+    assert design.optimality.value <= 5.0 / math.sqrt(2.0)

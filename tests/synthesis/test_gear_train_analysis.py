@@ -1,0 +1,114 @@
+"""The analysis of a given gear train: energy, directions, printed values, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from synthesis.analyses import parse_request
+from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+
+
+def analysed(
+    stages: list[dict[str, Any]], idlers: list[dict[str, int]] | None = None, **fields: Any
+) -> GearTrainAnalysis:
+    mechanism = {"type": "gear_train", "stages": stages, "idlers": idlers or [], **fields.pop("given", {})}
+    request = parse_request({"mechanism": mechanism, **fields})
+    assert isinstance(request, GearTrainAnalysisRequest)
+    assert request.faults() == []
+    return GearTrainAnalysis.model_validate(request.answer())
+
+
+TWO = [{"driver": 14, "driven": 112, "module": 2.0}, {"driver": 16, "driven": 140, "module": 2.0}]
+
+
+def test_power_is_torque_by_speed() -> None:
+    found = analysed(TWO, input_torque=5.0, motion={"at": 0.0, "speed": 10.0}, mesh_efficiency=0.97)
+    power = [shaft.torque * 10.0 * shaft.speed_ratio for shaft in found.shafts]
+    assert power == pytest.approx([50.0, 50.0 * 0.97, 50.0 * 0.97**2])
+    assert found.efficiency == pytest.approx(0.97**2)
+    assert (found.ratio.numerator, found.ratio.denominator) == (70, 1)
+
+
+def test_forces_carry_the_torque() -> None:
+    found = analysed(TWO, input_torque=5.0, mesh_efficiency=1.0, motion={"at": 0.0, "speed": 100.0})
+    first, second = found.meshes
+    assert first.tangential_force == pytest.approx(5.0 / 0.014)
+    assert second.tangential_force == pytest.approx(5.0 * 8.0 / 0.016)
+    assert first.radial_force == pytest.approx(first.tangential_force * math.tan(math.radians(20.0)))
+    assert first.pitch_line_velocity == pytest.approx(1400.0)
+    assert second.pitch_line_velocity == pytest.approx(1600.0 / 8.0)
+    assert found.meshes[0].tangential_force * first.pitch_line_velocity * 1e-3 == pytest.approx(500.0)
+
+
+def test_an_idler_turns_the_direction_and_costs_a_mesh() -> None:
+    plain = analysed([{"driver": 20, "driven": 60}], mesh_efficiency=0.98)
+    idler = analysed([{"driver": 20, "driven": 60}], [{"stage": 1, "teeth": 30}], mesh_efficiency=0.98)
+    assert plain.ratio.value == -3.0
+    assert idler.ratio.value == 3.0
+    assert idler.efficiency == pytest.approx(0.98**2)
+    assert [gear.role for gear in idler.gears] == ["driver", "idler", "driven"]
+    assert idler.centre_distances == [70.0]
+    assert idler.meshes[1].tangential_force == pytest.approx(0.98 * idler.meshes[0].tangential_force)
+
+
+def test_angles_follow_the_input() -> None:
+    found = analysed(TWO, motion={"from": 0.0, "to": 720.0, "steps": 4, "speed_rpm": 60.0})
+    assert found.input_angle == [0.0, 180.0, 360.0, 540.0, 720.0]
+    assert found.gears[1].angle == pytest.approx([-angle / 8.0 for angle in found.input_angle])
+    assert found.gears[3].omega == pytest.approx([2.0 * math.pi / 70.0] * 5)
+    assert found.gears[1].angle == found.gears[2].angle
+
+
+def test_mesh_geometry_of_norton_example_9_1() -> None:
+    """19 and 37 teeth of p_d = 6 at 20°: path 0.798 in, contact ratio 1.62."""
+    found = analysed([{"driver": 19, "driven": 37, "module": 1.0 / 6.0}], length_unit="in")
+    mesh = found.meshes[0]
+    assert mesh.path_of_contact == pytest.approx(0.798, abs=0.0005)
+    assert mesh.contact_ratio == pytest.approx(1.62, abs=0.005)
+    assert mesh.approach + mesh.recess == pytest.approx(mesh.path_of_contact)
+    turned = analysed([{"driver": 37, "driven": 19, "module": 1.0 / 6.0}], length_unit="in").meshes[0]
+    assert (turned.approach, turned.recess) == (mesh.recess, mesh.approach)
+
+
+def test_friction_costs_about_a_hundredth() -> None:
+    found = analysed([{"driver": 20, "driven": 60}], friction=0.06)
+    assert found.efficiency is not None
+    assert 0.98 < found.efficiency < 0.995
+    assert analysed([{"driver": 20, "driven": 60}], friction=0.0).efficiency == 1.0
+
+
+def test_over_the_cycle_is_one_turn() -> None:
+    mechanism = {"type": "gear_train", "stages": TWO, "idlers": [], "pressure_angle": 20.0}
+    found = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.over_the_cycle(mechanism, 36))
+    assert found.input_angle[-1] == 360.0
+    assert len(found.gears[0].angle) == 37
+
+
+@pytest.mark.parametrize(
+    ("change", "path"),
+    [
+        ({"idlers": [{"stage": 3, "teeth": 20}]}, "/mechanism/idlers/0/stage"),
+        ({"ratio": {"numerator": 71, "denominator": 1, "value": 71.0}}, "/mechanism/ratio"),
+    ],
+)
+def test_faults(change: dict[str, Any], path: str) -> None:
+    request = parse_request({"mechanism": {"type": "gear_train", "stages": TWO, **change}})
+    assert [fault[0] for fault in request.faults()] == [path]
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        {"type": "gear_train", "stages": []},
+        {"type": "gear_train", "stages": [{"driver": 2, "driven": 30}]},
+        {"type": "gear_train", "stages": [{"driver": 20, "driven": 30, "module": 0.0}]},
+        {"type": "gear_train", "stages": TWO, "links": {}},
+    ],
+)
+def test_ill_formed_trains_are_refused(mechanism: dict[str, Any]) -> None:
+    with pytest.raises(ValidationError):
+        parse_request({"mechanism": mechanism})
