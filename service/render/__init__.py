@@ -8,6 +8,7 @@ from typing import Any, Literal
 from service.render.gear_csv import gear_train_table
 from service.render.gear_dxf import gear_train_drawing
 from service.render.gear_sheet import gear_train_sheet
+from service.render.linkage_sheet import linkage_sheet
 from service.render.sheet import fourbar_sheet
 
 __all__ = ["NoSuchExport", "exported"]
@@ -16,6 +17,9 @@ Form = Literal["svg", "dxf", "csv"]
 
 EXPORTS: dict[str, dict[Form, Callable[[Any, Any, str], str]]] = {
     "fourbar": {"svg": fourbar_sheet},
+    "slider_crank": {"svg": linkage_sheet},
+    "inverted_slider_crank": {"svg": linkage_sheet},
+    "watt_2": {"svg": linkage_sheet},
     "gear_train": {"svg": gear_train_sheet, "dxf": gear_train_drawing, "csv": gear_train_table},
 }
 """For each type of mechanism how a design and its problem, under a title, become a file of each form."""

@@ -1,0 +1,46 @@
+"""The sheet of slider-cranks and driven fourbars: what stands where, readable from the drawing itself."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import Any
+
+import pytest
+
+from service.render import exported
+from synthesis.dispatch import solve
+from synthesis.kinds import parse_problem
+
+SVG = "{http://www.w3.org/2000/svg}"
+POSITIONS = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
+             {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("asked", "kind", "rails"),
+    [
+        ({"output_side": {"dyad": "PR"}}, "slider_crank", 1),
+        ({"input_side": {"dyad": "PR"}}, "slider_crank", 1),
+        ({"output_side": {"dyad": "RP"}}, "inverted_slider_crank", 1),
+        ({"driver_dyad": True}, "watt_2", 0),
+    ],
+)
+def test_all_links_joints_and_targets_are_drawn(asked: dict[str, Any], kind: str, rails: int) -> None:
+    problem = parse_problem({"kind": "motion", "positions": POSITIONS, "max_designs": 1, **asked})
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    assert design.mechanism.type == kind
+    text = exported(design, problem, "A <title> & more", "svg")
+    root = ET.fromstring(text)
+    joints = {e.get("data-joint") for e in root.iter(f"{SVG}circle")} - {None}
+    assert joints == set(design.mechanism.skeleton.joints)
+    moving = {link.name for link in design.mechanism.skeleton.links} - {"ground"}
+    for configuration in root.iter(f"{SVG}g"):
+        if configuration.get("data-configuration"):
+            drawn = {e.get("data-link") for e in configuration.iter() if e.get("data-link")}
+            assert drawn == moving
+    assert len([g for g in root.iter() if g.get("data-configuration")]) == 3
+    assert len([g for g in root.iter() if g.get("data-target")]) == 3
+    assert len([g for g in root.iter() if g.get("data-rail")]) == rails
+    checks = {g.get("data-check") for g in root.iter() if g.get("data-check")}
+    assert checks == {check.name for check in design.verification.checks}
+    assert exported(design, problem, "A <title> & more", "svg") == text
