@@ -38,6 +38,7 @@ quick: $(STAMP)
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
 	$(BIN)/python -m benchmarks.motion
+	$(BIN)/python -m benchmarks.gear_train
 	$(BIN)/python -m benchmarks.service
 
 # The virtual environment is made without ensurepip, which some systems leave out;

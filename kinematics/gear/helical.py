@@ -1,8 +1,9 @@
 """Helical gears on parallel and on crossed shafts.
 
 With the helix angle ψ and the normal module m_n the transverse module is m_n / cos ψ; the teeth are those of a spur
-gear in the normal plane, of z / cos³ ψ virtual teeth (Norton, Design of Machinery, Sec. 9.4; Rao, Sec. 7.2–7.5). Shafts that
-cross at the angle Σ take helix angles of ψ₁ + ψ₂ = Σ, of equal hand where both are positive. Angles are radians.
+gear in the normal plane, of z / cos³ ψ virtual teeth (Norton, Design of Machinery, Sec. 9.4; Rao, Sec. 7.2–7.5).
+Shafts that cross at the angle Σ take helix angles of ψ₁ + ψ₂ = Σ, of equal hand where both are positive. Angles are
+radians.
 """
 
 from __future__ import annotations
