@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.analyses import parse_request
+from synthesis.analyses import family, parse_request
+from synthesis.dispatch import solve
 from synthesis.mechanisms import MechanismError
+from synthesis.problems.motion import MotionProblem
 from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
 
 KINDS = {
@@ -202,3 +204,15 @@ def test_a_run_in_time_that_turns_back_passes_the_same_positions_again(mechanism
         for name, sign in (("x", 1.0), ("vx", -1.0), ("ax", 1.0), ("jy", -1.0)):
             values = np.array(track[name], float)
             assert values == pytest.approx(sign * values[::-1], abs=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", MotionProblem.model_config["json_schema_extra"]["examples"])
+def test_the_designs_of_the_documented_problems_move(example):
+    """Whatever a solver gives as a mechanism can be stated as it is, with its skeleton beside its dimensions."""
+    result = solve(MotionProblem.model_validate(example), lambda _fraction, _message: None)
+    assert result.designs
+    for design in result.designs:
+        mechanism = design.model_dump(mode="json")["mechanism"]
+        moved = family(mechanism).request.over_the_cycle(mechanism, 36)
+        assert sum(moved["valid"]) > 30
