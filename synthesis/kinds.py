@@ -10,8 +10,24 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
 
 from pydantic import Discriminator, Tag, TypeAdapter
 
-from synthesis.designs import CamResult, GearTrainResult, MotionResult, PlanetaryResult, Result
-from synthesis.problems import CamProblem, GearTrainProblem, MotionProblem, PlanetaryProblem, StatedProblem
+from synthesis.designs import (
+    CamResult,
+    GearboxResult,
+    GearTrainResult,
+    LayshaftResult,
+    MotionResult,
+    PlanetaryResult,
+    Result,
+)
+from synthesis.problems import (
+    CamProblem,
+    GearboxProblem,
+    GearTrainProblem,
+    LayshaftProblem,
+    MotionProblem,
+    PlanetaryProblem,
+    StatedProblem,
+)
 
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
@@ -30,6 +46,10 @@ KINDS: dict[str, Kind] = {
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"
+    ),
+    "gearbox": Kind(GearboxProblem, GearboxResult, "synthesis.gearbox.solver:solve_gearbox"),
+    "layshaft_gearbox": Kind(
+        LayshaftProblem, LayshaftResult, "synthesis.layshaft_gearbox.solver:solve_layshaft_gearbox"
     ),
     "cam": Kind(CamProblem, CamResult, "synthesis.cam.solver:solve_cam"),
 }

@@ -18,6 +18,14 @@ from synthesis.designs.gear_train import (
     Ratio,
     Stage,
 )
+from synthesis.designs.gearbox import (
+    GearboxDesign,
+    GearboxMechanism,
+    GearboxResult,
+    LayshaftDesign,
+    LayshaftMechanism,
+    LayshaftResult,
+)
 from synthesis.designs.linkage import (
     BlockSlide,
     CouplerPoint,
@@ -67,9 +75,15 @@ __all__ = [
     "GearTrainMetrics",
     "GearTrainResult",
     "GearTrainSearch",
+    "GearboxDesign",
+    "GearboxMechanism",
+    "GearboxResult",
     "Idler",
     "InvertedLinks",
     "InvertedSliderCrankMechanism",
+    "LayshaftDesign",
+    "LayshaftMechanism",
+    "LayshaftResult",
     "Line",
     "Link",
     "LinkageDesign",

@@ -22,6 +22,10 @@ from synthesis.problems.base import (
 )
 from synthesis.problems.cam import CamProblem
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
+from synthesis.problems.gearbox import (
+    GearboxProblem,
+    LayshaftProblem,
+)
 from synthesis.problems.linkage import Constraints, LengthLimits, LinkageProblem, Region
 from synthesis.problems.motion import (
     CouplerVector,
@@ -50,8 +54,10 @@ __all__ = [
     "DyadChoices",
     "Flag",
     "GearTrainProblem",
+    "GearboxProblem",
     "GroundLine",
     "Interval",
+    "LayshaftProblem",
     "LengthLimits",
     "LinkageProblem",
     "MotionProblem",

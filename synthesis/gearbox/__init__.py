@@ -1,0 +1,1 @@
+"""Gearboxes of several speeds: structures, tooth numbers, and the proof that they are the best."""

@@ -1,0 +1,59 @@
+"""Structures of machine-tool gearboxes: how many pairs in which stage, and what steps they make.
+
+A gearbox of z speeds has stages of p₁, p₂, ... pairs with p₁ p₂ ... = z. In one stage neighbouring pairs differ by one
+step of the progression, characteristic 1; in the next by as many steps as the first has pairs; and so on, so that every
+speed comes once. The *structural formula* 3(1) 2(3) names the stages in the order of the shafts with their
+characteristics (Rao, Sec. 8.5; Acherkan, Machine Tool Design, vol. 3).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+
+class Group(NamedTuple):
+    """The pairs between two shafts: how many, and the steps from one to the next."""
+
+    pairs: int
+    characteristic: int
+
+
+Structure = tuple[Group, ...]
+
+
+def formula(structure: Structure) -> str:
+    """The structural formula, e.g. ``3(1) 2(3)``; a single pair has no characteristic."""
+    return " ".join(
+        str(group.pairs) if group.pairs == 1 else f"{group.pairs}({group.characteristic})" for group in structure
+    )
+
+
+def structures(count: int, most: int) -> list[Structure]:
+    """All structures of ``count`` speeds with 2 to ``most`` pairs in a stage."""
+    found = []
+    for factors in _factorizations(count, most):
+        for order in itertools.permutations(range(len(factors))):
+            characteristic, groups = 1, {}
+            for at in order:
+                groups[at] = Group(factors[at], characteristic)
+                characteristic *= factors[at]
+            found.append(tuple(groups[at] for at in range(len(factors))))
+    return found
+
+
+def _factorizations(count: int, most: int) -> list[tuple[int, ...]]:
+    """Ordered factorizations into factors 2 to ``most``."""
+    if count == 1:
+        return [()]
+    found = []
+    for factor in range(2, min(count, most) + 1):
+        if count % factor == 0:
+            found += [(factor, *rest) for rest in _factorizations(count // factor, most)]
+    return found
+
+
+def spread(group: Group, ratio: float) -> float:
+    """Quotient of the fastest and slowest ratio of a stage, φ^((p − 1) x)."""
+    return math.exp((group.pairs - 1) * group.characteristic * math.log(ratio))
