@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from importlib import import_module
 from typing import Any, Literal
-
-from service.render.gear_csv import gear_train_table
-from service.render.gear_dxf import gear_train_drawing
-from service.render.gear_sheet import gear_train_sheet
-from service.render.linkage_sheet import linkage_sheet
-from service.render.sheet import fourbar_sheet
 
 __all__ = ["NoSuchExport", "exported"]
 
 Form = Literal["svg", "dxf", "csv"]
 
-EXPORTS: dict[str, dict[Form, Callable[[Any, Any, str], str]]] = {
-    "fourbar": {"svg": fourbar_sheet},
-    "slider_crank": {"svg": linkage_sheet},
-    "inverted_slider_crank": {"svg": linkage_sheet},
-    "watt_2": {"svg": linkage_sheet},
-    "gear_train": {"svg": gear_train_sheet, "dxf": gear_train_drawing, "csv": gear_train_table},
+EXPORTS: dict[str, dict[Form, str]] = {
+    "cam": {
+        "svg": "service.render.cam_sheet:cam_sheet",
+        "dxf": "service.render.cam_dxf:cam_drawing",
+        "csv": "service.render.cam_csv:cam_table",
+    },
+    "fourbar": {"svg": "service.render.sheet:fourbar_sheet"},
+    "slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
+    "inverted_slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
+    "watt_2": {"svg": "service.render.linkage_sheet:linkage_sheet"},
+    "gear_train": {
+        "svg": "service.render.gear_sheet:gear_train_sheet",
+        "dxf": "service.render.gear_dxf:gear_train_drawing",
+        "csv": "service.render.gear_csv:gear_train_table",
+    },
 }
-"""For each type of mechanism how a design and its problem, under a title, become a file of each form."""
+"""For each type of mechanism what makes a file of each form of a design, its problem and a title: ``module:function``,
+imported when it is needed, so that a server that starts does not wait for a drawing library."""
 
 
 class NoSuchExport(LookupError):
@@ -57,4 +61,6 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str:
     forms = EXPORTS.get(design.mechanism.type, {})
     if form not in forms:
         raise NoSuchExport(design.mechanism.type, form)
-    return forms[form](design, problem, title)
+    module, function = forms[form].split(":")
+    text: str = getattr(import_module(module), function)(design, problem, title)
+    return text

@@ -1,0 +1,194 @@
+"""A cam as DXF: profile and pitch curve as splines, the profile again as tangent arcs, circles and follower, by layers.
+
+=================  ==================================================================
+layer              what is on it
+=================  ==================================================================
+PROFILE            closed cubic spline through the profile's points, tangents kept
+PROFILE_ARCS       the same as a closed polyline of tangent arcs (biarcs); frozen
+PITCH_CURVE        spline of the roller's centres
+PRIME_CIRCLE       prime circle of a roller's cam
+BASE_CIRCLE        base circle
+FOLLOWER           roller or face, arm and pivot at cam angle 0
+CENTRE             cross at the cam's centre, and the mark of cam angle 0
+=================  ==================================================================
+
+Coordinates are the cam's own frame in the problem's unit, which the header names.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+
+import ezdxf
+import numpy as np
+from ezdxf import units
+from ezdxf.filemanagement import new
+from ezdxf.layouts.layout import Modelspace
+from numpy.typing import NDArray
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
+from service.render.cam import CamScene
+from service.render.svg import clean
+from synthesis.designs.cam import CamDesign
+from synthesis.problems.cam import CamProblem
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# Without the time and the random marks of its making, so that the same cam gives the same file.
+ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]
+
+UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
+
+LAYERS = {
+    "PROFILE": (5, "CONTINUOUS"),
+    "PROFILE_ARCS": (4, "CONTINUOUS"),
+    "PITCH_CURVE": (6, "DASHED"),
+    "PRIME_CIRCLE": (8, "DOT"),
+    "BASE_CIRCLE": (8, "DASHDOT"),
+    "FOLLOWER": (30, "CONTINUOUS"),
+    "CENTRE": (7, "CONTINUOUS"),
+}
+"""Colour index and line type of each layer."""
+
+ARC_TOLERANCE = 1e-5
+"""Distance of the arcs from the points that they replace, as a share of the base radius: 0.4 µm for 40 mm."""
+
+LONGEST_RUN = 64
+"""Points that one pair of arcs replaces at most."""
+
+STRAIGHT = 1e-12
+"""Bulge below which a part is a line."""
+
+
+def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
+    """The drawing of a cam design as a DXF document (R2010)."""
+    scene = CamScene(design.mechanism)
+    document = new("R2010", setup=["linetypes"])
+    document.units = UNITS[problem.length_unit]
+    for name, (colour, linetype) in LAYERS.items():
+        document.layers.add(name, color=colour, linetype=linetype)
+    document.layers.get("PROFILE_ARCS").freeze()
+    document.header.custom_vars.append("Title", clean(title) or "Cam")
+    space = document.modelspace()
+    _spline(space, scene.contour, "PROFILE")
+    space.add_lwpolyline(
+        _biarcs(scene.contour, ARC_TOLERANCE * scene.base_radius),
+        format="xyb",
+        close=True,
+        dxfattribs={"layer": "PROFILE_ARCS"},
+    )
+    space.add_circle((0.0, 0.0), scene.base_radius, dxfattribs={"layer": "BASE_CIRCLE"})
+    if scene.roller:
+        _spline(space, Contour(scene.pitch_curve), "PITCH_CURVE")
+        space.add_circle((0.0, 0.0), scene.roller.prime_radius, dxfattribs={"layer": "PRIME_CIRCLE"})
+    _follower(space, scene)
+    arm = 0.08 * scene.base_radius
+    for end in (arm, 1j * arm):
+        _line(space, -end, end, "CENTRE")
+    _line(space, complex(arm), complex(3.0 * arm), "CENTRE")
+    text = io.StringIO()
+    document.write(text)
+    return text.getvalue()
+
+
+def _line(space: Modelspace, start: complex, end: complex, layer: str) -> None:
+    space.add_line((start.real, start.imag), (end.real, end.imag), dxfattribs={"layer": layer})
+
+
+def _spline(space: Modelspace, contour: Contour, layer: str) -> None:
+    """Cubic pieces between the points with common tangents there, as one spline with double knots."""
+    points, tangents, chords = contour.points, contour.tangents, contour.chords
+    ahead = points + tangents * chords / 3.0
+    behind = np.roll(points, -1) - np.roll(tangents, -1) * chords / 3.0
+    inner = np.stack([ahead, behind], axis=1).reshape(-1)
+    control = np.concatenate([points[:1], inner, points[:1]])
+    along = np.concatenate([[0.0], np.cumsum(chords)])
+    knots = np.concatenate([[0.0] * 4, np.repeat(along[1:-1], 2), [along[-1]] * 4])
+    spline = space.add_spline(degree=3, dxfattribs={"layer": layer})
+    spline.control_points = [(z.real, z.imag, 0.0) for z in control]
+    spline.knots = knots.tolist()
+    spline.closed = True
+
+
+def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
+    """Vertices with bulges: pairs of tangent arcs over runs of points as long as they stay within a tolerance."""
+    points = np.append(contour.points, contour.points[0])
+    tangents = np.append(contour.tangents, contour.tangents[0])
+    vertices, k, last = [], 0, len(points) - 1
+    while k < last:
+        run = min(LONGEST_RUN, last - k)
+        while True:
+            pair = _biarc(
+                complex(points[k]), complex(tangents[k]), complex(points[k + run]), complex(tangents[k + run])
+            )
+            if run == 1 or _distance(points[k + 1 : k + run], pair) <= tolerance:
+                break
+            run = max(1, run // 2)
+        vertices += [(start.real, start.imag, bulge) for start, _, bulge in pair]
+        k += run
+    return vertices
+
+
+def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[complex, complex, float]]:
+    """Two arcs, (start, end, bulge), with given ends and unit tangents and equal lengths of tangent.
+
+    With d the length of the tangents, the arcs meet at the middle of a + d ta and b − d tb, where
+    |a + d ta − (b − d tb)| = 2 d (Bolton, Computer-Aided Design 7 (1975) 29).
+    """
+    v, t = b - a, ta + tb
+    square = 2.0 * (1.0 - (ta * tb.conjugate()).real)
+    along = (v * t.conjugate()).real
+    if square > STRAIGHT:
+        d = (-along + math.sqrt(along * along + square * abs(v) ** 2)) / square
+    else:
+        d = 0.5 * abs(v) ** 2 / along
+    middle = 0.5 * (a + d * ta + b - d * tb)
+    return [(a, middle, _bulge(a, ta, middle)), (middle, b, -_bulge(b, -tb, middle))]
+
+
+def _bulge(start: complex, tangent: complex, end: complex) -> float:
+    """tan of a quarter of the arc's angle, positive to the left; the angle is twice that from tangent to chord."""
+    chord = (end - start) * tangent.conjugate()
+    return math.tan(0.5 * math.atan2(chord.imag, chord.real))
+
+
+def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> float:
+    """Greatest distance of points from the nearer of two arcs."""
+    off = []
+    for start, end, bulge in pair:
+        if abs(bulge) < STRAIGHT:
+            along = (end - start) / abs(end - start)
+            off.append(np.abs(((points - start) * along.conjugate()).imag))
+            continue
+        centre = start + (end - start) * complex(0.5, 0.25 * (1.0 / bulge - bulge))
+        off.append(np.abs(np.abs(points - centre) - abs(start - centre)))
+    middle = pair[0][1]
+    chord = pair[1][1] - pair[0][0]
+    first = ((points - middle) * chord.conjugate()).real < 0.0
+    return float(np.where(first, *off).max())
+
+
+def _follower(space: Modelspace, scene: CamScene) -> None:
+    """Roller or face at cam angle 0, with the arm and its pivot."""
+    layer = {"layer": "FOLLOWER"}
+    follower = scene.follower
+    if isinstance(follower, TranslatingRoller | OscillatingRoller):
+        centre = complex(scene.pitch_curve[0])
+        if follower.roller_radius > 0.0:
+            space.add_circle((centre.real, centre.imag), follower.roller_radius, dxfattribs=layer)
+        end = scene.pivot if scene.pivot is not None else centre + scene.base_radius
+        _line(space, centre, end, "FOLLOWER")
+    else:
+        start, end = scene.faces(len(scene.angle))[0]
+        if isinstance(follower, OscillatingFlat):
+            along = scene.face_direction(0)
+            pivot = complex(follower.pivot_distance)
+            start += along * ((pivot - start) * along.conjugate()).real
+            _line(space, start, pivot, "FOLLOWER")
+        _line(space, start, end, "FOLLOWER")
+    if scene.pivot is not None:
+        pin = 0.04 * scene.base_radius
+        space.add_circle((scene.pivot.real, scene.pivot.imag), pin, dxfattribs=layer)
