@@ -8,10 +8,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.analyses import gear_train, linkage
+from synthesis.analyses import cam, camshaft, contour_cam, gear_train, linkage
 from synthesis.analyses.base import AnalysisRequest, Family
 
-FAMILIES: dict[str, Family] = {"gear_train": gear_train.FAMILY}
+FAMILIES: dict[str, Family] = {
+    "cam": cam.FAMILY,
+    "camshaft": camshaft.FAMILY,
+    "contour_cam": contour_cam.FAMILY,
+    "gear_train": gear_train.FAMILY,
+}
 """By the mechanism types that are no linkages; every other mechanism is one."""
 
 

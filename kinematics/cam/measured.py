@@ -1,0 +1,46 @@
+"""The motion program that a finished profile gives its follower.
+
+Displacement, velocity and acceleration are measured at equal cam angles by the contact search and joined by polynomials
+of the fifth degree, so that forces, torques and vibrations can be had of a cam that nobody has a program of.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.follower import Follower
+from kinematics.cam.profile import Rotation, even_angles
+from kinematics.cam.program import TURN, Program
+from kinematics.cam.segments import knot_segment
+from kinematics.errors import DimensionError
+
+HERMITE = np.array(
+    [
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.5, 0.0, 0.0, 0.0],
+        [-10.0, -6.0, -1.5, 10.0, -4.0, 0.5],
+        [15.0, 8.0, 1.5, -15.0, 7.0, -1.0],
+        [-6.0, -3.0, -0.5, 6.0, -3.0, 0.5],
+    ]
+)
+"""Coefficients of the quintic on [0, 1] with given s, v, a at 0 and at 1."""
+
+
+def measured_program(contour: Contour, follower: Follower, rotation: Rotation, count: int) -> Program:
+    """The program of a profile under a follower, from so many equal cam angles.
+
+    Raises
+    ------
+    DimensionError
+        Where the follower touches nothing at some angle.
+    """
+    found = contour.follow(follower, even_angles(count), rotation)
+    if not found.valid.all():
+        raise DimensionError("profile", "touched by the follower at every cam angle", int((~found.valid).sum()))
+    h = TURN / count
+    states = np.stack([found.s, h * found.v, h * h * found.a], axis=1)
+    ends = np.concatenate([states, np.roll(states, -1, axis=0)], axis=1)
+    coefficients = (ends @ HERMITE.T) / h ** np.arange(6)
+    return Program([knot_segment(np.linspace(0.0, TURN, count + 1), coefficients)])

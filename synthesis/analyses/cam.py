@@ -1,0 +1,314 @@
+"""The analysis of a finished cam: its follower is laid against the profile, and what it does is measured.
+
+Displacements of an oscillating follower are degrees, its rates rad/s; those of a translating one lengths and their
+rates. Forces are along the follower's motion, torques of an oscillating one about its pivot.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from kinematics.cam.contact import ContactMotion, Contour
+from kinematics.cam.dynamics import FollowerLoad
+from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller
+from kinematics.cam.measured import measured_program
+from kinematics.cam.profile import even_angles
+from kinematics.cam.response import FollowerTrain, Response
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import Run, StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.mechanisms.base import MechanismError
+from synthesis.mechanisms.cam import GivenCam, NonNegative
+from synthesis.problems import PositiveNumber, Statement
+
+Real = NDArray[np.float64]
+
+MOST_EFFORT = 40_000_000
+"""Positions times points of the profile at most: about two seconds."""
+
+MEASURED = 1440
+"""Cam angles at which the program of a profile is measured for vibrations."""
+
+COARSEST = 24
+"""Positions that a cutter's path with a chordal tolerance starts from."""
+
+MOST_CHORDS = 20_000
+
+
+class Load(Statement):
+    """The follower as one mass on a spring; a moment of inertia and torques for an oscillating one."""
+
+    mass: PositiveNumber
+    spring_rate: NonNegative = 0.0
+    preload: NonNegative = Field(default=0.0, description="Toward the cam at zero displacement.")
+    damping: NonNegative = Field(default=0.0, description="Force for each unit of velocity.")
+
+    def core(self) -> FollowerLoad:
+        """The load of the analysis core."""
+        return FollowerLoad(self.mass, self.spring_rate, self.preload, self.damping)
+
+
+class Train(Statement):
+    """An elastic follower: a mass behind a train of stiffness and damping, with a return spring on the mass."""
+
+    mass: PositiveNumber
+    stiffness: PositiveNumber
+    damping: NonNegative = 0.0
+    spring_rate: NonNegative = 0.0
+    preload: NonNegative = 0.0
+
+    def core(self) -> FollowerTrain:
+        """The train of the analysis core."""
+        return FollowerTrain(self.mass, self.stiffness, self.damping, self.spring_rate, self.preload)
+
+
+class Cutter(Statement):
+    """A cutter or grinding wheel that makes the profile: at the positions of the motion, or as close as chords ask."""
+
+    radius: NonNegative
+    chordal_tolerance: PositiveNumber | None = Field(
+        default=None, description="Greatest distance of the straight moves from the path; null: the motion's positions."
+    )
+
+
+class CamAnalysisRequest(AnalysisRequest):
+    """A cam and how it turns; a full turn in 360 steps by default."""
+
+    model_config = ConfigDict(
+        title="Cam, what its profile does",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "cam",
+                        "follower": {"type": "translating_roller", "roller_radius": 15.0},
+                        "prime_radius": 40.0,
+                        "rotation": "ccw",
+                        "profile": {
+                            "x": [round(5.0 + 30.0 * math.cos(math.radians(6 * k)), 9) for k in range(60)],
+                            "y": [round(30.0 * math.sin(math.radians(6 * k)), 9) for k in range(60)],
+                        },
+                    },
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 72, "speed_rpm": 60.0},
+                    "load": {"mass": 0.5, "spring_rate": 4.0, "preload": 30.0},
+                    "cutter": {"radius": 12.0, "chordal_tolerance": 0.05},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenCam
+    motion: StatedMotion = Sweep()
+    load: Load | None = None
+    train: Train | None = Field(
+        default=None, description="Steady vibration at the speed of the motion's first position."
+    )
+    cutter: Cutter | None = None
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        found = []
+        if self.motion.speed is not None and self.motion.speed_rpm is not None:
+            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
+        if isinstance(self.motion, Run) and not 0.0 <= self.motion.time.end - self.motion.time.start <= 9999 * (
+            self.motion.time.step
+        ):
+            found.append(("/motion/time", "the run must end after its start, in at most 10000 positions"))
+        if self.train is not None and self.motion.rate <= 0.0:
+            found.append(("/motion/speed", "a vibration needs a speed that is positive"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything over the motion, in the shape of :class:`CamAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        contour, follower = self.mechanism.contour(), self.mechanism.core_follower()
+        if len(at) * len(contour.points) > MOST_EFFORT:
+            raise MechanismError("/profile", "too many points for so many positions; take fewer of one of them")
+        rotation = self.mechanism.rotation
+        found = contour.follow(follower, np.radians(at), rotation)
+        unit = 180.0 / math.pi if isinstance(follower, OscillatingRoller | OscillatingFlat) else 1.0
+        velocity = found.v * speed
+        acceleration = found.a * speed**2 + found.v * self.motion.acceleration
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "valid": found.valid.tolist(),
+            "follower": {
+                "position": (found.s * unit).tolist(),
+                "velocity": velocity.tolist(),
+                "acceleration": acceleration.tolist(),
+            },
+            "contact": {"x": found.point.real.tolist(), "y": found.point.imag.tolist()},
+            "pressure_angle": np.degrees(found.pressure_angle).tolist(),
+            "radius_of_curvature": found.radius.tolist(),
+            "forces": None if self.load is None else _forces(self.load, found, velocity, acceleration),
+            "response": None if self.train is None else self._response(contour, follower, at),
+            "cutter_path": None if self.cutter is None else self._cutter_path(contour, follower, at),
+            "profile": {
+                "size": float(np.abs(contour.points).max()),
+                "least_convex_radius": _least_radius(contour, 1.0),
+                "least_hollow_radius": _least_radius(contour, -1.0),
+                "cusped": contour.cusped,
+                "crossings": [[float(z.real), float(z.imag)] for z in contour.crossings[:16]],
+            },
+        }
+
+    def _response(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
+        """The steady vibration at the motion's cam angles."""
+        assert self.train is not None, "only asked for with a train"
+        program = measured_program(contour, follower, self.mechanism.rotation, MEASURED)
+        found = Response(program, self.train.core(), self.motion.rate)
+        theta, grid = np.mod(np.radians(at), math.tau), found.angle
+        lag = np.interp(theta, grid, found.state[0])
+        return {
+            "natural_frequency": found.train.natural_frequency,
+            "frequency_ratio": found.frequency_ratio,
+            "resonant": found.resonant,
+            "too_slow": found.too_slow,
+            "lag": lag.tolist(),
+            "acceleration": (np.interp(theta, grid, found.acceleration) * self.motion.rate**2).tolist(),
+            "contact_force": np.interp(theta, grid, found.contact_force).tolist(),
+            "least_contact_force": float(found.contact_force.min()),
+        }
+
+    def _cutter_path(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
+        """Centres of the cutter at the motion's angles, or at angles as close as the tolerance asks."""
+        assert self.cutter is not None, "only asked for with a cutter"
+        cutter, rotation = self.cutter, self.mechanism.rotation
+
+        def centres(theta: Real) -> NDArray[np.complex128]:
+            found = contour.follow(follower, theta, rotation)
+            return found.point + cutter.radius * found.normal
+
+        theta = np.radians(at)
+        if cutter.chordal_tolerance is not None:
+            theta = even_angles(COARSEST)
+            theta = np.append(theta, math.tau)
+            path = centres(theta)
+            while len(theta) < MOST_CHORDS:
+                middle = 0.5 * (theta[:-1] + theta[1:])
+                between = centres(middle)
+                chord = np.diff(path)
+                length = np.abs(chord)
+                off = np.abs(((between - path[:-1]) * np.conj(chord)).imag) / np.where(length > 0.0, length, 1.0)
+                coarse = np.where(length > 0.0, off, np.abs(between - path[:-1])) > cutter.chordal_tolerance
+                if not coarse.any():
+                    break
+                order = np.argsort(np.concatenate([theta, middle[coarse]]), kind="stable")
+                theta = np.concatenate([theta, middle[coarse]])[order]
+                path = np.concatenate([path, between[coarse]])[order]
+            theta, path = theta[:-1], path[:-1]
+        else:
+            path = centres(theta)
+        hollow = _least_radius(contour, -1.0)
+        return {
+            "angle": np.degrees(theta).tolist(),
+            "x": path.real.tolist(),
+            "y": path.imag.tolist(),
+            "gouges": hollow is not None and cutter.radius >= hollow,
+        }
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same over a full turn."""
+        return cls(mechanism=GivenCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
+
+
+def _forces(load: Load, found: ContactMotion, velocity: Real, acceleration: Real) -> dict[str, list[float]]:
+    """Along the follower's motion, between the surfaces, and the torque on the camshaft."""
+    inertia = load.mass * acceleration + load.damping * velocity
+    force = inertia + load.spring_rate * found.s + load.preload
+    return {
+        "along": force.tolist(),
+        "normal": (force / np.cos(found.pressure_angle)).tolist(),
+        "torque": (force * found.v).tolist(),
+    }
+
+
+def _least_radius(contour: Contour, side: float) -> float | None:
+    """Least radius of the convex (1) or hollow (−1) parts; None where there is none."""
+    greatest = float((side * contour.curvature()).max())
+    return 1.0 / greatest if greatest > FLAT / float(np.abs(contour.points).max()) else None
+
+
+FLAT = 1e-6
+"""Curvature times size below which a profile is straight."""
+
+
+class FollowerSeries(Answer):
+    """The follower over the positions; null where it touches nothing."""
+
+    position: list[float | None] = Field(description="Lengths, or degrees of an arm.")
+    velocity: list[float | None]
+    acceleration: list[float | None]
+
+
+class CurvePoints(Answer):
+    """Points in the cam's own frame."""
+
+    x: list[float | None]
+    y: list[float | None]
+
+
+class ForceSeries(Answer):
+    """Forces of the load over the positions."""
+
+    along: list[float | None] = Field(description="Along the follower's motion; not above zero: contact is lost.")
+    normal: list[float | None] = Field(description="Between the surfaces.")
+    torque: list[float | None] = Field(description="That turns the camshaft.")
+
+
+class ResponseSeries(Answer):
+    """Steady vibration of an elastic follower; null at a resonance."""
+
+    natural_frequency: float
+    frequency_ratio: float
+    resonant: bool
+    too_slow: bool = Field(description="The natural frequency is below ten times the speed.")
+    lag: list[float | None] = Field(description="Of the mass behind the cam's displacement; length or radians.")
+    acceleration: list[float | None]
+    contact_force: list[float | None]
+    least_contact_force: float | None
+
+
+class CutterPath(Answer):
+    """Centres of the cutter in the cam's own frame."""
+
+    angle: list[float]
+    x: list[float | None]
+    y: list[float | None]
+    gouges: bool = Field(description="The cutter is larger than a hollow of the profile.")
+
+
+class ProfileFacts(Answer):
+    """What the points alone tell."""
+
+    size: float = Field(description="Greatest radius.")
+    least_convex_radius: float | None
+    least_hollow_radius: float | None
+    cusped: bool
+    crossings: list[tuple[float, float]]
+
+
+class CamAnalysis(Answer):
+    """Everything that the analysis core measures on a cam over the motion."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool]
+    follower: FollowerSeries
+    contact: CurvePoints
+    pressure_angle: list[float | None] = Field(description="Degrees, without sign.")
+    radius_of_curvature: list[float | None] = Field(description="Of the profile at the contact, convex positive.")
+    forces: ForceSeries | None
+    response: ResponseSeries | None
+    cutter_path: CutterPath | None
+    profile: ProfileFacts
+
+
+FAMILY = Family(CamAnalysisRequest, CamAnalysis)

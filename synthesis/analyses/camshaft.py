@@ -1,0 +1,131 @@
+"""The analysis of several cams on one shaft: total torque, its mean, and the flywheel that evens the speed."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.cam.dynamics import Camshaft, RunningCam
+from kinematics.cam.measured import measured_program
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.cam import CamAnalysisRequest, Load
+from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.mechanisms.cam import GivenCam
+from synthesis.problems import Number, Statement
+
+MEASURED = 360
+"""Cam angles at which each cam's program is measured."""
+
+Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
+
+
+class ShaftCam(Statement):
+    """A cam on the shaft."""
+
+    cam: GivenCam
+    load: Load
+    phase: Number = Field(default=0.0, description="Shaft angle at which the cam's angle is 0, degrees.")
+
+
+class GivenCamshaft(Statement):
+    """Cams that turn together."""
+
+    type: Literal["camshaft"]
+    cams: Annotated[list[ShaftCam], Field(min_length=1, max_length=24)]
+    fluctuation: Share | None = Field(
+        default=None, description="(ω_max − ω_min)/ω that a flywheel shall keep; null: no flywheel is sized."
+    )
+
+
+class CamshaftAnalysisRequest(AnalysisRequest):
+    """Several cams and the speed of their shaft."""
+
+    model_config = ConfigDict(
+        title="Camshaft",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "camshaft",
+                        "cams": [
+                            {
+                                "cam": CamAnalysisRequest.model_config["json_schema_extra"]["examples"][0]["mechanism"],  # type: ignore[index,call-overload]
+                                "load": {"mass": 0.5, "spring_rate": 4.0, "preload": 30.0},
+                                "phase": phase,
+                            }
+                            for phase in (0.0, 90.0)
+                        ],
+                        "fluctuation": 0.05,
+                    },
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 72, "speed_rpm": 60.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenCamshaft
+    motion: StatedMotion = Sweep()
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        if self.motion.rate <= 0.0:
+            return [("/motion/speed", "the shaft must turn with a speed that is positive")]
+        if self.motion.acceleration != 0.0:
+            return [("/motion/acceleration", "the torques are those of a steady speed; leave it out")]
+        return []
+
+    def answer(self) -> dict[str, Any]:
+        """The shaft's torque over the motion, in the shape of :class:`CamshaftAnalysis`."""
+        at, _, _ = self.motion.inputs()
+        cams = []
+        for stated in self.mechanism.cams:
+            cam = stated.cam
+            program = measured_program(cam.contour(), cam.core_follower(), cam.rotation, MEASURED)
+            cams.append(RunningCam(program, stated.load.core(), self.motion.rate, math.radians(stated.phase)))
+        shaft = Camshaft(cams)
+        peaks, fluctuation = shaft.torque_extremes, self.mechanism.fluctuation
+        return {
+            "input_angle": at.tolist(),
+            "torque": shaft.torque(np.radians(at)).tolist(),
+            "torques": [cam.torque(np.radians(at) - cam.phase).tolist() for cam in cams],
+            "mean_torque": shaft.mean_torque,
+            "min_torque": peaks.least,
+            "max_torque": peaks.greatest,
+            "min_contact_forces": [cam.force_extremes.least for cam in cams],
+            "jump_speeds": [_finite(cam.jump_speed()) for cam in cams],
+            "least_preloads": [cam.least_preload() for cam in cams],
+            "energy_fluctuation": shaft.energy_fluctuation,
+            "flywheel_inertia": None if fluctuation is None else shaft.flywheel_inertia(fluctuation),
+        }
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same over a full turn."""
+        return cls(mechanism=GivenCamshaft.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+class CamshaftAnalysis(Answer):
+    """What several cams ask of their shaft at a steady speed."""
+
+    input_angle: list[float]
+    torque: list[float]
+    torques: list[list[float]] = Field(description="Of each cam alone.")
+    mean_torque: float
+    min_torque: float
+    max_torque: float
+    min_contact_forces: list[float] = Field(description="Of each cam; not above zero: its follower jumps.")
+    jump_speeds: list[float | None] = Field(description="Speed at which each follower first leaves its cam, rad/s.")
+    least_preloads: list[float] = Field(description="With which each follower just stays on its cam.")
+    energy_fluctuation: float
+    flywheel_inertia: float | None
+
+
+FAMILY = Family(CamshaftAnalysisRequest, CamshaftAnalysis)

@@ -1,0 +1,111 @@
+"""The analysis of a cam of specified contour: eccentric circle, circular arcs, straight flanks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.cam.extremes import extremes
+from kinematics.cam.follower import TranslatingRoller
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.mechanisms.cam import GivenContourCam
+
+
+class ContourCamAnalysisRequest(AnalysisRequest):
+    """A contour with a translating follower and how it turns; a full turn in 360 steps by default."""
+
+    model_config = ConfigDict(
+        title="Cam of specified contour",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "contour_cam",
+                        "contour": {
+                            "shape": "circular_arc",
+                            "base_radius": 32.5,
+                            "nose_radius": 15.0,
+                            "nose_distance": 30.0,
+                            "flank_radius": 62.5,
+                        },
+                        "roller_radius": 10.0,
+                    },
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 360, "speed_rpm": 200.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenContourCam
+    motion: StatedMotion = Sweep()
+
+    def answer(self) -> dict[str, Any]:
+        """Everything over the motion, in the shape of :class:`ContourCamAnalysis`."""
+        contour, follower = self.mechanism.core()
+        at, speed, time = self.motion.inputs()
+        rotation, alpha = self.mechanism.rotation, self.motion.acceleration
+        found = contour.motion(follower, np.radians(at), rotation)
+        breaks = contour.breaks(follower, rotation)
+        worst = extremes(lambda angle: follower.pressure_angle(contour.motion(follower, angle, rotation)), breaks)
+        peaks = [extremes(lambda x, k=k: contour.motion(follower, x, rotation)[k], breaks).largest for k in (0, 1, 2)]  # type: ignore[misc]
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "follower": {
+                "position": found.s.tolist(),
+                "velocity": (found.v * speed).tolist(),
+                "acceleration": (found.a * speed**2 + found.v * alpha).tolist(),
+                "jerk": (found.j * speed**3 + 3.0 * found.a * speed * alpha).tolist(),
+            },
+            "pressure_angle": np.degrees(follower.pressure_angle(found)).tolist(),
+            "base_radius": contour.base_radius,
+            "prime_radius": follower.prime_radius if isinstance(follower, TranslatingRoller) else None,
+            "least_radius": contour.least_radius,
+            "joints": np.degrees(breaks[1:-1]).tolist(),
+            "max_pressure_angle": float(np.degrees(worst.largest)),
+            "peaks": dict(zip(("s", "v", "a"), peaks, strict=True)),
+        }
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same over a full turn."""
+        return cls(mechanism=GivenContourCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
+
+
+class ContourFollower(Answer):
+    """The follower over the positions."""
+
+    position: list[float]
+    velocity: list[float]
+    acceleration: list[float]
+    jerk: list[float]
+
+
+class Peaks(Answer):
+    """Greatest displacement, velocity and acceleration over a turn, by the radian of cam rotation."""
+
+    s: float
+    v: float
+    a: float
+
+
+class ContourCamAnalysis(Answer):
+    """What a cam of specified contour does to its follower."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    follower: ContourFollower
+    pressure_angle: list[float] = Field(description="Degrees, positive while rising without offset.")
+    base_radius: float
+    prime_radius: float | None
+    least_radius: float = Field(description="Least convex radius of curvature of the contour.")
+    joints: list[float] = Field(description="Cam angles at which the follower passes from one part to the next.")
+    max_pressure_angle: float
+    peaks: Peaks
+
+
+FAMILY = Family(ContourCamAnalysisRequest, ContourCamAnalysis)

@@ -1,0 +1,170 @@
+"""Given cams: a finished profile with its follower, or a contour by its dimensions."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Discriminator, Field
+
+from kinematics.cam import contours
+from kinematics.cam import follower as core
+from kinematics.cam.contact import Contour
+from kinematics.errors import DimensionError
+from synthesis.mechanisms.base import MechanismError
+from synthesis.problems import Number, PositiveNumber, Statement
+
+MOST_POINTS = 20_000
+"""Points of a given profile at most."""
+
+NonNegative = Annotated[Number, Field(ge=0.0)]
+Coordinates = Annotated[list[Number], Field(min_length=16, max_length=MOST_POINTS)]
+
+
+class GivenFollower(Statement):
+    """A follower: what belongs to its type must be given."""
+
+    type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
+    roller_radius: NonNegative | None = Field(default=None, description="0 for a knife edge.")
+    offset: Number | None = Field(default=None, description="Of a translating roller's slide; 0 if left out.")
+    arm: PositiveNumber | None = None
+    pivot_distance: PositiveNumber | None = None
+    face_offset: Number | None = Field(default=None, description="0 if left out.")
+    sense: Literal[1, -1] | None = Field(default=None, description="1, the default: the arm swings out with the cam.")
+
+    def core(self, prime_radius: float | None, base_radius: float | None) -> core.Follower:
+        """The follower of the analysis core.
+
+        Raises
+        ------
+        MechanismError
+            For what is missing, or dimensions that no follower has.
+        """
+        needed = {"translating_flat": (), "oscillating_flat": ("pivot_distance",)}.get(self.type, ("roller_radius",))
+        needed += ("arm", "pivot_distance") if self.type == "oscillating_roller" else ()
+        for name in needed:
+            if getattr(self, name) is None:
+                raise MechanismError(f"/follower/{name}", f"a {self.type.replace('_', ' ')} needs it")
+        roller = self.type.endswith("roller")
+        radius = prime_radius if roller else base_radius
+        if radius is None:
+            name = "prime_radius" if roller else "base_radius"
+            raise MechanismError(f"/{name}", "where the displacement is zero is not stated without it")
+        sense, offset = self.sense or 1, self.offset or 0.0
+        try:
+            if self.type == "translating_roller":
+                return core.TranslatingRoller(radius, self.roller_radius or 0.0, offset)
+            if self.type == "translating_flat":
+                return core.TranslatingFlat(radius)
+            pivot = self.pivot_distance or 0.0
+            if self.type == "oscillating_flat":
+                return core.OscillatingFlat(radius, pivot, self.face_offset or 0.0, sense)
+            return core.OscillatingRoller(radius, self.roller_radius or 0.0, self.arm or 0.0, pivot, sense)
+        except DimensionError as error:
+            raise MechanismError("/follower", str(error)) from None
+
+
+class GivenCurve(Statement):
+    """Points around the cam in its own frame, the first not repeated; the angles are not read."""
+
+    x: Coordinates
+    y: Coordinates
+    angle: list[Number] | None = Field(default=None, max_length=MOST_POINTS)
+
+
+class GivenCam(Statement):
+    """A finished cam: its profile and its follower. Pitch curve and program of a design are taken and not looked at."""
+
+    type: Literal["cam"]
+    follower: GivenFollower
+    prime_radius: PositiveNumber | None = Field(default=None, description="Of a roller follower's cam.")
+    base_radius: PositiveNumber | None = Field(default=None, description="Of a flat-faced follower's cam.")
+    rotation: Literal["ccw", "cw"] = "ccw"
+    profile: GivenCurve
+    pitch_curve: Any = None
+    program: Any = None
+
+    def core_follower(self) -> core.Follower:
+        """The follower of the analysis core."""
+        return self.follower.core(self.prime_radius, self.base_radius)
+
+    def contour(self) -> Contour:
+        """The profile of the analysis core."""
+        if len(self.profile.x) != len(self.profile.y):
+            raise MechanismError("/profile/y", "as many as x are needed")
+        try:
+            points: NDArray[np.complex128] = np.array(self.profile.x) + 1j * np.array(self.profile.y)
+            return Contour(points)
+        except DimensionError:
+            raise MechanismError("/profile", "neighbouring points must be different") from None
+
+
+class EccentricContour(Statement):
+    """A circle that turns about a point off its centre."""
+
+    shape: Literal["eccentric_circle"]
+    radius: PositiveNumber
+    eccentricity: NonNegative
+
+    def core(self) -> contours.SpecifiedContour:
+        """The contour of the analysis core."""
+        return contours.eccentric_circle(self.radius, self.eccentricity)
+
+
+class _Nosed(Statement):
+    base_radius: PositiveNumber
+    nose_radius: PositiveNumber
+    nose_distance: PositiveNumber = Field(description="From the cam's centre to the nose's.")
+
+
+class TangentContour(_Nosed):
+    """Base circle and nose with straight flanks."""
+
+    shape: Literal["tangent"]
+
+    def core(self) -> contours.SpecifiedContour:
+        """The contour of the analysis core."""
+        return contours.tangent_cam(self.base_radius, self.nose_radius, self.nose_distance)
+
+
+class ArcContour(_Nosed):
+    """Base circle and nose with flanks that are arcs: of a radius, or ending at an angle from the nose."""
+
+    shape: Literal["circular_arc"]
+    flank_radius: Number | None = Field(default=None, description="Negative for hollow flanks.")
+    half_action_angle: PositiveNumber | None = Field(
+        default=None, description="From the nose to the flank's end, degrees."
+    )
+
+    def core(self) -> contours.SpecifiedContour:
+        """The contour of the analysis core."""
+        radius = self.flank_radius
+        if (radius is None) == (self.half_action_angle is None):
+            raise MechanismError("/contour/flank_radius", "give either it or the half action angle")
+        if radius is None:
+            angle = math.radians(self.half_action_angle or 0.0)
+            radius = contours.flank_radius_of(self.base_radius, self.nose_radius, self.nose_distance, angle)
+        return contours.circular_arc_cam(self.base_radius, self.nose_radius, self.nose_distance, radius)
+
+
+class GivenContourCam(Statement):
+    """A cam of specified contour with a translating follower; its nose points along +x at cam angle 0."""
+
+    type: Literal["contour_cam"]
+    contour: Annotated[EccentricContour | TangentContour | ArcContour, Discriminator("shape")]
+    roller_radius: NonNegative | None = Field(default=None, description="Of a roller follower; null: a flat face.")
+    offset: Number = 0.0
+    rotation: Literal["ccw", "cw"] = "ccw"
+
+    def core(self) -> tuple[contours.SpecifiedContour, core.TranslatingRoller | core.TranslatingFlat]:
+        """Contour and follower of the analysis core."""
+        try:
+            contour = self.contour.core()
+            if self.roller_radius is None:
+                return contour, core.TranslatingFlat(contour.base_radius)
+            prime = contour.base_radius + self.roller_radius
+            return contour, core.TranslatingRoller(prime, self.roller_radius, self.offset)
+        except DimensionError as error:
+            raise MechanismError("", str(error)) from None
