@@ -1,0 +1,330 @@
+"""The analysis of a planetary train: speeds, freedoms, torques, powers, efficiency, for any arrangement.
+
+A train is a known arrangement with its teeth, as in a design, or a list of meshes of the client's own: rows of gears on
+bodies with the carriers of their axes. Speeds are exact; what contradicts the train or stays open is told.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speeds
+from kinematics.gear.power import PowerFlow, power_flow
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.problems import Flag, Number, Statement
+
+MOST_MESHES = 8
+"""The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""
+
+ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+Body = Annotated[str, Field(min_length=1, max_length=40)]
+
+
+class GivenMesh(Statement):
+    """Two gears in mesh: their bodies, the carrier of their axes (``ground`` where it stands still), their teeth."""
+
+    first: Body
+    second: Body
+    carrier: Body
+    first_teeth: ToothCount
+    second_teeth: ToothCount
+    internal: Flag = Field(
+        default=False, description="One of them has internal teeth, or is the far side gear of a bevel differential."
+    )
+
+
+class GivenPlanetaryTrain(Statement):
+    """An arrangement with teeth, or meshes of the client's own. The other fields of a design may stand beside them."""
+
+    type: Literal["planetary_train"]
+    arrangement: str | None = None
+    teeth: dict[str, ToothCount] | None = None
+    meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MOST_MESHES)
+    planet_bodies: list[Body] = Field(default=[], max_length=24, description="With `meshes`: bodies that turn free.")
+    input: Body | None = None
+    output: Body | None = None
+    fixed: Body | None = None
+    planets: Any = None
+    places: Any = None
+    module: Any = None
+    pressure_angle: Any = None
+    addendum: Any = None
+    ratio: Any = None
+
+    def train(self) -> Train:
+        """The speed equations; for a statement without faults."""
+        if self.meshes is None:
+            assert self.arrangement is not None
+            assert self.teeth is not None
+            return ARRANGEMENTS[self.arrangement].train(self.teeth)
+        rows = [
+            Mesh(
+                row.first,
+                row.second,
+                row.carrier,
+                row.first_teeth,
+                row.second_teeth,
+                INTERNAL if row.internal else EXTERNAL,
+            )
+            for row in self.meshes
+        ]
+        return Train(tuple(rows), frozenset(self.planet_bodies))
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        if self.meshes is not None:
+            if self.arrangement is not None or self.teeth is not None:
+                return [("/mechanism/meshes", "give an arrangement with teeth, or meshes, not both")]
+            return [
+                (f"/mechanism/meshes/{k}", "its two gears and their carrier must be three different bodies")
+                for k, row in enumerate(self.meshes)
+                if len({row.first, row.second, row.carrier}) < 3
+            ]
+        if self.arrangement not in ARRANGEMENTS:
+            return [("/mechanism/arrangement", f"expected one of {', '.join(ARRANGEMENTS)}, or meshes")]
+        names = ARRANGEMENTS[self.arrangement].gear_names
+        if set(self.teeth or {}) != set(names):
+            return [("/mechanism/teeth", f"expected teeth for {', '.join(names)}")]
+        return []
+
+
+class PlanetaryAnalysisRequest(AnalysisRequest):
+    """A planetary train, the speeds that are known, and what it carries."""
+
+    model_config = ConfigDict(
+        title="Planetary train, how it is driven",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "planetary_train",
+                        "arrangement": "simple",
+                        "teeth": {"sun": 40, "planet": 20, "ring": 80},
+                        "input": "sun",
+                        "output": "carrier",
+                        "fixed": "ring",
+                    },
+                    "motion": {"at": 0.0, "speed_rpm": 1500.0},
+                    "torques": {"sun": 20.0},
+                    "mesh_efficiency": 0.99,
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenPlanetaryTrain
+    motion: StatedMotion = Sweep()
+    speeds: dict[Body, Number] | None = Field(
+        default=None,
+        max_length=24,
+        description="Known speeds by body, in any one unit, 0 for a body that is held; in place of the input and fixed "
+        "member turning by `motion`.",
+    )
+    locked: list[tuple[Body, Body]] = Field(default=[], max_length=24, description="Bodies that a clutch joins.")
+    torques: dict[Body, Number] | None = Field(
+        default=None, max_length=24, description="Known torques from outside by member; null: 1 on the input."
+    )
+    loads: list[Body] | None = Field(
+        default=None,
+        max_length=24,
+        description="Members that something outside drives, brakes or holds; null: those with known speeds or torques, "
+        "and the output.",
+    )
+    mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
+        default=0.99, description="Of every mesh as an ordinary pair."
+    )
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        found = self.mechanism.faults()
+        if self.motion.speed is not None and self.motion.speed_rpm is not None:
+            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
+        if isinstance(self.motion, Run):
+            span = self.motion.time
+            if span.end < span.start:
+                found.append(("/motion/time/end", "the end lies before the start"))
+            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
+                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        return found or self._unknown_bodies()
+
+    def _unknown_bodies(self) -> list[tuple[str, str]]:
+        train = self.mechanism.train()
+        named = [
+            *((f"/speeds/{body}", body) for body in self.speeds or ()),
+            *((f"/locked/{k}", body) for k, pair in enumerate(self.locked) for body in pair),
+            *((f"/mechanism/{part}", getattr(self.mechanism, part)) for part in ("input", "output", "fixed")),
+        ]
+        known = {*train.bodies, GROUND, None}
+        found = [(path, f"expected one of {', '.join(train.bodies)}") for path, body in named if body not in known]
+        loaded = [
+            *((f"/torques/{body}", body) for body in self.torques or ()),
+            *((f"/loads/{k}", body) for k, body in enumerate(self.loads or ())),
+        ]
+        found += [
+            (path, f"expected one of the members {', '.join(train.members)}")
+            for path, body in loaded
+            if body not in train.members
+        ]
+        if self.speeds is None and self.mechanism.input is None:
+            found.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        return _analysis(self, at, speed, time)
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """One turn of the input at 1 rad/s."""
+        request = cls(mechanism=GivenPlanetaryTrain.model_validate(mechanism))
+        return _analysis(request, np.linspace(0.0, 360.0, steps + 1), np.ones(steps + 1), None)
+
+
+class TurningBody(Answer):
+    """A body and its motion; the series are there where the input turns by the stated motion."""
+
+    name: str
+    planet: bool
+    speed: float | None = Field(description="In the unit of the known speeds; null where it does not follow from them.")
+    exact_speed: str | None = Field(description="The same as a fraction, e.g. -5/2.")
+    torque: float | None = Field(description="From outside, positive in the direction of positive speeds.")
+    power: float | None = Field(description="Torque times speed: positive where power enters.")
+    angle: list[float] | None = Field(description="From the position at input angle 0, degrees.")
+    omega: list[float] | None = Field(description="rad/s")
+    alpha: list[float] | None = Field(description="rad/s²")
+
+
+class LoadedPlanetaryMesh(Answer):
+    """A mesh and what it carries; power is relative to its carrier, positive where the first gear drives."""
+
+    first: str
+    second: str
+    carrier: str
+    first_torque: float | None
+    second_torque: float | None
+    rolling_power: float | None
+    loss: float | None
+
+
+class PlanetaryAnalysis(Answer):
+    """What the analysis core knows of a planetary train."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool] = Field(description="Whether the known speeds agree with the train and determine all others.")
+    freedom: int = Field(description="Speeds that can be chosen before all others follow.")
+    open_speeds: int = Field(description="Speeds that the known ones leave open.")
+    contradiction: str | None = Field(description="The first known speed that the train does not allow.")
+    ratio: float | None = Field(description="Input speed over output speed.")
+    exact_ratio: str | None
+    efficiency: float | None = Field(description="Power that leaves over power that enters.")
+    self_locking: bool | None
+    rolling_power: float | None = Field(description="Largest power of a mesh over the input power, without losses.")
+    branch_power: float | None = Field(description="Largest power between a row and a member, over the input power.")
+    circulating_power: bool | None = Field(description="A warning: a member carries more power than is put in.")
+    bodies: list[TurningBody]
+    meshes: list[LoadedPlanetaryMesh]
+
+
+def _analysis(
+    request: PlanetaryAnalysisRequest,
+    at: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    time: NDArray[np.float64] | None,
+) -> dict[str, Any]:
+    mechanism, train = request.mechanism, request.mechanism.train()
+    turning = request.speeds is None
+    known = {body: Fraction(repr(value)) for body, value in (request.speeds or {}).items()}
+    if turning:
+        held = {} if mechanism.fixed is None else {mechanism.fixed: Fraction(0)}
+        known = {**held, str(mechanism.input): Fraction(1)}
+    found = speeds(train, known, request.locked)
+    complete = found.open == 0 and found.contradiction is None
+    flow = _flow(request, train, found, known) if complete else None
+    ratio = _ratio(request, found) if complete else None
+    bodies = []
+    for body in train.bodies:
+        rate = found.values[body]
+        share = None if rate is None else float(rate)
+        bodies.append(
+            {
+                "name": body,
+                "planet": body in train.planets,
+                "speed": None if share is None else share * (float(speed[0]) if turning else 1.0),
+                "exact_speed": None if rate is None else str(rate),
+                "torque": None if flow is None or body in train.planets else float(flow.torques[body]),
+                "power": None
+                if flow is None or body in train.planets
+                else float(flow.powers[body]) * (float(speed[0]) if turning else 1.0),
+                "angle": (share * at).tolist() if turning and share is not None else None,
+                "omega": (share * speed).tolist() if turning and share is not None else None,
+                "alpha": [share * request.motion.acceleration] * len(at) if turning and share is not None else None,
+            }
+        )
+    unit = float(speed[0]) if turning else 1.0
+    return {
+        "input_angle": at.tolist(),
+        "time": None if time is None else time.tolist(),
+        "valid": [complete] * len(at),
+        "freedom": found.freedom,
+        "open_speeds": found.open,
+        "contradiction": found.contradiction,
+        "ratio": None if ratio is None else float(ratio),
+        "exact_ratio": None if ratio is None else str(ratio),
+        "efficiency": None if flow is None or flow.efficiency is None else float(flow.efficiency),
+        "self_locking": None if flow is None else flow.self_locking,
+        "rolling_power": None if flow is None else float(flow.largest_rolling_power),
+        "branch_power": None if flow is None else float(flow.largest_branch_power),
+        "circulating_power": None if flow is None else flow.circulates,
+        "bodies": bodies,
+        "meshes": [
+            {
+                "first": mesh.first,
+                "second": mesh.second,
+                "carrier": mesh.carrier,
+                "first_torque": None if flow is None else float(flow.meshes[k].first_torque),
+                "second_torque": None if flow is None else float(flow.meshes[k].second_torque),
+                "rolling_power": None if flow is None else float(flow.meshes[k].rolling_power) * unit,
+                "loss": None if flow is None else float(flow.meshes[k].loss) * unit,
+            }
+            for k, mesh in enumerate(train.meshes)
+        ],
+    }
+
+
+def _ratio(request: PlanetaryAnalysisRequest, found: Speeds) -> Fraction | None:
+    """Input over output speed, where both are named and turn."""
+    one, other = request.mechanism.input, request.mechanism.output
+    if one is None or other is None or not found.values[other]:
+        return None
+    rates = found.values[one], found.values[other]
+    return None if rates[0] is None or not rates[1] else rates[0] / rates[1]
+
+
+def _flow(
+    request: PlanetaryAnalysisRequest, train: Train, found: Speeds, known: dict[str, Fraction]
+) -> PowerFlow | None:
+    """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
+    if request.locked:
+        return None
+    torques = {body: Fraction(repr(value)) for body, value in (request.torques or {}).items()}
+    if request.torques is None and request.mechanism.input is not None:
+        torques = {request.mechanism.input: Fraction(1)}
+    loads = request.loads
+    if loads is None:
+        stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
+        loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
+    rates = {body: rate for body, rate in found.values.items() if rate is not None}
+    return power_flow(train, rates, loads, torques, Fraction(repr(request.mesh_efficiency)))
+
+
+FAMILY = Family(PlanetaryAnalysisRequest, PlanetaryAnalysis)
