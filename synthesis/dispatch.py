@@ -36,8 +36,15 @@ def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
 
 
 def warm_up() -> None:
-    """Compile the kernels, or load them from their cache: the analysis core's, then by the examples of each kind."""
+    """Compile the kernels, or load them from their cache: the analysis core's, then those of each kind.
+
+    A solver's module that has a ``warm_up`` of its own is warmed by that, any other by the examples of its kind.
+    """
     linkage.warm_up()
-    for kind in KINDS:
-        for example in examples(kind):
+    for name, kind in KINDS.items():
+        module = import_module(kind.solver.split(":")[0])
+        if hasattr(module, "warm_up"):
+            module.warm_up()
+            continue
+        for example in examples(name):
             solve(parse_problem(example), lambda fraction, message: None)

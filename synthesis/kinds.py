@@ -16,6 +16,7 @@ from synthesis.designs import (
     GearTrainResult,
     LayshaftResult,
     MotionResult,
+    PathResult,
     PlanetaryResult,
     Result,
 )
@@ -25,6 +26,7 @@ from synthesis.problems import (
     GearTrainProblem,
     LayshaftProblem,
     MotionProblem,
+    PathProblem,
     PlanetaryProblem,
     StatedProblem,
 )
@@ -43,6 +45,7 @@ class Kind(NamedTuple):
 
 KINDS: dict[str, Kind] = {
     "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
+    "path": Kind(PathProblem, PathResult, "synthesis.path.solver:solve_path"),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

@@ -17,7 +17,7 @@ from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
 from service.render.svg import Box, Points
 from synthesis.designs import FourbarMechanism, LinkageDesign
 from synthesis.linkages import DrivenFourbar, driven_fourbar
-from synthesis.problems import MotionProblem
+from synthesis.problems import MotionProblem, PathProblem
 
 Real = NDArray[np.float64]
 
@@ -60,11 +60,11 @@ class Configuration:
 
 @dataclass(frozen=True)
 class Demand:
-    """A demanded position: point, and angle of the body's line in radians."""
+    """A demanded position: point, and angle of the body's line in radians, None where only the point is demanded."""
 
     index: int
     point: complex
-    angle: float
+    angle: float | None
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,11 @@ class Scene:
     limits: tuple[float, float] | None
     start: float
     end: float
+
+    @property
+    def guides_a_body(self) -> bool:
+        """Whether angles are demanded, and not points only."""
+        return any(demand.angle is not None for demand in self.demands)
 
     @property
     def o2(self) -> complex:
@@ -123,11 +128,11 @@ def fourbar_of(design: LinkageDesign) -> FourbarMechanism:
     return mechanism
 
 
-def scene(design: LinkageDesign, problem: MotionProblem) -> Scene:
+def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
     """What is drawn of a fourbar design and of the problem that it answers."""
     driven = driven_fourbar(fourbar_of(design))
     linkage = driven.linkage
-    demands = [Demand(k, p.point, math.radians(p.angle)) for k, p in enumerate(problem.positions)]
+    demands = _demands(problem)
     configurations = _configurations(design, driven, demands)
     start = end = driven.reference
     used = (start, end)
@@ -143,6 +148,12 @@ def scene(design: LinkageDesign, problem: MotionProblem) -> Scene:
     curve = _curve(linkage, *used, driven.assembly)
     rest = [_curve(linkage, lower, upper, sign) for sign in assemblies]
     return Scene(linkage, configurations, demands, curve, rest, limits, start, end)
+
+
+def _demands(problem: MotionProblem | PathProblem) -> list[Demand]:
+    if isinstance(problem, PathProblem):
+        return [Demand(k, p.point, None) for k, p in enumerate(problem.points)]
+    return [Demand(k, p.point, math.radians(p.angle)) for k, p in enumerate(problem.positions)]
 
 
 def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
@@ -165,8 +176,10 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
             if at is None:
                 continue
             a, b, p, coupler_angle = at
-            body_angle = first.angle + coupler_angle - reference[3]
-            miss = max(abs(p - demand.point) / size, abs(math.remainder(body_angle - demand.angle, math.tau)))
+            body_angle = (first.angle or 0.0) + coupler_angle - reference[3]
+            miss = abs(p - demand.point) / size
+            if demand.angle is not None:
+                miss = max(miss, abs(math.remainder(body_angle - demand.angle, math.tau)))
             configuration = Configuration(
                 target.index, math.radians(target.input_angle), sign, sign == driven.assembly, a, b, p, body_angle
             )

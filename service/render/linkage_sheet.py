@@ -276,7 +276,7 @@ def _tables(design: LinkageDesign, problem: MotionProblem, size: float) -> list[
     met = [
         (
             f"{target.index + 1}: input {length(target.input_angle) if slides else angle(target.input_angle, 2)}",
-            f"off by {small(target.point_residual)} {unit}, {angle(target.angle_residual, 2)}",
+            f"off by {small(target.point_residual)} {unit}, {angle(target.angle_residual or 0.0, 2)}",
         )
         for target in design.targets
     ]

@@ -10,7 +10,7 @@ from service.render.svg import Box, Element, Viewport, clean, element, line, sho
 from service.render.symbols import CURVE, DEMANDED, GREY, INK, INPUT, PALE
 from service.render.view import FOOT, MARGIN, Detail, panel
 from synthesis.designs import LinkageDesign
-from synthesis.problems import MotionProblem
+from synthesis.problems import MotionProblem, PathProblem
 
 WIDTH, EDGE, TOP = 1100.0, 22.0, 74.0
 """Width of the sheet, its border, and the height of the title, pixels."""
@@ -29,14 +29,14 @@ UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"
 DETAIL_HEIGHT, KEY_HEIGHT = 300.0, 30.0
 
 
-def fourbar_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> str:
+def fourbar_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, title: str) -> str:
     """The drawing of a fourbar design as a complete SVG document."""
     shown = scene(design, problem)
     unit = problem.length_unit
     heading = clean(title) or "Fourbar linkage"
     blocks = [
         tables.dimensions(design, shown, unit),
-        tables.targets(design, problem, shown, unit),
+        tables.targets(design, shown, unit),
         tables.checks(design),
         tables.metrics(design, unit),
     ]
@@ -93,7 +93,7 @@ def _title(design: LinkageDesign, heading: str, unit: str) -> list[Element]:
     ]
 
 
-def _description(design: LinkageDesign, problem: MotionProblem, shown: Scene) -> str:
+def _description(design: LinkageDesign, problem: MotionProblem | PathProblem, shown: Scene) -> str:
     mechanism = fourbar_of(design)
     links = mechanism.links
     unit = problem.length_unit
@@ -106,7 +106,7 @@ def _description(design: LinkageDesign, problem: MotionProblem, shown: Scene) ->
             ("output", links.output),
         )
     )
-    met = f"shown at {len(shown.configurations)} of {len(problem.positions)} demanded positions"
+    met = f"shown at {len(shown.configurations)} of {len(shown.demands)} demanded positions"
     failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]
     verdict = f"Failed checks: {', '.join(failed)}." if failed else "All checks passed."
     return f"Drawing of a fourbar linkage, {mechanism.assembly} assembly: {sizes}; {met}. {verdict}"
@@ -138,7 +138,7 @@ def _drawing(
 def _key(shown: Scene, y: float, width: float) -> Element:
     """What the line styles mean."""
     entries = [
-        ("target", "demanded position"),
+        ("target", "demanded position" if shown.guides_a_body else "demanded point"),
         ("used", "path of P, used"),
         ("rest", "rest of branch"),
         ("ghost", "other targets"),

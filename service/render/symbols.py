@@ -44,6 +44,12 @@ def bearing(at: complex, size: float) -> tuple[Element, list[Points]]:
     return symbol, [np.array([at, left, right, at]), np.array([left, right]) + 4j * size]
 
 
+def demanded_point(at: complex, number: int) -> tuple[Element, list[Points]]:
+    """Ring of a demanded point."""
+    ring = circle(at, DEMAND_RADIUS, fill="none", stroke=DEMANDED, stroke_width=1.6, stroke_dasharray="3 1.6")
+    return element("g", ring, data_target=f"{number}"), []
+
+
 def demanded_position(at: complex, angle: float, number: int) -> tuple[Element, list[Points]]:
     """Ring and body frame of a demanded position: a long arrow at its angle (radians), a short line across."""
     ahead = cmath.exp(-1j * angle)

@@ -11,7 +11,6 @@ from service.render.numbers import NONE, angle, length, small
 from service.render.svg import Element, clean, element, line, text, text_width
 from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT
 from synthesis.designs import Check, LinkageDesign
-from synthesis.problems import MotionProblem
 
 DEGREES = frozenset({"transmission_angle", "min_transmission_angle"})
 """Checks whose value is an angle."""
@@ -67,15 +66,16 @@ def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     return draw
 
 
-def targets(design: LinkageDesign, problem: MotionProblem, scene: Scene, unit: str) -> Block:
+def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Demanded positions with the input angle that meets each, and how exactly."""
     shares = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
     found = {target.index: target for target in design.targets}
     assembled = {c.index: c for c in scene.configurations}
     size = float(scene.linkage.ground + scene.linkage.coupler)
     rows = []
-    for k, position in enumerate(problem.positions):
-        cells = [f"{k + 1}", *(length(v, size, most=9) for v in (position.x, position.y)), angle(position.angle, 2)]
+    for k, demand in enumerate(scene.demands):
+        place = (length(v, size, most=9) for v in (demand.point.real, demand.point.imag))
+        cells = [f"{k + 1}", *place, "" if demand.angle is None else angle(math.degrees(demand.angle), 2)]
         target = found.get(k)
         if target is None:
             cells += [NONE, NONE]
@@ -96,7 +96,7 @@ def targets(design: LinkageDesign, problem: MotionProblem, scene: Scene, unit: s
                 block.add(text(left + share * width, y, cell, size, text_anchor="end", fill=colour))
 
         y += ROW
-        write(["", f"x ({unit})", f"y ({unit})", "angle", "input", "residual"], GREY)
+        write(["", f"x ({unit})", f"y ({unit})", "angle" if scene.guides_a_body else "", "input", "residual"], GREY)
         for cells, note in rows:
             y += ROW
             write(cells, INK)

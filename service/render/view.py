@@ -45,6 +45,7 @@ from service.render.symbols import (
     PALE,
     arrow,
     bearing,
+    demanded_point,
     demanded_position,
     scale_bar,
 )
@@ -277,7 +278,7 @@ class _Panel:
 
     def _body_line(self, group: Element, c: Configuration, colour: str) -> None:
         """The body's own line at P as the linkage carries it, inside the demanded direction when that is met."""
-        if self._readable(c.p):
+        if self._readable(c.p) and self._scene.guides_a_body:
             at = self._viewport.point(c.p)
             tip = at + DIRECTION_LENGTH * cmath.exp(-1j * c.body_angle)
             group.add(line(at, tip, stroke=colour, stroke_width=1.2, data_body_line=f"{c.index + 1}"))
@@ -343,7 +344,11 @@ class _Panel:
 
     def _demand(self, demand: Demand) -> None:
         if self._readable(demand.point):
-            symbol, lines = demanded_position(self._viewport.point(demand.point), demand.angle, demand.index + 1)
+            at, number = self._viewport.point(demand.point), demand.index + 1
+            if demand.angle is None:
+                symbol, lines = demanded_point(at, number)
+            else:
+                symbol, lines = demanded_position(at, demand.angle, number)
             self._labels.avoid(lines, 3.0)
             self._root.add(symbol)
 
@@ -369,7 +374,7 @@ class _Panel:
             return
         words = f"{demand.index + 1}"
         at = self._viewport.point(demand.point)
-        away = -cmath.exp(-1j * demand.angle)
+        away = -cmath.exp(-1j * demand.angle) if demand.angle is not None else -1j
         style = {"fill": DEMANDED, "font_weight": "bold"}
         self._labels.place(at, words, 11.0, clearance=DEMAND_RADIUS + 2.0, away=away, ring=DEMANDED, style=style)
 

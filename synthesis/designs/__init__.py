@@ -48,6 +48,7 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
+from synthesis.designs.path import CognateTriples, PathResult
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -65,6 +66,7 @@ __all__ = [
     "CamDesign",
     "CamResult",
     "Check",
+    "CognateTriples",
     "CouplerPoint",
     "FixedPivots",
     "FourbarLinks",
@@ -94,6 +96,7 @@ __all__ = [
     "MotionResult",
     "ParetoPlanetaryTrain",
     "ParetoTrain",
+    "PathResult",
     "PlanetPlaces",
     "PlanetaryDesign",
     "PlanetaryMechanism",

@@ -196,7 +196,11 @@ class Target(Answer):
         "and the difference to the demanded angle in radians."
     )
     point_residual: float = Field(description="Distance of P from the demanded point, length units.")
-    angle_residual: float = Field(description="Difference of the body's angle to the demanded angle, degrees.")
+    angle_residual: float | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Difference of the body's angle to the demanded angle, degrees, where an angle is demanded.",
+    )
 
 
 class LinkageMetrics(Answer):
@@ -216,8 +220,8 @@ class LinkageMetrics(Answer):
     input_rotation: float = Field(description="Rotation of the input from the first target to the last, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     rms_residual: float = Field(
-        description="Root mean square over the positions of the distance to the demanded pose: P's distance as a share "
-        "of the task's size and the angle's difference in radians, added in squares."
+        description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
+        "angle is demanded, its difference in radians, added in squares."
     )
     size: float = Field(description="Diagonal of the box around all joints and the point P at all targets.")
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")

@@ -37,6 +37,7 @@ from synthesis.problems.motion import (
     Tolerance,
     whole_point,
 )
+from synthesis.problems.path import PathPoint, PathProblem
 from synthesis.problems.planetary_train import (
     PlanetaryProblem,
     PlanetaryTeeth,
@@ -63,6 +64,8 @@ __all__ = [
     "MotionProblem",
     "Number",
     "PartialPoint",
+    "PathPoint",
+    "PathProblem",
     "PlanetaryProblem",
     "PlanetaryTeeth",
     "Point",

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from synthesis.problems.base import ABSURD, Flag, Interval, PositiveNumber, StatedProblem, Statement
+from synthesis.problems.base import ABSURD, Contradiction, Flag, Interval, PositiveNumber, StatedProblem, Statement
 
 ON_EDGE = 1e-9
 """Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
@@ -55,6 +55,13 @@ class Constraints(Statement):
     )
     fixed_pivot_region: Region | None = None
     moving_pivot_region: Region | None = Field(default=None, description="For the moving pivots in the first position.")
+
+    def contradictions(self) -> list[Contradiction]:
+        """Demands that exclude one another, with paths below the problem."""
+        if self.full_rotation and self.grashof in ("double_rocker", "non_grashof"):
+            detail = f"the input of a {self.grashof} linkage does not turn through; drop one of the demands"
+            return [Contradiction("/constraints/full_rotation", detail)]
+        return []
 
 
 class LinkageProblem(StatedProblem):

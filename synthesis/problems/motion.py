@@ -330,7 +330,7 @@ class MotionProblem(LinkageProblem):
             *self._coinciding_pivots(),
             *self._pivots_off_the_ground_line(),
             *self._pivots_outside_regions(),
-            *self._impossible_class(),
+            *self.constraints.contradictions(),
         ]
 
     def _equal_positions(self) -> list[Contradiction]:
@@ -497,13 +497,6 @@ class MotionProblem(LinkageProblem):
                         Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
                     )
         return found
-
-    def _impossible_class(self) -> list[Contradiction]:
-        demanded = self.constraints
-        if demanded.full_rotation and demanded.grashof in ("double_rocker", "non_grashof"):
-            detail = f"the input of a {demanded.grashof} linkage does not turn through; drop one of the demands"
-            return [Contradiction("/constraints/full_rotation", detail)]
-        return []
 
     def _coinciding_pivots(self) -> list[Contradiction]:
         found = []

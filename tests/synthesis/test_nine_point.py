@@ -67,17 +67,14 @@ def test_cognates_and_exchanged_dyads_solve_the_same_problem():
         assert np.abs(round_ - y).max() < 1e-9 * np.abs(y).max()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", PUBLISHED, ids=[case["id"] for case in PUBLISHED])
-def test_published_counts(case):
+@pytest.mark.campaign
+def test_special_points_are_not_called_complete():
+    """Nine points of an ellipse: nearly singular solutions, of which more or fewer are real by the last digits."""
+    (case,) = [case for case in PUBLISHED if case["status"] == "non_generic"]
     points = np.array([complex(*point) for point in case["inputs"]["points"]])
     found = all_triples(points, np.random.default_rng(0), silent, threads=2)
-    if case["status"] == "non_generic":
-        assert not found.complete
-        return
-    assert found.complete
-    assert len(found.y) == ORBITS
-    assert len(found.real) == case["expected"]["cognate_triples_real"]
+    assert not found.complete
+    assert found.nearly_singular > 14
 
 
 @pytest.mark.slow

@@ -1,0 +1,198 @@
+"""Path generation: all fourbars through nine points; for fewer points, through nine of which some are drawn.
+
+A real cognate triple is six designs: three linkages, each with either fixed pivot as the input's. Every one of them is
+verified, and what each was rejected for is counted.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from synthesis.designs import CognateTriples, LinkageDesign, PathResult, Search
+from synthesis.kinds import Progress
+from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.continuation import follow, refine
+from synthesis.path.nine_point import Triples, all_triples
+from synthesis.path.nine_point_start import start
+from synthesis.path.nine_point_system import (
+    GROUPS,
+    ORBITS,
+    SCRATCH,
+    nine_point_system,
+    nine_point_system_extended,
+    orbit_keys,
+)
+from synthesis.problems import PathProblem
+from synthesis.ranking import distinct, ranked
+from synthesis.verification.path import verify_path
+
+Complex = NDArray[np.complex128]
+
+NINE = 9
+
+THREADS = 2
+"""Paths are followed two at a time: the kernels leave the interpreter free, and most machines have a second core."""
+
+OFF_CURVE = 0.03
+"""Drawn points lie this share of the points' mean distance off the smooth curve, so that no two rounds are alike."""
+
+SHORTEST_LINK = 1e-9
+"""Links shorter than this share of the longest are no links."""
+
+SAME_DESIGN = 1e-6
+"""Designs whose joints agree to this share of the task's size are one and the same."""
+
+_REASONS = {
+    "reaches_targets": "residual",
+    "same_circuit": "circuit_defect",
+    "same_branch": "branch_defect",
+    "visits_in_order": "order_defect",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation."""
+    rng = np.random.default_rng(problem.seed)
+    given = np.array([point.point for point in problem.points])
+    rounds = 1 if len(given) == NINE else problem.rounds
+    harvest = _Harvest(problem)
+    found: list[Triples] = []
+    for n in range(rounds):
+
+        def told(share: float, n: int = n) -> None:
+            tracked = f"{round(share * ORBITS)} of {ORBITS} paths followed"
+            message = tracked if rounds == 1 else f"round {n + 1} of {rounds}: {tracked}"
+            progress(0.95 * (n + share) / rounds, message)
+
+        triples = all_triples(_nine(given, rng), rng, told, THREADS)
+        found.append(triples)
+        harvest.gather(triples)
+    progress(1.0, "verified")
+    complete = len(given) == NINE and found[0].complete and not harvest.rejected["degenerate"]
+    counts = CognateTriples(
+        rounds=rounds,
+        computed=sum(len(triples.y) for triples in found),
+        real=sum(len(triples.real) for triples in found),
+        on_one_circuit=harvest.on_one_circuit,
+        largest_residual=max(triples.largest_residual for triples in found),
+        closed_under_conjugation=all(triples.self_conjugate for triples in found),
+    )
+    return harvest.result(counts, complete)
+
+
+def warm_up() -> None:
+    """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
+    begun = start()
+    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
+    follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))
+    orbit_keys(y, begun.p, low)
+
+
+def _nine(given: Complex, rng: np.random.Generator) -> Complex:
+    """Nine points: the given ones in their places, and others drawn near a smooth curve through them."""
+    missing = NINE - len(given)
+    if missing == 0:
+        return given
+    chords = np.abs(np.diff(given))
+    along = np.concatenate([[0.0], np.cumsum(chords)])
+    curve = CubicSpline(along, given)
+    between = rng.choice(len(chords), missing, p=chords / chords.sum())
+    drawn = along[between] + chords[between] * rng.uniform(0.15, 0.85, missing)
+    off = OFF_CURVE * chords.mean() * (rng.normal(size=(missing, 2)) @ np.array([1.0, 1.0j]))
+    return np.concatenate([given, np.asarray(curve(drawn)) + off])
+
+
+class _Harvest:
+    """The designs of the real triples, verified, and what became of them."""
+
+    def __init__(self, problem: PathProblem) -> None:
+        self.problem = problem
+        self.passed: list[LinkageDesign] = []
+        self.failed: list[LinkageDesign] = []
+        self.rejected: Counter[str] = Counter()
+        self.candidates = self.on_one_circuit = 0
+
+    def gather(self, triples: Triples) -> None:
+        """Verify all six designs of every triple."""
+        origin = self.problem.points[0].point
+        for triple in triples.real:
+            one_circuit = False
+            for o2, a, o4, b in triple:
+                for joints in ((o2, a, b, o4, origin), (o4, b, a, o2, origin)):
+                    one_circuit |= self._verify(FourbarConfiguration(*map(complex, joints)))
+            self.on_one_circuit += one_circuit
+
+    def _verify(self, joints: FourbarConfiguration) -> bool:
+        """Put a design where it belongs; returns whether it has all points on one circuit."""
+        self.candidates += 1
+        lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
+        if min(*lengths, abs(joints.o4 - joints.o2)) <= SHORTEST_LINK * max(lengths):
+            self.rejected["degenerate"] += 1
+            return False
+        design = verify_path(self.problem, fourbar_mechanism(joints))
+        if design is None:
+            self.rejected["cannot_be_driven"] += 1
+            return False
+        checks = design.verification.checks
+        if design.verification.passed:
+            self.passed.append(design)
+        else:
+            self.failed.append(design)
+            name = next(check.name for check in checks if not check.passed)
+            self.rejected[_REASONS.get(name, name)] += 1
+        return all(check.passed for check in checks if check.name in ("reaches_targets", "same_circuit"))
+
+    def result(self, counts: CognateTriples, complete: bool) -> PathResult:
+        """The answer, best first."""
+        problem = self.problem
+        shown = ranked(self.passed, problem.rank_by)
+        if problem.include_failed:
+            shown += ranked(self.failed, problem.rank_by)
+        return PathResult(
+            designs=_different(shown, problem.task_size)[: problem.max_designs],
+            search=Search(
+                method="nine_point_continuation" if len(problem.points) == NINE else "nine_point_family",
+                complete=complete,
+                candidates=self.candidates,
+                accepted=len(self.passed),
+                rejected=dict(self.rejected),
+                seed=problem.seed,
+            ),
+            summary=self._summary(counts, complete),
+            triples=counts,
+        )
+
+    def _summary(self, counts: CognateTriples, complete: bool) -> str:
+        expected = ORBITS * counts.rounds
+        text = (
+            f"{counts.computed} of {expected} triples of cognate fourbars were computed; {counts.real} are real, "
+            f"{counts.on_one_circuit} of these have all points on one circuit, "
+            f"and {len(self.passed)} of {self.candidates} designs satisfy all demands."
+        )
+        if self.rejected:
+            text += f" Rejected: {_listed(self.rejected)}."
+        if not self.passed:
+            text += " These are all fourbars, so no design exists." if complete else " Others may exist."
+        return text
+
+
+def _different(designs: list[LinkageDesign], size: float) -> list[LinkageDesign]:
+    """The designs without repetitions, in their order."""
+    if not designs:
+        return []
+    joints = np.array(
+        [[complex(*design.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4")] for design in designs]
+    )
+    return [designs[n] for n in distinct(joints, len(designs), SAME_DESIGN * size)]
+
+
+def _listed(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items())

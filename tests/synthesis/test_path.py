@@ -1,0 +1,143 @@
+"""Path generation: what is found is driven again by another route, and what the verification must refuse is refused."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from kinematics.linkage import OPEN, Fourbar, positions
+from synthesis.dispatch import solve
+from synthesis.kinds import example, parse_problem
+from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.verification.path import verify_path
+from tests.cases import HERE
+
+CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
+PUBLISHED = json.loads((HERE / "nine_point.json").read_text(encoding="utf-8"))
+
+
+def silent(share, message):
+    pass
+
+
+def statement(points, **changes):
+    return parse_problem({"kind": "path", "points": [{"x": z.real, "y": z.imag} for z in points], **changes})
+
+
+def mechanism(linkage, angle, assembly=OPEN):
+    at = positions(linkage, angle, assembly)
+    joints = (linkage.input_pivot, at.a, at.b, linkage.output_pivot, at.p)
+    return fourbar_mechanism(FourbarConfiguration(*map(complex, joints)))
+
+
+def checks(design):
+    return {check.name: check.passed for check in design.verification.checks}
+
+
+def test_a_linkage_that_draws_the_points_passes():
+    angles = np.array([0.3, 0.9, 1.8, 2.2, 3.9, 5.0])
+    points = positions(CRANK_ROCKER, angles, OPEN).p
+    design = verify_path(statement(points), mechanism(CRANK_ROCKER, angles[0]))
+    assert design.verification.passed
+    assert np.allclose([math.radians(t.input_angle) for t in design.targets], angles, atol=1e-7)
+    assert max(t.residual for t in design.targets) < 1e-12
+    assert design.metrics.grashof == "crank_rocker"
+
+
+def test_points_out_of_order_are_seen():
+    points = positions(CRANK_ROCKER, np.array([0.3, 1.8, 0.9, 2.2, 3.9]), OPEN).p
+    design = verify_path(statement(points), mechanism(CRANK_ROCKER, 0.3))
+    assert not checks(design)["visits_in_order"]
+    assert checks(design)["same_circuit"]
+    assert verify_path(
+        statement(points, constraints={"in_order": False}), mechanism(CRANK_ROCKER, 0.3)
+    ).verification.passed
+
+
+def test_points_of_the_other_circuit_are_seen():
+    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8]), OPEN).p
+    points[1] = positions(CRANK_ROCKER, 0.9, -OPEN).p
+    design = verify_path(statement(points), mechanism(CRANK_ROCKER, 0.3))
+    assert checks(design)["reaches_targets"]
+    assert not checks(design)["same_circuit"]
+
+
+@pytest.mark.parametrize("off", [1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize("moved", [0, 2])
+def test_a_point_off_the_curve_is_not_reached(off, moved):
+    points = positions(CRANK_ROCKER, np.array([0.3, 0.9, 1.8, 2.5]), OPEN).p
+    first = mechanism(CRANK_ROCKER, 0.3)
+    points[moved] += off * (1.0 + 1.0j)
+    design = verify_path(statement(points), first)
+    assert design is None or not checks(design)["reaches_targets"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", PUBLISHED[:3], ids=[case["id"] for case in PUBLISHED[:3]])
+def test_published_counts_of_usable_linkages(case):
+    """Circuits and order of the real triples, counted independently once for the cases."""
+    points = [complex(*point) for point in case["inputs"]["points"]]
+    expected = case["expected"]
+    result = solve(statement(points, constraints={"in_order": True, "full_rotation": True}), silent)
+    assert result.search.complete
+    assert result.triples.computed == expected["cognate_triples_complex"]
+    assert result.triples.real == expected["cognate_triples_real"]
+    assert result.triples.on_one_circuit == expected["real_triples_with_all_points_on_one_circuit"]
+    assert bool(result.designs) == bool(expected["of_these_in_order_with_a_rotating_crank"])
+    assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
+    for design in result.designs:
+        assert passes_in_order(design, points)
+
+
+def passes_in_order(design, points):
+    """Whether the finished linkage, swept finely from its dimensions by circles that intersect, meets all in order."""
+    m = design.mechanism
+    o2, o4 = complex(*m.fixed_pivots.input), complex(*m.fixed_pivots.output)
+    turned = np.array([t.input_angle for t in design.targets])
+    sweep = np.radians(np.linspace(turned[0], turned[-1], 20_001))
+    a = o2 + m.links.input * np.exp(1j * sweep)
+    gap = o4 - a
+    along = (m.links.coupler**2 - m.links.output**2 + np.abs(gap) ** 2) / (2.0 * np.abs(gap))
+    across = np.sqrt(m.links.coupler**2 - along**2)
+    b = a + gap / np.abs(gap) * (along + (1j if m.assembly == "open" else -1j) * across)
+    p = a + (b - a) / np.abs(b - a) * m.coupler_point.distance * np.exp(1j * math.radians(m.coupler_point.angle))
+    nearest = [int(np.abs(p - point).argmin()) for point in points]
+    step = np.abs(np.diff(p)).max()
+    return nearest == sorted(nearest) and all(np.abs(p - point).min() <= step for point in points)
+
+
+@pytest.mark.slow
+def test_fewer_points_are_met_by_linkages_through_drawn_ones():
+    problem = parse_problem(example("path"))
+    result = solve(problem, silent)
+    assert not result.search.complete
+    assert result.search.method == "nine_point_family"
+    assert result.designs
+    for design in result.designs:
+        assert design.verification.passed
+        assert passes_in_order(design, [point.point for point in problem.points])
+    assert solve(problem, silent) == result
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"points": [{"x": 0.0, "y": 0.0}] * 2}, ("points",)),
+        ({"points": [{"x": float(n), "y": 0.0} for n in range(10)]}, ("points",)),
+        ({"timing": "prescribed"}, ("timing",)),
+        ({"rounds": 0}, ("rounds",)),
+        ({"points": [{"x": 0.0, "y": 0.0, "angle": 1.0}] * 3}, ("points", 0, "angle")),
+    ],
+)
+def test_ill_formed_statements_name_the_field(changes, where):
+    stated = {"kind": "path", "points": [{"x": float(n), "y": n * n * 1.0} for n in range(4)], **changes}
+    with pytest.raises(ValidationError) as caught:
+        parse_problem(stated)
+    assert ("<path>", *where) in [error["loc"] for error in caught.value.errors()]
+
+
+def test_equal_points_are_contradictions():
+    problem = statement([0.0j, 1.0 + 1.0j, 2.0 + 0.0j, 1.0 + 1.0j])
+    assert [fault.path for fault in problem.contradictions()] == ["/points/3"]
