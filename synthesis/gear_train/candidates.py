@@ -21,7 +21,10 @@ from synthesis.gear_train.kernels import Floats, Found, Gears, Integers, Rule
 from synthesis.gear_train.task import Task
 
 FEW_TRAINS = 20_000_000
-"""Trains of allowed meshes in one group up to which they are gone through one by one."""
+"""Trains that are gone through one by one, where they are no more than so many."""
+
+MANY_TRAINS = 10_000_000
+"""Trains of two halves from which on it pays to put them in order once more."""
 
 _NO_TIES = np.zeros((0, 2), np.int64)
 
@@ -42,6 +45,9 @@ class Candidates(Protocol):
 
     def least(self, part: int) -> int:
         """A lower bound of the sizes in a part and all later ones."""
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """Search all parts from ``first`` on at once, if that is little work; returns whether it was done."""
 
     def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
         """How many trains have exactly one of these ratios; ``found`` holds a search's result."""
@@ -93,6 +99,33 @@ class Halves:
     def least(self, part: int) -> int:
         """The size of a part."""
         return self.least_size + part
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """One pass over both lists by product, once so few trains come near that sizes need not be held apart."""
+        size = self.least(first)
+        settled = found.kept[0] == len(found.error) and (not rule.by_size or size > found.size[-1])
+        if not settled or self.combinations < MANY_TRAINS:
+            return False
+        near = max(float(found.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else found.error[-1])
+        # The products are spread over some powers of e: about so many pairs are as near as that.
+        if self.combinations * near > FEW_TRAINS:
+            return False
+        orders = [np.argsort(half.products, kind="stable") for half in (self.drivers, self.driven)]
+        kernels.match_all(
+            self.k,
+            self.drivers.teeth,
+            self.drivers.products,
+            self.drivers.sizes,
+            orders[0],
+            self.driven.teeth,
+            self.driven.products,
+            self.driven.sizes,
+            orders[1],
+            size,
+            rule,
+            found,
+        )
+        return True
 
     def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
         """Products that are in exactly one of the ratios."""
@@ -147,6 +180,10 @@ class Meshes:
     def least(self, part: int) -> int:
         """Bound of a group."""
         return int(self.least_size[part])
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """Groups are gone through one by one."""
+        return False
 
     def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
         """Trains of the ratios, met once more."""

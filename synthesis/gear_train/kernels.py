@@ -276,6 +276,61 @@ def match(
 
 
 @njit(cache=True, nogil=True)
+def match_all(
+    k: int,
+    drivers: Gears,
+    driver_products: Integers,
+    driver_sizes: Integers,
+    driver_order: Integers,
+    driven: Gears,
+    driven_products: Integers,
+    driven_sizes: Integers,
+    driven_order: Integers,
+    from_size: int,
+    rule: Rule,
+    found: Found,
+) -> None:
+    """As :func:`match`, for all sizes from ``from_size`` up in one pass over both lists in the order of the products.
+
+    It meets what comes near enough for the least of these sizes, so that it is for when little does.
+    """
+    teeth = np.zeros(3 * MOST_STAGES, np.int64)
+    capacity, middle = len(found.error), 0
+    front = np.inf
+    for s in range(min(from_size, len(found.least_error))):
+        front = min(front, found.least_error[s])
+    for place in range(len(driver_order)):
+        i = driver_order[place]
+        d = driver_products[i]
+        wanted = rule.target * d
+        while middle < len(driven_order) and driven_products[driven_order[middle]] < wanted:
+            middle += 1
+        for upward in range(2):
+            at = middle if upward else middle - 1
+            while 0 <= at < len(driven_order):
+                j = driven_order[at]
+                at += 1 if upward else -1
+                if rule.by_size:
+                    full = found.kept[0] == capacity and from_size > found.size[capacity - 1]
+                    ranked = 0.0 if full else np.inf
+                else:
+                    ranked = found.error[capacity - 1] if found.kept[0] == capacity else np.inf
+                if abs(driven_products[j] - wanted) > _window(ranked, front, rule.tolerance) * wanted:
+                    break
+                one, other = driver_sizes[i], driven_sizes[j]
+                size = max(one, other) if rule.largest else one + other
+                if size < from_size or size >= len(found.least_error):
+                    continue
+                e = error_of(driven_products[j], d, rule.target, rule.target_rest)
+                if e <= rule.tolerance and worth(e, size, found, rule.by_size):
+                    for stage in range(k):
+                        teeth[stage] = drivers[i, stage]
+                        teeth[MOST_STAGES + stage] = driven[j, stage]
+                    if within_limits(teeth, k, rule) and pair_up(teeth, k, rule):
+                        enter(e, size, teeth, found, rule.by_size)
+
+
+@njit(cache=True, nogil=True)
 def count_products(
     k: int,
     drivers: Gears,

@@ -131,17 +131,18 @@ def _searched(
         for k, one in zip(counts, listed, strict=True):
             parts = np.linspace(0, one.steps, min(PARTS, one.steps) + 1).astype(int)
             for first, last in itertools.pairwise(parts):
-                if one.least(int(first)) > _last_size(task, found):
+                if one.least(int(first)) > _last_size(task, found) or one.finish(int(first), rule, found):
                     break
                 one.search(int(first), int(last), rule, found)
                 share = (done + one.combinations * float(last) / one.steps) / work
                 progress(0.95 * share, f"{k} stages: {one.combinations:.3g} trains")
             done += one.combinations
         trains = [_train(row) for row in found.teeth[: found.kept[0]]]
-        if tolerance is not None:
-            trains = [train for train in trains if task.target.within(train.ratio, tolerance)]
-        trains = order(task, trains)
-        if not _may_have_dropped(task, trains, found, wanted):
+        kept = [train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance)]
+        # Trains that only the rounded tolerance let in may have taken the places of others.
+        crowded = len(kept) < len(trains) == capacity
+        trains = order(task, kept)
+        if not crowded and not _may_have_dropped(task, trains, found, wanted):
             break
         capacity *= 4
     ties = 0

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from synthesis.gear_train import candidates
 from synthesis.gear_train.search import Outcome, search
 from synthesis.gear_train.targets import parse_target
 from synthesis.gear_train.task import gear_train_task
@@ -53,6 +54,15 @@ class Plain:
 @pytest.fixture(scope="module")
 def plain() -> Plain:
     return Plain(12, 40)
+
+
+@pytest.mark.parametrize("ratio", ["pi", "1.73205", "29/11"])
+def test_finishing_at_once_is_the_same(ratio: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
+    for many in (0, 10**18):
+        monkeypatch.setattr(candidates, "MANY_TRAINS", many)
+        found.append(searched(wanted=25, ratio=ratio, max_stages=3, teeth={"min": 12, "max": 40}))
+    assert found[0] == found[1]
 
 
 @pytest.mark.slow
@@ -187,9 +197,16 @@ DEMANDS = {
 
 
 @pytest.mark.parametrize("demands", DEMANDS.values(), ids=DEMANDS.keys())
-@pytest.mark.parametrize("ratio", ["1", "1.37", "2/3", "2.25"])
-def test_every_demand_against_plain_search(ratio: str, demands: dict[str, object]) -> None:
-    """Ranking, Pareto set and number of ties of small problems with every demand."""
+@pytest.mark.parametrize(("ratio", "at_once"), [("1", False), ("1.37", True), ("2/3", True), ("2.25", False)])
+def test_every_demand_against_plain_search(
+    ratio: str, at_once: bool, demands: dict[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ranking, Pareto set and number of ties of small problems with every demand.
+
+    ``at_once``: what is left is finished in one pass as soon as it can be, as large problems are.
+    """
+    if at_once:
+        monkeypatch.setattr(candidates, "MANY_TRAINS", 0)
     stated = problem(ratio=ratio, **demands)
     k = stated.max_stages
     if stated.stock is not None:
