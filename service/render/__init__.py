@@ -24,6 +24,19 @@ EXPORTS: dict[str, dict[Form, str]] = {
         "dxf": "service.render.gear_dxf:gear_train_drawing",
         "csv": "service.render.gear_csv:gear_train_table",
     },
+    "planetary_train": {
+        "svg": "service.render.planetary_sheet:planetary_sheet",
+        "dxf": "service.render.planetary_dxf:planetary_drawing",
+        "csv": "service.render.planetary_csv:planetary_table",
+    },
+    "gearbox": {
+        "svg": "service.render.gearbox_exports:gearbox_sheet",
+        "csv": "service.render.gearbox_exports:gearbox_table",
+    },
+    "layshaft_gearbox": {
+        "svg": "service.render.gearbox_exports:layshaft_sheet",
+        "csv": "service.render.gearbox_exports:layshaft_table",
+    },
 }
 """For each type of mechanism what makes a file of each form of a design, its problem and a title: ``module:function``,
 imported when it is needed, so that a server that starts does not wait for a drawing library."""
