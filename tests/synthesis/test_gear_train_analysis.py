@@ -10,6 +10,8 @@ from pydantic import ValidationError
 
 from synthesis.analyses import parse_request
 from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
+from synthesis.dispatch import solve
+from synthesis.kinds import parse_problem
 
 
 def analysed(
@@ -82,10 +84,14 @@ def test_friction_costs_about_a_hundredth() -> None:
 
 
 def test_over_the_cycle_is_one_turn() -> None:
-    mechanism = {"type": "gear_train", "stages": TWO, "idlers": [], "pressure_angle": 20.0}
+    problem = parse_problem({"kind": "gear_train", "ratio": -70, "max_stages": 2, "teeth": {"min": 12, "max": 150}})
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    mechanism = design.mechanism.model_dump(mode="json")
+    assert parse_request({"mechanism": mechanism}).faults() == []
     found = GearTrainAnalysis.model_validate(GearTrainAnalysisRequest.over_the_cycle(mechanism, 36))
     assert found.input_angle[-1] == 360.0
     assert len(found.gears[0].angle) == 37
+    assert found.gears[-1].angle[-1] == pytest.approx(-360.0 / 70.0)
 
 
 @pytest.mark.parametrize(

@@ -56,13 +56,15 @@ def plain() -> Plain:
     return Plain(12, 40)
 
 
-@pytest.mark.parametrize("ratio", ["pi", "1.73205", "29/11"])
-def test_finishing_at_once_is_the_same(ratio: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("fields", [{}, {"rank_by": "size", "tolerance": 0.01}, {"size": "largest_gear"}])
+@pytest.mark.parametrize("ratio", ["pi", "29/11"])
+def test_finishing_at_once_is_the_same(ratio: str, fields: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> None:
     found = []
     for many in (0, 10**18):
         monkeypatch.setattr(candidates, "MANY_TRAINS", many)
-        found.append(searched(wanted=25, ratio=ratio, max_stages=3, teeth={"min": 12, "max": 40}))
+        found.append(searched(wanted=25, ratio=ratio, max_stages=3, teeth={"min": 12, "max": 40}, **fields))
     assert found[0] == found[1]
+    assert len(found[0].pareto) > 4
 
 
 @pytest.mark.slow
