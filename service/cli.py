@@ -35,6 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from synthesis import dispatch
 
     dispatch.warm_up()
+    dispatch.warm_up_rest()
     analyst.warm_up()
     return 0
 

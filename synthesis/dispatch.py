@@ -7,10 +7,10 @@ from typing import Any
 
 from kinematics import linkage
 from synthesis.designs import Result
-from synthesis.kinds import KINDS, Progress, examples, parse_problem
+from synthesis.kinds import KINDS, Progress, example, examples, parse_problem
 from synthesis.problems import StatedProblem
 
-__all__ = ["Progress", "solve", "warm_up"]
+__all__ = ["Progress", "solve", "warm_up", "warm_up_rest"]
 
 
 def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
@@ -36,7 +36,12 @@ def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
 
 
 def warm_up() -> None:
-    """Compile the kernels, or load them from their cache: the analysis core's, then those of each kind.
+    """Compile the kernels of the most usual jobs, or load them from their cache; the rest is :func:`warm_up_rest`."""
+    solve(parse_problem(example("motion")), _silent)
+
+
+def warm_up_rest() -> None:
+    """Compile or load everything else: the analysis core, and what the solvers of all kinds need.
 
     A solver's module that has a ``warm_up`` of its own is warmed by that, any other by the examples of its kind.
     """
@@ -46,5 +51,9 @@ def warm_up() -> None:
         if hasattr(module, "warm_up"):
             module.warm_up()
             continue
-        for example in examples(name):
-            solve(parse_problem(example), lambda fraction, message: None)
+        for one in examples(name):
+            solve(parse_problem(one), _silent)
+
+
+def _silent(_fraction: float, _message: str) -> None:
+    pass

@@ -53,6 +53,7 @@ def warm_up():
 if __name__ in ("__main__", "__mp_main__"):
     dispatch.solve = solve
     dispatch.warm_up = warm_up
+    dispatch.warm_up_rest = lambda: None
 
 
 def break_lanes():
