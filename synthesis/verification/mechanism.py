@@ -76,8 +76,10 @@ class _Way(NamedTuple):
 
 def verify_mechanism(problem: MotionProblem, design: LinkageMechanism) -> LinkageDesign | None:
     """Drive a linkage through a problem's targets and measure it; see :func:`synthesis.verification.verify`."""
+    # Where dimensions say it all the skeleton is not looked at; a sixbar's dimensions are its skeleton.
+    told = design.model_dump(exclude=None if isinstance(design, SixbarMechanism) else {"skeleton"})
     try:
-        mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
+        mechanism = _GIVEN.validate_python(told).mechanism()
         found = branches(mechanism)
     except (MechanismError, DimensionError, TopologyError):
         return None
