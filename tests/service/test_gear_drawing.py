@@ -111,6 +111,7 @@ def test_svg_shows_every_gear_to_scale(task: tuple[GearTrainDesign, GearTrainPro
         assert r <= y <= height - r
 
 
+@pytest.mark.slow  # reading the file back takes seconds
 def test_dxf_has_pitch_circles_and_involute_teeth(task: tuple[GearTrainDesign, GearTrainProblem]) -> None:
     design, problem = task
     text = exported(design, problem, "train", "dxf")
