@@ -39,6 +39,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
 	$(BIN)/python -m benchmarks.motion
 	$(BIN)/python -m benchmarks.gear_train
+	$(BIN)/python -m benchmarks.planetary
 	$(BIN)/python -m benchmarks.cam_core
 	$(BIN)/python -m benchmarks.service
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from service.render import blocks
 from service.render.numbers import length, small
-from service.render.svg import Box, Element, circle, clean, element, line, shortened, text
+from service.render.svg import Box, Element, circle, clean, element, line, shortened, text, text_width
 from service.render.symbols import COUPLER, CURVE, GREY, INK, INPUT, OUTPUT, PALE
 from synthesis.designs.base import Check, Verification
 from synthesis.designs.gearbox import GearboxDesign, LayshaftDesign
@@ -22,6 +22,9 @@ from synthesis.problems.gearbox import GearboxProblem, LayshaftProblem
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER, HEIGHT = 1100.0, 22.0, 74.0, 400.0, 26.0, 620.0
 """Width of the sheet, border, height of the title, width of the tables, space beside them, height of the diagram."""
+
+RAY_LABEL = 0.72
+"""Share of a ray's length at which its teeth stand, towards the end, where the rays have parted."""
 
 COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
 """Of the stages."""
@@ -163,8 +166,7 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
         colour = COLOURS[ray.shaft % len(COLOURS)]
         group.add(line(start, end, stroke=colour, stroke_width=1.6, data_ray=f"{ray.start!r} {ray.end!r}"))
         if ray.words:
-            middle = start + 0.55 * (end - start)
-            group.add(text(middle.real, middle.imag - 4.0, ray.words, 10.5, fill=colour, text_anchor="middle"))
+            group.add(_label(start + RAY_LABEL * (end - start), ray.words, colour))
     for k, speeds in enumerate(shafts):
         for speed in speeds:
             at = point(k, speed)
@@ -174,6 +176,12 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
                 words = length(speed, digits=4)
                 group.add(text(at.real + offset, at.imag + 4.0, words, 10.5, fill=INK, text_anchor=anchor))
     return group
+
+
+def _label(at: complex, words: str, colour: str) -> Element:
+    half = 0.5 * text_width(words, 10.5) + 2.0
+    clear = element("rect", x=at.real - half, y=at.imag - 7.0, width=2.0 * half, height=14.0, fill="#fbfcfd")
+    return element("g", clear, text(at.real, at.imag + 3.8, words, 10.5, fill=colour, text_anchor="middle"))
 
 
 def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
