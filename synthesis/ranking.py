@@ -55,14 +55,28 @@ def distinct(joints: NDArray[np.complex128], count: int, apart: float) -> list[i
     list of int
         Chosen rows, best first.
     """
-    chosen: list[int] = []
-    free = np.ones(len(joints), np.bool_)
-    while len(chosen) < count and free.any():
-        best = int(free.argmax())
-        chosen.append(best)
-        free &= np.abs(joints - joints[best]).max(axis=1) >= apart
-        free[best] = False
-    return chosen
+    return [int(k) for k in _distinct(np.ascontiguousarray(joints), count, apart)]
+
+
+@njit(cache=True, nogil=True)
+def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArray[np.int64]:
+    chosen = np.empty(min(count, len(joints)), np.int64)
+    found = 0
+    for i in range(len(joints)):
+        if found == len(chosen):
+            break
+        differs = True
+        for j in chosen[:found]:
+            gap = 0.0
+            for k in range(joints.shape[1]):
+                gap = max(gap, abs(joints[i, k] - joints[j, k]))
+            if gap < apart:
+                differs = False
+                break
+        if differs:
+            chosen[found] = i
+            found += 1
+    return chosen[:found]
 
 
 _KEYS: dict[str, Callable[[LinkageDesign], float]] = {

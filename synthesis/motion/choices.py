@@ -36,7 +36,7 @@ from synthesis.problems import Constraints, DyadChoices, MotionProblem, PartialP
 NEAR_REACH, FAR_REACH = 0.05, 6.0
 """Free pivots are drawn between these distances, in task sizes; beyond them links get too short or too long."""
 
-CURVE_REACH = 20.0
+CURVE_REACH = 50.0
 """Dyads of Burmester's curves with a pivot farther away than this many task sizes are no candidates."""
 
 CURVE_NEAR = 0.15
@@ -171,6 +171,8 @@ def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -
     kept.
     """
     rows = pose_rows(task)
+    if np.linalg.svd(rows, compute_uv=False)[-1] > REDUNDANT:
+        return task, conditions
     kept: list[int] = []
     for k, row in enumerate(rows):
         others = rows[kept]

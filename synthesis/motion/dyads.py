@@ -46,6 +46,9 @@ DEPENDENT = 1e-9
 """Singular value, relative to the largest, below which a linear condition counts as a repetition of the others; and the
 misfit below which it then counts as met. Half of the digits of the data stand behind either."""
 
+RIDGE = 1e-14
+"""Share of its trace that is added to a normal matrix, so that a singular one (at a pole) is no error."""
+
 FAR = 1e5
 """A pivot farther than this many task sizes away stands for a slider: its residual could not be held to 1e-9."""
 
@@ -147,7 +150,10 @@ def settled(task: MotionTask, dyads: Dyads) -> Dyads:
     conditions = DyadConditions(rotations=(None,) * (len(task.points) - 1))
     for _ in range(2):
         values, jacobian = _rows(task, conditions, fixed, moving)
-        step = -(np.linalg.pinv(jacobian) @ values[..., None])[..., 0]
+        transposed = jacobian.swapaxes(-1, -2)
+        square = jacobian @ transposed
+        square += RIDGE * np.trace(square, axis1=-2, axis2=-1)[..., None, None] * np.eye(values.shape[-1])
+        step = -(transposed @ np.linalg.solve(square, values[..., None]))[..., 0]
         fixed = fixed + (step[:, 0] + 1j * step[:, 1])
         moving = moving + (step[:, 2] + 1j * step[:, 3])
     return Dyads(fixed, moving)

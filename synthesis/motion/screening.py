@@ -155,7 +155,7 @@ def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: Demands) -> 
     return Screening(verdict, score)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _screen(
     a_images: NDArray[np.complex128],
     o2s: NDArray[np.complex128],
@@ -169,13 +169,36 @@ def _screen(
     """Judge all pairs; those that are not judged keep the verdict and score that they have."""
     n = a_images.shape[1]
     turned = np.empty((2, n))
+    inputs, outputs = _lengths(a_images, o2s), _lengths(b_images, o4s)
     for i in range(len(o2s)):
         o2 = o2s[i]
         in_order = _turns(a_images[i], o2, turned)
         if wanted.in_order and not (in_order[0] or in_order[1]):
             continue  # an order defect with every output
-        for j in range(len(o4s)):
-            verdict[i, j], score[i, j] = _judge(a_images[i], o2, b_images[j], o4s[j], turned, in_order, points, wanted)
+        around = np.sort(turned[0])
+        _judge(
+            i, a_images, o2, inputs[i], b_images, o4s, outputs, turned, around, in_order, points, wanted, verdict, score
+        )
+
+
+@njit(cache=True, nogil=True)
+def _lengths(images: NDArray[np.complex128], pivots: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Link lengths of dyads."""
+    lengths = np.empty(len(pivots))
+    for i in range(len(pivots)):
+        lengths[i] = abs(images[i, 0] - pivots[i])
+    return lengths
+
+
+@njit(cache=True, nogil=True)
+def _cross(u: complex, v: complex) -> float:
+    return u.real * v.imag - u.imag * v.real
+
+
+@njit(cache=True, nogil=True)
+def _size_of(z: complex) -> float:
+    """|z| of a number near one in size: without the care for overflow that abs takes."""
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
 @njit(cache=True, nogil=True)
@@ -197,112 +220,140 @@ def _turns(a: NDArray[np.complex128], o2: complex, turned: NDArray[np.float64]) 
     return rising, falling
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _judge(
-    a_k: NDArray[np.complex128],
+    i: int,
+    a_images: NDArray[np.complex128],
     o2: complex,
-    b_k: NDArray[np.complex128],
-    o4: complex,
+    a: float,
+    b_images: NDArray[np.complex128],
+    o4s: NDArray[np.complex128],
+    outputs: NDArray[np.float64],
     turned: NDArray[np.float64],
+    around: NDArray[np.float64],
     in_order: tuple[bool, bool],
     points: NDArray[np.complex128],
     wanted: Demands,
-) -> tuple[int, float]:
-    n = len(a_k)
-    ground = o4 - o2
-    a, b, c, d = abs(a_k[0] - o2), abs(b_k[0] - a_k[0]), abs(b_k[0] - o4), abs(ground)
-    shortest, longest = min(a, b, c, d), max(a, b, c, d)
-    if shortest <= SHORTEST_LINK * longest:
-        return DEGENERATE, 0.0
-    if shortest < wanted.shortest or longest > wanted.longest:
-        return LINK_LENGTH, 0.0
-    if longest > wanted.link_ratio * shortest:
-        return LINK_RATIO, 0.0
-    grashof = 2.0 * (shortest + longest) < a + b + c + d
-    if wanted.grashof != ANY:
-        crank = grashof and shortest == a
-        good = (
-            (wanted.grashof == CRANK_ROCKER and crank)
-            or (wanted.grashof == DOUBLE_CRANK and grashof and shortest == d)
-            or (wanted.grashof == DOUBLE_ROCKER and grashof and shortest == b)
-            or (wanted.grashof == NON_GRASHOF and not grashof)
-        )
-        if not good:
-            return GRASHOF, 0.0
-    input_turns_through = grashof and shortest in (a, d)
-    if wanted.full_rotation and not input_turns_through:
-        return FULL_ROTATION, 0.0
+    verdict: NDArray[np.int8],
+    score: NDArray[np.float32],
+) -> None:
+    """Judge the pairs of one input dyad with all outputs.
 
-    one_assembly = True
-    one_side = True
-    assembly = 0.0
-    side = 0.0
-    for k in range(n):
-        coupler, output = b_k[k] - a_k[k], b_k[k] - o4
-        cross = coupler.real * output.imag - coupler.imag * output.real
-        crank = a_k[k] - o2
-        lateral = ground.real * crank.imag - ground.imag * crank.real
-        if k == 0:
-            assembly, side = cross, lateral
-        one_assembly = one_assembly and assembly * cross > 0.0
-        one_side = one_side and side * lateral > 0.0
-    if input_turns_through and not one_assembly:
-        return CIRCUIT_DEFECT, 0.0
-    if grashof and not input_turns_through and not one_side:
-        return CIRCUIT_DEFECT, 0.0
+    One long loop: handing arrays to a function for each pair would cost more than what is decided there.
+    """
+    n = a_images.shape[1]
+    for j in range(len(o4s)):
+        o4, c = o4s[j], outputs[j]
+        ground = o4 - o2
+        b, d = _size_of(b_images[j, 0] - a_images[i, 0]), _size_of(ground)
+        shortest, longest = min(a, b, c, d), max(a, b, c, d)
+        if shortest <= SHORTEST_LINK * longest:
+            verdict[i, j] = DEGENERATE
+            continue
+        if shortest < wanted.shortest or longest > wanted.longest:
+            verdict[i, j] = LINK_LENGTH
+            continue
+        if longest > wanted.link_ratio * shortest:
+            verdict[i, j] = LINK_RATIO
+            continue
+        grashof = 2.0 * (shortest + longest) < a + b + c + d
+        if wanted.grashof != ANY:
+            crank = grashof and shortest == a
+            good = (
+                (wanted.grashof == CRANK_ROCKER and crank)
+                or (wanted.grashof == DOUBLE_CRANK and grashof and shortest == d)
+                or (wanted.grashof == DOUBLE_ROCKER and grashof and shortest == b)
+                or (wanted.grashof == NON_GRASHOF and not grashof)
+            )
+            if not good:
+                verdict[i, j] = GRASHOF
+                continue
+        input_turns_through = grashof and shortest in (a, d)
+        if wanted.full_rotation and not input_turns_through:
+            verdict[i, j] = FULL_ROTATION
+            continue
 
-    best = 2.0  # largest |cos γ| on the way that is taken; above 1 none is free of toggles
-    if one_assembly:
-        first = (a_k[0] - o2) * ground.conjugate()
-        delta = math.atan2(first.imag, first.real)
-        shorter = 0 if turned[0, n - 1] <= -turned[1, n - 1] else 1
-        for way in (1 - shorter, shorter):  # the shorter way that is free of toggles has the last word
-            if in_order[way]:
-                worst = _worst_cosine(a, b, c, d, delta, delta + turned[way, n - 1])
-                if worst < FOLDED:
-                    best = worst
+        one_assembly = True
+        first_cross = _cross(b_images[j, 0] - a_images[i, 0], b_images[j, 0] - o4)
+        for k in range(1, n):
+            if not first_cross * _cross(b_images[j, k] - a_images[i, k], b_images[j, k] - o4) > 0.0:
+                one_assembly = False
+                break
+        if input_turns_through and not one_assembly:
+            verdict[i, j] = CIRCUIT_DEFECT
+            continue
+        if grashof and not input_turns_through:
+            one_side = True
+            first_lateral = _cross(ground, a_images[i, 0] - o2)
+            for k in range(1, n):
+                one_side = one_side and first_lateral * _cross(ground, a_images[i, k] - o2) > 0.0
+            if not one_side:
+                verdict[i, j] = CIRCUIT_DEFECT
+                continue
+
+        best = 2.0  # largest |cos γ| on the way that is taken; above 1 none is free of toggles
+        if one_assembly:
+            first, last = (a_images[i, 0] - o2) * ground.conjugate(), (a_images[i, n - 1] - o2) * ground.conjugate()
+            near, far = min(first.real, last.real) / (a * d), max(first.real, last.real) / (a * d)
+            shorter = 0 if turned[0, n - 1] <= -turned[1, n - 1] else 1
+            for way in (1 - shorter, shorter):  # the shorter way that is free of toggles has the last word
+                if in_order[way]:
+                    folded, stretched = _ground_line_passed(first, last, turned[way, n - 1])
+                    worst = _larger_cosine(a, b, c, d, -1.0 if folded else near, 1.0 if stretched else far)
+                    if worst < FOLDED:
+                        best = worst
+            if best >= FOLDED:
+                out_of_order = _out_of_order(a, b, c, d, math.atan2(first.imag, first.real), around)
+                if out_of_order < FOLDED:
+                    if wanted.in_order:
+                        verdict[i, j] = ORDER_DEFECT
+                        continue
+                    best = out_of_order
         if best >= FOLDED:
-            out_of_order = _out_of_order(a, b, c, d, delta, turned[0])
-            if out_of_order < FOLDED:
-                if wanted.in_order:
-                    return ORDER_DEFECT, 0.0
-                best = out_of_order
-    if best >= FOLDED:
-        if wanted.same_branch:
-            return BRANCH_DEFECT, 0.0
-        best = 1.0
-    if best > wanted.least_transmission_cosine:
-        return TRANSMISSION_ANGLE, 0.0
-    sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE)
-    if wanted.rank_by == BY_TRANSMISSION:
-        return SOUND, sine
-    if wanted.rank_by == BY_SIZE:
-        return SOUND, 1.0 / _size(a_k, o2, b_k, o4, points)
-    reach = max(longest, max(abs(a_k[0]), abs(b_k[0])))
-    return SOUND, quality(sine, reach, longest / shortest)
+            if wanted.same_branch:
+                verdict[i, j] = BRANCH_DEFECT
+                continue
+            best = 1.0
+        if best > wanted.least_transmission_cosine:
+            verdict[i, j] = TRANSMISSION_ANGLE
+            continue
+        sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE)
+        verdict[i, j] = SOUND
+        if wanted.rank_by == BY_TRANSMISSION:
+            score[i, j] = sine
+        elif wanted.rank_by == BY_SIZE:
+            score[i, j] = 1.0 / _size(a_images, i, o2, b_images, j, o4, points)
+        else:
+            reach = max(longest, _size_of(a_images[i, 0]), _size_of(b_images[j, 0]))
+            score[i, j] = quality(sine, reach, longest / shortest)
 
 
 @njit(cache=True, nogil=True)
 def _size(
-    a_k: NDArray[np.complex128], o2: complex, b_k: NDArray[np.complex128], o4: complex, points: NDArray[np.complex128]
+    a_images: NDArray[np.complex128],
+    i: int,
+    o2: complex,
+    b_images: NDArray[np.complex128],
+    j: int,
+    o4: complex,
+    points: NDArray[np.complex128],
 ) -> float:
     """Diagonal of the box around all joints and the body's point at all targets."""
     left, right = min(o2.real, o4.real), max(o2.real, o4.real)
     low, high = min(o2.imag, o4.imag), max(o2.imag, o4.imag)
-    for k in range(len(a_k)):
-        for z in (a_k[k], b_k[k], points[k]):
+    for k in range(len(points)):
+        for z in (a_images[i, k], b_images[j, k], points[k]):
             left, right = min(left, z.real), max(right, z.real)
             low, high = min(low, z.imag), max(high, z.imag)
     return math.hypot(right - left, high - low)
 
 
 @njit(cache=True, nogil=True)
-def _out_of_order(a: float, b: float, c: float, d: float, delta: float, turned: NDArray[np.float64]) -> float:
+def _out_of_order(a: float, b: float, c: float, d: float, delta: float, around: NDArray[np.float64]) -> float:
     """Largest |cos γ| over the shortest toggle-free range that covers all targets; 2 when there is none.
 
-    Such a range leaves out one of the gaps between neighbouring targets.
+    Such a range leaves out one of the gaps between neighbouring targets, which are given in their order.
     """
-    around = np.sort(turned)
     best, longest = 2.0, 0.0
     for k in range(len(around)):
         after = around[k + 1] if k + 1 < len(around) else around[0] + 2.0 * math.pi
@@ -315,14 +366,31 @@ def _out_of_order(a: float, b: float, c: float, d: float, delta: float, turned: 
 
 @njit(cache=True, nogil=True)
 def _worst_cosine(a: float, b: float, c: float, d: float, start: float, end: float) -> float:
-    """Largest |cos γ| while the input turns from start to end (angles from the ground line); above 1 past a toggle."""
-    low, high = min(start, end), max(start, end)
-    near = min(math.cos(low), math.cos(high))
-    far = max(math.cos(low), math.cos(high))
-    if math.floor(high / (2.0 * math.pi)) >= math.ceil(low / (2.0 * math.pi)):
+    """Largest |cos γ| while the input turns from start up to end (from the ground line); above 1 past a toggle."""
+    turn = 2.0 * math.pi
+    near, far = min(math.cos(start), math.cos(end)), max(math.cos(start), math.cos(end))
+    if math.floor(end / turn) >= math.ceil(start / turn):
         far = 1.0
-    if math.floor((high - math.pi) / (2.0 * math.pi)) >= math.ceil((low - math.pi) / (2.0 * math.pi)):
+    if math.floor((end - math.pi) / turn) >= math.ceil((start - math.pi) / turn):
         near = -1.0
+    return _larger_cosine(a, b, c, d, near, far)
+
+
+@njit(cache=True, nogil=True)
+def _ground_line_passed(first: complex, last: complex, turned: float) -> tuple[bool, bool]:
+    """Whether an input that turns from first to last points away from O4 on its way, and whether towards it.
+
+    The two are directions as seen from the ground line; the turn, within a full one, tells the way between them.
+    """
+    start, end = (first.imag, last.imag) if turned >= 0.0 else (-first.imag, -last.imag)
+    if abs(turned) <= math.pi:
+        return start >= 0.0 and end <= 0.0, start <= 0.0 and end >= 0.0
+    return not (start < 0.0 and end > 0.0), not (start > 0.0 and end < 0.0)
+
+
+@njit(cache=True, nogil=True)
+def _larger_cosine(a: float, b: float, c: float, d: float, near: float, far: float) -> float:
+    """The larger |cos γ| of two inputs, given by the cosines of their angles from the ground line."""
     constant = b * b + c * c - a * a - d * d
     gamma_one = (constant + 2.0 * a * d * far) / (2.0 * b * c)
     gamma_two = (constant + 2.0 * a * d * near) / (2.0 * b * c)

@@ -31,15 +31,18 @@ from synthesis.problems import Constraints, DyadChoices, MotionProblem, whole_po
 from synthesis.ranking import distinct, ranked
 from synthesis.verification import verify
 
-USABLE_TRANSMISSION_ANGLE = 30.0
-"""Degrees. Where the client sets no limit, a search offers linkages below this only if it met none that reaches it;
-practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
+USABLE_TRANSMISSION_ANGLES = 30.0, 20.0, 10.0, 0.0
+"""Degrees. Where the client sets no limit, a search offers linkages below each of these only if it met none that
+reaches it; practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
 
 CLOUD_PAIR = 1200
 """Dyads a side when both sides are open: 1.4 million pairs."""
 
 CLOUD_SINGLE = 40_000
 """Dyads of an open side when the other is determined."""
+
+CURVE_PAIR, CURVE_SINGLE = 1600, 8000
+"""The same for dyads of Burmester's curve, which has one dimension to fill but reaches far."""
 
 CURVES_REACH = 4.0
 """Burmester's curves are returned up to this many task sizes from the body, or half as far again as designs reach."""
@@ -92,14 +95,13 @@ def _solve_fourbars(problem: MotionProblem, progress: Progress) -> MotionResult:
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding dyads")
     sides = problem.input_side, problem.output_side
-    clouds = [side_dyads(task, problem, sides[0], rng, CLOUD_PAIR)]
+    pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
+    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
     alike = sides[0] == sides[1]
-    clouds.append(
-        clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, CLOUD_PAIR)
-    )
+    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
     for k in (0, 1):
         if clouds[k].sampled and not clouds[1 - k].sampled:
-            clouds[k] = side_dyads(task, problem, sides[k], rng, CLOUD_SINGLE)
+            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
     pairs = _Pairs(problem, task, *clouds)
     for name, cloud in zip(("input", "output"), clouds, strict=True):
         if not len(cloud.dyads.fixed):
@@ -139,9 +141,10 @@ class _Pairs:
         count = len(self.inputs.fixed) * len(self.outputs.fixed)
         progress(0.1, f"screening {count} pairs of dyads")
         limit = self.problem.constraints.min_transmission_angle
-        screening = self._screened(self.problem.constraints, USABLE_TRANSMISSION_ANGLE if limit is None else limit)
-        if limit is None and not screening.score.any() and "transmission_angle" in screening.rejected():
-            screening = self._screened(self.problem.constraints, 0.0)
+        for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
+            screening = self._screened(self.problem.constraints, least)
+            if screening.score.any() or "transmission_angle" not in screening.rejected():
+                break
         sound = int(np.count_nonzero(screening.score))
         progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
         self.rejected.update(screening.rejected())
@@ -275,8 +278,8 @@ class _Pairs:
             f"{sound} of {count} pairs of dyads passed the screening; the best {len(self.passed)} distinct ones were "
             f"driven and verified, with a least transmission angle of up to {best:.1f}°."
         )
-        if best < USABLE_TRANSMISSION_ANGLE:
-            text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLE:.0f}°."
+        if best < USABLE_TRANSMISSION_ANGLES[0]:
+            text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
         return text
 
 
