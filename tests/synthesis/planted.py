@@ -135,6 +135,9 @@ def _followed(
             if abs(determinant) < 0.2 * coupler * output:
                 return None
             gap_u, gap_v = (coupler**2 - abs(u) ** 2) / 2.0, (output**2 - abs(v) ** 2) / 2.0
-            b = b + 1j * (gap_v * u - gap_u * v) / determinant
+            step = (gap_v * u - gap_u * v) / determinant
+            b = b + 1j * step
+            if abs(step) < 1e-10:  # quadratic convergence: the next would be below rounding
+                break
         pins_b[k] = b
     return pins_a, pins_b

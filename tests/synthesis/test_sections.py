@@ -28,7 +28,8 @@ def lengths_vary(task: MotionTask, fixed: np.ndarray, moving: np.ndarray) -> flo
 
 def rational_task(rng: np.random.Generator) -> tuple[MotionTask, int]:
     """Five positions by rational numbers, and how many real dyads they have."""
-    poses = [tuple(Fraction(int(v), 997) for v in rng.integers(-414, 414, 3)) for _ in range(5)]
+    numbers = np.stack([rng.choice(829, 5, replace=False) - 414 for _ in range(3)], axis=1)
+    poses = [tuple(Fraction(int(v), 997) for v in row) for row in numbers]
     points = np.array([complex(float(x), float(y)) for x, y, _ in poses])
     turns = np.array([(1.0 + 1j * float(t)) ** 2 / (1.0 + float(t) ** 2) for _, _, t in poses])
     return MotionTask(points - points[0], turns / turns[0], 0j, 1.0), real_dyads(poses)  # type: ignore[arg-type]
