@@ -163,7 +163,7 @@ def test_a_slider_cannot_be_driven_so_and_the_field_is_named() -> None:
 def test_no_sixbar_of_many_has_a_defect() -> None:
     rng = np.random.default_rng(20)
     count = 0
-    for k in range(30):
+    for k in range(12):
         points, angles = rng.normal(0.0, 2.0, (2 + k % 2, 2)), rng.uniform(-60.0, 60.0, 2 + k % 2)
         positions = [
             {"x": float(x), "y": float(y), "angle": float(a)} for (x, y), a in zip(points, angles, strict=True)
@@ -173,4 +173,4 @@ def test_no_sixbar_of_many_has_a_defect() -> None:
             assert_drives_through(design, problem)
             assert turns_through(design)
             count += 1
-    assert count > 40
+    assert count > 15

@@ -128,7 +128,7 @@ def test_no_slider_design_has_a_defect_by_continuation(side: dict[str, Any]) -> 
 @pytest.mark.parametrize("side", SIDES)
 def test_no_slider_design_of_many_has_a_defect(side: dict[str, Any]) -> None:
     rng = np.random.default_rng(9)
-    assert sum(check_all(random_positions(rng, 2 + k % 3), **side) for k in range(120)) > 150
+    assert sum(check_all(random_positions(rng, 2 + k % 3), **side) for k in range(30)) > 40
 
 
 def design_with(kind: str) -> LinkageDesign:
