@@ -24,6 +24,9 @@ DEGREE = 16
 RESOLVED = 1e-13
 """Size of the last coefficients, relative to the function's largest value, at which a polynomial is accepted."""
 
+ROUNDED = 8.0 * float(np.finfo(np.float64).eps)
+"""Error of a point by rounding, as a share of it, with some room."""
+
 HALVINGS = 24
 """At most; a kink or a jump inside a piece, which no polynomial fits, is closed in to 1e-7 of the piece."""
 
@@ -123,7 +126,9 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
         # Less the first value of each row, so that a constant has no rounding at all.
         series = (values - values[:, :1]) @ _FIT.T
         series[:, 0] += values[:, 0]
-        good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size
+        # The argument is rounded too, which no halving mends: on a short steep piece its rounding is all there is left.
+        rounding = ROUNDED * np.abs(middle) / half * np.ptp(values, axis=1)
+        good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size + rounding
         if step == HALVINGS:
             good[:] = True
         done.append((low[good], high[good], series[good], owner[good]))

@@ -24,6 +24,7 @@ from kinematics.cam.segments import Segment, dwell, knot_segment, law_segment, p
 from synthesis.cam.convex import Condition, Demand, Limit
 from synthesis.cam.knots import KnotMotion
 from synthesis.cam.optimal import (
+    STEPS,
     Best,
     NoMotion,
     Run,
@@ -41,6 +42,9 @@ ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 FITS = 1e-9
 """Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
+
+EDGE = 0.02
+"""Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge and no cam."""
 
 SAMPLES = 721
 """Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
@@ -69,8 +73,8 @@ class NoProgram:
     proven: bool
 
 
-def compose(problem: CamProblem) -> Composition | NoProgram:
-    """The best program of a problem without contradictions."""
+def compose(problem: CamProblem, grids: Sequence[int] = STEPS) -> Composition | NoProgram:
+    """The best program of a problem without contradictions; ``grids`` as for the convex program of least size."""
     heights = problem.heights()
     ends = problem.ends()
     segments: list[Segment | None] = []
@@ -94,7 +98,7 @@ def compose(problem: CamProblem) -> Composition | NoProgram:
     runs = _runs(problem, segments)
     best: list[Best] = []
     if runs:
-        found = _optimized(problem, heights, ends, segments, runs)
+        found = _optimized(problem, heights, ends, segments, runs, grids)
         if isinstance(found, NoProgram):
             return found
         best = found
@@ -391,6 +395,7 @@ def _optimized(
     ends: Sequence[tuple[State, State] | None],
     segments: list[Segment | None],
     rows: Sequence[Sequence[int]],
+    grids: Sequence[int],
 ) -> list[Best] | NoProgram:
     """Solve the runs, and put their motions where the program is open."""
     runs = [_run(problem, heights, ends, segments, row) for row in rows]
@@ -398,7 +403,7 @@ def _optimized(
     kind, _, of = problem.minimize.partition("_")
     found: list[Best | NoMotion]
     if problem.minimize == "size":
-        found = [_smallest(problem, runs, given)]
+        found = [_smallest(problem, runs, given, grids)]
     elif problem.minimize == "peak_contact_force":
         load, speed = follower_load(problem)
         weights = load.spring_rate, load.damping * speed, load.mass * speed**2
@@ -443,7 +448,9 @@ def _range_of(segment: Segment, function: Callable[[Motion], np.ndarray]) -> tup
     return found.least, found.greatest
 
 
-def _smallest(problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment]) -> Best | NoMotion:
+def _smallest(
+    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int]
+) -> Best | NoMotion:
     """Motion and size together, for a translating follower."""
     limits = problem.limits
     if isinstance(problem.follower, TranslatingFlat):
@@ -452,7 +459,7 @@ def _smallest(problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment]
             low = min(_range_of(segment, lambda m: np.asarray(m.s + m.a))[0] for segment in given)
             speeds = [_range_of(segment, lambda m: m.v) for segment in given]
             rest = low, min(v for v, _ in speeds), max(v for _, v in speeds)
-        return best_flat_size(runs, limits.min_radius, limits.face_width, rest)
+        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest)
     assert isinstance(problem.follower, TranslatingRoller)
     rising = math.tan(math.radians(limits.pressure_angle))
     falling = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
@@ -464,7 +471,7 @@ def _smallest(problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment]
     lowest = min(min(pair) for pair in problem.heights())
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
-    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows)
+    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids)
 
 
 def _bound(
@@ -505,3 +512,11 @@ def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
     if radius is None:
         return None
     return (radius.min, radius.max) if isinstance(radius, LengthRange) else (radius, radius)
+
+
+def least_face_radius(problem: CamProblem) -> float:
+    """Least radius of curvature of a cam under a flat face: the client's, or as little as is not an edge."""
+    heights = [height for pair in problem.heights() for height in pair]
+    travel = max(heights) - min(heights)
+    reach = getattr(problem.follower, "pivot_distance", 1.0)
+    return max(problem.limits.min_radius, EDGE * travel * reach)

@@ -26,6 +26,9 @@ Function = Callable[[Motion], Real]
 MET = 1e-11
 """Excess, as a share of the limit, that is rounding."""
 
+WORST = 32
+"""Angles that are exchanged at once, the worst first; a motion of many knots has hundreds."""
+
 EXCHANGES = 100
 """Most steps from radius to radius; a dozen is usual."""
 
@@ -75,9 +78,10 @@ def smallest_allowed(
     for _ in range(EXCHANGES):
         here: Real = np.asarray(p)
         motion = critical_motion(program, partial(_at_radius, excess, here))
-        broken = excess(motion, here) > MET
-        if not broken.any():
+        over = excess(motion, here)
+        if not (over > MET).any():
             return p
+        broken = [k for k in np.argsort(-over)[:WORST] if over[k] > MET]
         worst = Motion(*(values[broken][:, None] for values in motion))
         radii = p + (stop - p) * SHARES
         allowed = excess(worst, radii) <= 0.0

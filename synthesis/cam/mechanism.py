@@ -16,28 +16,44 @@ from synthesis.designs.cam import CamCurve, CamFollower, CamMechanism, ProgramTa
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+APART = 1e-9
+"""Radians below which a joint and an equal step are one angle."""
+
+MOST = 5760
+"""Equal steps of a profile at most."""
+
 SPAN_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
 
 
-def points_for(cam: Cam, stated: int) -> int:
-    """How many points a profile needs: the stated number, doubled as often as a small roller asks for it."""
-    radius = cam.roller_radius
-    if radius <= 0.0:
-        return stated
-    count = stated
-    while np.abs(np.diff(cam.profile(even_angles(count)))).max() * SPAN_OF_ROLLER > radius and count < 64 * stated:
+def profile_angles(cam: Cam, count: int) -> Real:
+    """Cam angles of a profile: equal steps and the joints of the segments, as close as a small roller asks for."""
+    program = cam.program
+    while True:
+        angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1]]))
+        angle = angle[np.append(True, np.diff(angle) > APART)]
+        chord = np.abs(np.diff(cam.profile(np.append(angle, TURN)))).max()
+        if chord * SPAN_OF_ROLLER <= cam.roller_radius or cam.roller_radius <= 0.0 or count >= MOST:
+            return angle
         count *= 2
-    return count
 
 
-def cam_mechanism(cam: Cam, count: int) -> CamMechanism:
-    """A cam as the answer has it, at equal cam angles."""
-    angle = even_angles(count)
+def refined(angle: Real, off: Real, allowed: float) -> Real:
+    """Three more cam angles on both sides of each one where a deviation is more than half of what is allowed."""
+    closed = np.append(angle, TURN + angle[0])
+    bad = off > 0.5 * allowed
+    near = bad | np.roll(bad, -1)
+    low, step = closed[:-1][near], np.diff(closed)[near]
+    parts = [low + step * share for share in (0.25, 0.5, 0.75)]
+    return np.unique(np.mod(np.concatenate([angle, *parts]), TURN))
+
+
+def cam_mechanism(cam: Cam, angle: Real) -> CamMechanism:
+    """A cam as the answer has it, at given cam angles."""
     motion = cam.program.motion(angle)
     oscillating = isinstance(cam.follower, core.OscillatingRoller | core.OscillatingFlat)
     unit = 180.0 / math.pi if oscillating else 1.0
-    degrees = (np.arange(count) * (360.0 / count)).tolist()
+    degrees = np.degrees(angle).tolist()
     roller = isinstance(cam.follower, core.TranslatingRoller | core.OscillatingRoller)
     return CamMechanism(
         follower=follower_model(cam.follower),

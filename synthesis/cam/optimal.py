@@ -197,6 +197,7 @@ def best_roller_size(
     tangents: Sequence[tuple[float, float]],
     offset: float | None,
     rest: Sequence[tuple[float, int, float]],
+    grids: Sequence[int] = STEPS,
 ) -> Best | NoMotion:
     """The motions of least prime radius of a translating roller follower under a pressure angle.
 
@@ -212,6 +213,8 @@ def best_roller_size(
         The follower's offset e; None leaves it free. ``scalars`` holds d, and e where it is free.
     rest : sequence of (tan φ, sign, least of s tan φ − sign v)
         Of the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
+    grids : sequence of int
+        Steps of the first grid and of those that follow while a gap is left.
     """
     unit = max(run.lift for run in runs)
     known = 0.0 if offset is None else offset / unit
@@ -239,7 +242,7 @@ def best_roller_size(
     def value(solution: Solution) -> float:
         return float(np.linalg.norm(solution.scalars))
 
-    best = _solved(runs, program, value, unit, unit, unit)
+    best = _solved(runs, program, value, unit, unit, unit, grids)
     if isinstance(best, Best) and offset is not None:
         return replace(best, value=math.hypot(best.value, offset), bound=math.hypot(best.bound, offset))
     return best
@@ -309,10 +312,11 @@ def _solved(
     worth: float,
     lift: float,
     scalar_worth: float = 1.0,
+    grids: Sequence[int] = STEPS,
 ) -> Best | NoMotion:
     """Solve on the first grid, and on the second where there is no solution or a gap; back to the client's units."""
     best: tuple[Solution, float, LowerBound] | None = None
-    for steps in STEPS:
+    for steps in grids:
         statement = program(steps)
         solution = solve(statement)
         if solution is None:

@@ -20,10 +20,12 @@ from synthesis.cam.composition import (
     arm_length,
     compose,
     follower_load,
+    least_face_radius,
     roller_radius_range,
     root_mean_square,
 )
-from synthesis.cam.mechanism import cam_mechanism, points_for
+from synthesis.cam.mechanism import cam_mechanism, profile_angles, refined
+from synthesis.cam.optimal import STEPS
 from synthesis.cam.sizing import (
     RollerLimits,
     Size,
@@ -34,7 +36,7 @@ from synthesis.cam.sizing import (
     translating_flat,
     translating_roller,
 )
-from synthesis.cam.verification import Measured, pitch_radius, verify
+from synthesis.cam.verification import MEASURED_SLACK, REPRODUCED, Measured, pitch_radius, verify
 from synthesis.designs.cam import (
     CamDesign,
     CamForces,
@@ -49,9 +51,27 @@ from synthesis.kinds import Progress
 from synthesis.problems import Contradiction, ContradictionError
 from synthesis.problems.cam import CamProblem, LengthRange, Move, OscillatingRoller, TranslatingFlat, TranslatingRoller
 
-FINEST = 5760
-"""Points of a profile at most. A motion that changes its acceleration within less than a point's step needs more points
-to be reproduced; beyond this the design fails its verification."""
+FINEST = 12_000
+"""Points of a profile at most. Where a motion changes its acceleration within less than a step, points are put closer
+until the profile reproduces it; beyond this number the design fails its verification."""
+
+SHAPE = {"curvature_ratio", "min_radius", "convex"}
+"""Checks of curvature, which a profile of too few points can fail although its cam does not."""
+
+REFINEMENTS = 8
+"""Times that points are put closer at most."""
+
+SMOOTHER = (6.0, 8.0, 11.0, 16.0)
+"""Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
+
+JERK_SHARE = 25.0
+"""Peak jerk that goes with them: the acceleration may change fully within an eighth of the angle of a segment."""
+
+NEAR_BOUND = 0.01
+"""A cam within this share of the bound is small enough."""
+
+NO_UNDERCUT = 1.02
+"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 the cam has a cusp."""
 
 LEAST_BASE = 1e-3
 """Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
@@ -66,6 +86,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     composed = compose(problem)
     if isinstance(composed, NoProgram):
         return _none(problem, composed.reason, composed.proven, "motion_limits")
+    composed = _smoothed(problem, composed, progress)
     if not problem.accept_discontinuity and not composed.program.obeys_fundamental_law:
         joint = next(joint for joint in composed.program.continuity if not all(joint.continuous[:3]))
         where = f"/segments/{joint.segments[1]}"
@@ -79,15 +100,25 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return _none(problem, reason, proven, "size")
     cam, size = sized
     progress(0.7, "verifying")
-    count = points_for(cam, problem.profile_points)
-    while True:
-        mechanism = cam_mechanism(cam, count)
-        verification, measured = verify(problem, mechanism)
-        reproduced = all(c.passed for c in verification.checks if c.name == "reproduces_program")
-        if reproduced or count * 2 > max(FINEST, problem.profile_points):
+    angle = profile_angles(cam, problem.profile_points)
+    mechanism = cam_mechanism(cam, angle)
+    verification, measured = verify(problem, mechanism)
+    for _ in range(REFINEMENTS):
+        if measured is None or not np.isfinite(measured.off).all():
             break
-        count *= 2
-        progress(0.8, f"verifying with {count} points")
+        failed = {check.name for check in verification.checks if not check.passed}
+        if "reproduces_program" in failed:
+            finer = refined(angle, measured.off, REPRODUCED)
+        elif failed & SHAPE and not _shape_fails(problem, cam):
+            finer = refined(angle, np.ones_like(angle), REPRODUCED)
+        else:
+            break
+        if len(finer) > FINEST:
+            break
+        angle = finer
+        progress(0.8, f"verifying with {len(angle)} points")
+        mechanism = cam_mechanism(cam, angle)
+        verification, measured = verify(problem, mechanism)
     if measured is None:
         return _none(problem, "the follower cannot be laid against the profile", False, "follower_can_be_laid_on")
     design = CamDesign(
@@ -102,6 +133,50 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     return _result(problem, composed, design, size)
 
 
+def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:
+    """For the least size: the motion whose cam is smallest when curvature counts as well.
+
+    The convex program knows pressure angle, not the curvature of a roller's pitch curve, and the motion of least
+    size is abrupt where nothing limits its acceleration. So it is solved again under limits on acceleration and
+    jerk, and the smallest of the cams is taken. The bound stays that of all motions.
+    """
+    if problem.minimize != "size" or composed.bound is None or roller_radius_range(problem) is None:
+        return composed
+    stated = problem.limits
+    unlimited = stated.acceleration is None and stated.jerk is None
+    best, least = composed, math.inf if unlimited else _radius(problem, composed)
+    span = min(s.angle for s in composed.program.segments if s.pieces.count > 1)
+    for n, share in enumerate(SMOOTHER):
+        if least <= composed.bound * (1.0 + NEAR_BOUND):
+            break
+        progress(0.1 + 0.4 * n / len(SMOOTHER), "trading size by pressure angle against size by curvature")
+        a = share * composed.program.lift / span**2
+        j = JERK_SHARE * a / span
+        limits = stated.model_copy(
+            update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
+        )
+        other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1])
+        if isinstance(other, Composition):
+            radius = _radius(problem, other)
+            if radius < least:
+                best, least = replace(other, bound=composed.bound, scope=composed.scope), radius
+    return best
+
+
+def _radius(problem: CamProblem, composed: Composition) -> float:
+    sized = _sized(problem, composed.program)
+    return math.inf if sized is None else sized[0].size
+
+
+def _shape_fails(problem: CamProblem, cam: Cam) -> bool:
+    """Whether the exact curves break a limit on curvature: then more points of the profile would not help."""
+    limits = problem.limits
+    if cam.roller_radius > 0.0:
+        ratio = max(limits.curvature_ratio, NO_UNDERCUT)
+        return cam.pitch_curvature_extremes.largest * ratio * cam.roller_radius > 1.0 + MEASURED_SLACK
+    return cam.radius_extremes.least < least_face_radius(problem) * (1.0 - MEASURED_SLACK)
+
+
 def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     """The smallest cam, or the one whose radius is stated; None where no radius is sound."""
     follower, limits = problem.follower, problem.limits
@@ -112,7 +187,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
         least = rollers[0] + max(limits.hub_radius, LEAST_BASE * program.lift)
         rise = math.radians(limits.pressure_angle)
         fall = math.radians(limits.pressure_angle_fall or limits.pressure_angle)
-        roller_limits = RollerLimits(rise, fall, limits.curvature_ratio * rollers[0], least)
+        roller_limits = RollerLimits(rise, fall, max(limits.curvature_ratio, NO_UNDERCUT) * rollers[0], least)
         size: Size | None
         made: core.Roller
         if isinstance(follower, TranslatingRoller):
@@ -154,13 +229,15 @@ def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     made: core.Flat
     if isinstance(follower, TranslatingFlat):
         size = Size(follower.base_radius, True) if follower.base_radius else None
-        size = size or translating_flat(program, limits.min_radius, least)
+        size = size or translating_flat(program, least_face_radius(problem), least)
         made = core.TranslatingFlat(size.radius)
     else:
         assert not isinstance(follower, TranslatingRoller | OscillatingRoller)
         pivot, face, sense = follower.pivot_distance, follower.face_offset, follower.sense
         size = Size(follower.base_radius, True) if follower.base_radius else None
-        size = size or oscillating_flat(program, pivot, face, sense, limits.min_radius, least, limits.face_width)
+        size = size or oscillating_flat(
+            program, pivot, face, sense, least_face_radius(problem), least, limits.face_width
+        )
         if size is None:
             return None
         made = core.OscillatingFlat(size.radius, pivot, face, sense)
@@ -175,7 +252,7 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
         return cam
     found = cam.pitch_curvature_extremes
     steepest = max(found.largest, 1e-300)
-    allowed = 1.0 / steepest / max(problem.limits.curvature_ratio, 1.0 + 1e-6)
+    allowed = 1.0 / steepest / max(problem.limits.curvature_ratio, NO_UNDERCUT)
     hub = max(problem.limits.hub_radius, LEAST_BASE * cam.program.lift)
     radius = max(min(largest, allowed, follower.prime_radius - hub), follower.roller_radius)
     return replace(cam, follower=replace(follower, roller_radius=radius))

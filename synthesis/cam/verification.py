@@ -49,7 +49,11 @@ the acceleration bends, its local fifth degree is off by that much."""
 
 @dataclass(frozen=True)
 class Measured:
-    """What the finished profile does: all by cam angle, at the finer angles."""
+    """What the finished profile does, at the finer cam angles.
+
+    ``off`` is the deviation of the displacement from the program's table, at its angles, as a share of the lift; NaN
+    where the follower touches nothing.
+    """
 
     angle: Real
     s: Real
@@ -59,6 +63,7 @@ class Measured:
     concave_radius: float
     sweep: float
     radius: float
+    off: Real
 
 
 def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
@@ -79,8 +84,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     try:
         contour = Contour(profile_points(mechanism))
         follower = core_follower(mechanism)
-        count = len(mechanism.profile.angle)
-        angle: Real = np.asarray(np.arange(FINER * count) * (TURN / (FINER * count)), np.float64)
+        angle = _finer(table_angles(mechanism))
         contact = contour.follow(follower, angle, mechanism.rotation)
     except (DimensionError, ShapeError):
         return Verification(passed=False, checks=[Check(name="follower_can_be_laid_on", passed=False)]), None
@@ -88,7 +92,8 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     lift = float(np.ptp(table)) or 1.0
     checks = _program_checks(problem, mechanism, table, lift)
     touches = bool(contact.valid.all())
-    gap = float(np.abs(contact.s[::FINER] - table).max() / lift) if touches else math.inf
+    off = np.abs(contact.s[::FINER] - table) / lift
+    gap = float(off.max()) if touches else math.inf
     allowed = REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED
     checks += [
         Check(name="touches_everywhere", passed=touches),
@@ -96,7 +101,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         Check(name="no_cusp", passed=not contour.cusped),
         Check(name="does_not_cross_itself", passed=len(contour.crossings) == 0),
     ]
-    curvature = contour.curvature()
+    curvature = _curvature(contour)
     rising = np.repeat(np.array(mechanism.program.v), FINER) >= 0.0
     roller = isinstance(problem.follower, TranslatingRoller | OscillatingRoller)
     concave = float(-1.0 / curvature.min()) if curvature.min() < 0.0 else math.inf
@@ -110,10 +115,30 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         concave,
         float(np.ptp(reach)),
         float(np.abs(contour.points).max()),
+        off,
     )
     if touches:
         checks += _limit_checks(problem, mechanism, measured, roller)
     return Verification(passed=all(check.passed for check in checks), checks=checks), measured
+
+
+def _finer(angle: Real) -> Real:
+    """Each interval of a closed series of angles in equal parts."""
+    step = np.diff(np.append(angle, TURN + angle[0]))
+    return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
+
+
+def _curvature(contour: Contour) -> Real:
+    """Of the circle through each three neighbouring points of the profile, positive where convex.
+
+    Between its points the curvature of a cam can bend sharply, where its jerk jumps; a circle through three points
+    averages over them and does not overshoot, as the derivatives of a curve of higher degree do.
+    """
+    points = contour.points
+    before, after = np.roll(points, 1), np.roll(points, -1)
+    sides = np.abs(points - before) * np.abs(after - points) * np.abs(after - before)
+    sign = 1.0 if contour.turns_ccw else -1.0
+    return np.asarray(2.0 * sign * (np.conj(points - before) * (after - points)).imag / sides)
 
 
 def _reach(mechanism: CamMechanism, contact: NDArray[np.complex128], angle: Real) -> Real:

@@ -193,7 +193,10 @@ class CamLimits(Statement):
     curvature_ratio: NonNegative = Field(
         default=2.0, description="Least radius of curvature of the pitch curve over the roller radius (Norton: 2 to 3)."
     )
-    min_radius: NonNegative = Field(default=0.0, description="Least radius of curvature of the cam under a flat face.")
+    min_radius: NonNegative = Field(
+        default=0.0,
+        description="Least radius of curvature of the cam under a flat face; a fiftieth of the travel at least.",
+    )
     face_width: PositiveNumber | None = Field(default=None, description="Length that the contact may sweep on a face.")
     hub_radius: NonNegative = Field(default=0.0, description="The base circle is at least as large.")
     size: PositiveNumber | None = Field(
@@ -314,7 +317,8 @@ class CamProblem(StatedProblem):
         default=False, description="Take a program with jumps in displacement, velocity or acceleration."
     )
     profile_points: Annotated[Count, Field(ge=180, le=7200)] = Field(
-        default=720, description="Points of the profile, at equal cam angles."
+        default=720,
+        description="Points of the profile at equal cam angles; more where the motion needs them.",
     )
 
     @property

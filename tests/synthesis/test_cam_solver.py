@@ -308,3 +308,48 @@ def test_a_whole_turn_of_optimal_motions():
     assert all({"s", "v", "a"} <= set(joint.continuous) for joint in design.joints)
     # An eccentric has an rms jerk of 5/√2.
     assert design.optimality.value <= 5.0 / math.sqrt(2.0)
+
+
+WITHOUT_LIMITS = [
+    pytest.param("peak_velocity", 1.0, 1, marks=pytest.mark.slow),
+    ("peak_acceleration", 4.0, 2),
+    ("peak_jerk", 32.0, 3),
+    ("rms_acceleration", math.sqrt(12.0 / 2.0), 2),
+    ("rms_jerk", math.sqrt(720.0 / 2.0), 3),
+    pytest.param("peak_torque", 2.25, None, marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("minimize", "known", "order"), WITHOUT_LIMITS)
+def test_known_limits_through_the_whole_solver(minimize, known, order):
+    """Unit rise in a quarter turn, fall in another: abrupt motions, verified on closer points where they bend.
+
+    Rises and falls fill half of the turn, so that a mean square is halved.
+    """
+    beta = 0.5 * math.pi
+    follower = {"type": "translating_roller", "roller_radius": 0.1}
+    limits = {"pressure_angle": 60.0, "curvature_ratio": 0.0}
+    problem = cam(segments=moves("optimal", "optimal", 1.0), minimize=minimize, follower=follower, limits=limits)
+    design = only(answered(problem))
+    unit = beta**-order if order is not None else beta**-3
+    assert design.optimality.value == pytest.approx(known * unit, rel=2e-3)
+    assert design.optimality.value >= known * unit * (1.0 - 1e-9)
+    assert design.optimality.bound <= known * unit * (1.0 + 1e-9)
+
+
+@pytest.mark.slow
+def test_smallest_cam_over_all_motions():
+    """No law gives a cam as small, curvature counted; the bound is by pressure angle alone."""
+    best = only(answered(cam(segments=moves("optimal", "optimal"), minimize="size")))
+    law = only(answered(cam(segments=moves("auto", "auto"), minimize="size")))
+    assert best.optimality.bound < best.mechanism.prime_radius < law.mechanism.prime_radius
+
+
+def test_smallest_flat_faced_cam_over_all_motions():
+    limits = {"face_width": 60.0, "jerk": 1500.0, "min_radius": 2.0}
+    problem = cam(
+        segments=moves("optimal", "optimal"), minimize="size", follower={"type": "translating_flat"}, limits=limits
+    )
+    best = only(answered(problem))
+    assert best.optimality.gap <= 2e-3
+    assert best.metrics.face_width <= 60.0 * 1.002
