@@ -41,6 +41,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.gear_train
 	$(BIN)/python -m benchmarks.planetary
 	$(BIN)/python -m benchmarks.cam_core
+	$(BIN)/python -m benchmarks.cam
 	$(BIN)/python -m benchmarks.service
 
 # The virtual environment is made without ensurepip, which some systems leave out;
