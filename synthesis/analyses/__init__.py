@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.analyses import cam, camshaft, contour_cam, gear_train, linkage, planetary_train
+from synthesis.analyses import cam, camshaft, contour_cam, gear_train, gearbox, linkage, planetary_train
 from synthesis.analyses.base import AnalysisRequest, Family
 
 FAMILIES: dict[str, Family] = {
@@ -16,6 +16,8 @@ FAMILIES: dict[str, Family] = {
     "camshaft": camshaft.FAMILY,
     "contour_cam": contour_cam.FAMILY,
     "gear_train": gear_train.FAMILY,
+    "gearbox": gearbox.FAMILY,
+    "layshaft_gearbox": gearbox.LAYSHAFT_FAMILY,
     "planetary_train": planetary_train.FAMILY,
 }
 """By the mechanism types that are no linkages; every other mechanism is one."""

@@ -1,0 +1,279 @@
+"""The analyses of gearboxes: the speeds of all shafts with given pairs engaged, and every speed that there is."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from kinematics.gear.gearbox import layshaft_ratios, spindle_speeds
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.problems import Statement
+
+Real = NDArray[np.float64]
+ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
+Place = Annotated[int, Field(strict=True, ge=0, le=20)]
+
+
+class GivenPair(Statement):
+    """Teeth of a pair of gears."""
+
+    driver: ToothCount
+    driven: ToothCount
+
+
+class GivenGearboxStage(Statement):
+    """The pairs between two neighbouring shafts."""
+
+    pairs: list[GivenPair] = Field(min_length=1, max_length=6)
+    characteristic: Any = None
+    centre_distance: Any = None
+
+
+class GivenGearbox(Statement):
+    """A machine-tool gearbox; of a design's other fields none is needed."""
+
+    type: Literal["gearbox"]
+    stages: list[GivenGearboxStage] = Field(min_length=1, max_length=6)
+    formula: Any = None
+    input_speed: Any = None
+    module: Any = None
+    pressure_angle: Any = None
+
+    def teeth(self) -> list[list[tuple[int, int]]]:
+        """Tooth numbers by stage and pair."""
+        return [[(pair.driver, pair.driven) for pair in stage.pairs] for stage in self.stages]
+
+
+class GivenLayshaftGear(Statement):
+    """A forward gear; without teeth it is direct drive."""
+
+    layshaft: ToothCount | None = None
+    mainshaft: ToothCount | None = None
+    ratio: Any = None
+
+
+class GivenReverseGear(Statement):
+    """The reverse gear with its idler."""
+
+    layshaft: ToothCount
+    idler: ToothCount
+    mainshaft: ToothCount
+    ratio: Any = None
+
+
+class GivenLayshaftGearbox(Statement):
+    """A layshaft gearbox of a vehicle."""
+
+    type: Literal["layshaft_gearbox"]
+    head: GivenPair
+    gears: list[GivenLayshaftGear] = Field(min_length=1, max_length=12)
+    reverse: GivenReverseGear | None = None
+    module: Any = None
+    pressure_angle: Any = None
+    centre_distance: Any = None
+
+
+class TurningShaft(Answer):
+    """A shaft and its motion."""
+
+    name: str
+    speed_ratio: float = Field(description="Speed over the input's.")
+    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
+    omega: list[float] = Field(description="rad/s")
+    alpha: list[float] = Field(description="rad/s²")
+
+
+class EngagedSpeed(Answer):
+    """A choice of engaged pairs, or a gear by its number from 0 with reverse last, and the output speed it gives."""
+
+    engaged: list[int]
+    speed_ratio: float = Field(description="Output speed over input speed.")
+    exact_speed_ratio: str
+
+
+class GearboxAnalysis(Answer):
+    """What the analysis core knows of a gearbox with given pairs engaged."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool]
+    engaged: list[int]
+    shafts: list[TurningShaft]
+    speeds: list[EngagedSpeed] = Field(description="Everything that can be engaged, slowest output first.")
+
+
+def _motion_faults(motion: StatedMotion) -> list[tuple[str, str]]:
+    found = []
+    if motion.speed is not None and motion.speed_rpm is not None:
+        found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
+    if isinstance(motion, Run):
+        span = motion.time
+        if span.end < span.start:
+            found.append(("/motion/time/end", "the end lies before the start"))
+        elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
+            found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+    return found
+
+
+class GearboxAnalysisRequest(AnalysisRequest):
+    """A machine-tool gearbox, the pairs that are engaged, and how the input turns."""
+
+    model_config = ConfigDict(
+        title="Gearbox, how it is driven",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "gearbox",
+                        "stages": [
+                            {"pairs": [{"driver": 24, "driven": 96}, {"driver": 80, "driven": 40}]},
+                            {"pairs": [{"driver": 30, "driven": 60}, {"driver": 45, "driven": 45}]},
+                        ],
+                    },
+                    "engaged": [1, 0],
+                    "motion": {"at": 0.0, "speed_rpm": 200.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenGearbox
+    motion: StatedMotion = Sweep()
+    engaged: list[Place] | None = Field(
+        default=None, max_length=6, description="The engaged pair of each stage, from 0; null: the first of each."
+    )
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        found = _motion_faults(self.motion)
+        stages = self.mechanism.stages
+        if self.engaged is not None and len(self.engaged) != len(stages):
+            found.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
+        for k, (at, stage) in enumerate(zip(self.engaged or (), stages, strict=False)):
+            if at >= len(stage.pairs):
+                found.append((f"/engaged/{k}", f"stage {k + 1} has {len(stage.pairs)} pairs"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        stages = self.mechanism.teeth()
+        engaged = self.engaged or [0] * len(stages)
+        ratios, total = [("input", Fraction(1))], Fraction(1)
+        for k, (pairs, place) in enumerate(zip(stages, engaged, strict=True), 2):
+            total *= -Fraction(*pairs[place])
+            ratios.append((f"shaft {k}" if k <= len(stages) else "spindle", total))
+        sign = (-1) ** len(stages)
+        speeds = [(list(found.engaged), sign * found.speed) for found in spindle_speeds(1, stages)]
+        return _shape(self, at, speed, time, engaged, ratios, speeds)
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """One turn of the input at 1 rad/s with the first pair of each stage engaged."""
+        motion = Sweep(steps=steps, speed=1.0)
+        return cls(mechanism=GivenGearbox.model_validate(mechanism), motion=motion).answer()
+
+
+class LayshaftAnalysisRequest(AnalysisRequest):
+    """A layshaft gearbox, the gear that is engaged, and how the input turns."""
+
+    model_config = ConfigDict(
+        title="Layshaft gearbox, how it is driven",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "layshaft_gearbox",
+                        "head": {"driver": 24, "driven": 36},
+                        "gears": [{"layshaft": 18, "mainshaft": 42}, {"layshaft": 25, "mainshaft": 35}, {}],
+                        "reverse": {"layshaft": 15, "idler": 14, "mainshaft": 33},
+                    },
+                    "gear": 1,
+                    "motion": {"at": 0.0, "speed_rpm": 2000.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenLayshaftGearbox
+    motion: StatedMotion = Sweep()
+    gear: Annotated[int, Field(strict=True, ge=1, le=12)] | Literal["reverse"] = 1
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        found = _motion_faults(self.motion)
+        for k, gear in enumerate(self.mechanism.gears):
+            if (gear.layshaft is None) != (gear.mainshaft is None):
+                found.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))
+        if self.gear == "reverse" and self.mechanism.reverse is None:
+            found.append(("/gear", "there is no reverse gear"))
+        elif self.gear != "reverse" and self.gear > len(self.mechanism.gears):
+            found.append(("/gear", f"there are {len(self.mechanism.gears)} forward gears"))
+        return found
+
+    def answer(self) -> dict[str, Any]:
+        """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        box, back = self.mechanism, self.mechanism.reverse
+        gears = [
+            None if gear.layshaft is None or gear.mainshaft is None else (gear.layshaft, gear.mainshaft)
+            for gear in box.gears
+        ]
+        reverse = None if back is None else (back.layshaft, back.idler, back.mainshaft)
+        found = layshaft_ratios((box.head.driver, box.head.driven), gears, reverse)
+        every = [*found.forward, *([] if found.reverse is None else [found.reverse])]
+        engaged = len(every) - 1 if self.gear == "reverse" else self.gear - 1
+        layshaft = -Fraction(box.head.driver, box.head.driven)
+        ratios = [("input", Fraction(1)), ("layshaft", layshaft)]
+        if self.gear == "reverse" and back is not None:
+            ratios.append(("idler", -layshaft * Fraction(back.layshaft, back.idler)))
+        ratios.append(("main shaft", 1 / every[engaged]))
+        speeds = sorted((([k], 1 / ratio) for k, ratio in enumerate(every)), key=lambda row: abs(row[1]))
+        return _shape(self, at, speed, time, [engaged], ratios, speeds)
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """One turn of the input at 1 rad/s in first gear."""
+        motion = Sweep(steps=steps, speed=1.0)
+        return cls(mechanism=GivenLayshaftGearbox.model_validate(mechanism), motion=motion).answer()
+
+
+def _shape(
+    request: GearboxAnalysisRequest | LayshaftAnalysisRequest,
+    at: Real,
+    speed: Real,
+    time: Real | None,
+    engaged: list[int],
+    ratios: list[tuple[str, Fraction]],
+    speeds: list[tuple[list[int], Fraction]],
+) -> dict[str, Any]:
+    return {
+        "input_angle": at.tolist(),
+        "time": None if time is None else time.tolist(),
+        "valid": [True] * len(at),
+        "engaged": engaged,
+        "shafts": [
+            {
+                "name": name,
+                "speed_ratio": float(ratio),
+                "angle": (float(ratio) * at).tolist(),
+                "omega": (float(ratio) * speed).tolist(),
+                "alpha": [float(ratio) * request.motion.acceleration] * len(at),
+            }
+            for name, ratio in ratios
+        ],
+        "speeds": [
+            {"engaged": chosen, "speed_ratio": float(ratio), "exact_speed_ratio": str(ratio)}
+            for chosen, ratio in speeds
+        ],
+    }
+
+
+FAMILY = Family(GearboxAnalysisRequest, GearboxAnalysis)
+LAYSHAFT_FAMILY = Family(LayshaftAnalysisRequest, GearboxAnalysis)
