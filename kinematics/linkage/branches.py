@@ -83,8 +83,6 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
         for curve, circuit in zip(curves, circuits(curves), strict=True)
         for branch in _branches_of(curve, circuit, closures.links, period)
     ]
-    if not found:
-        return []
     signs = assembly_signs(mechanism, decomposition.steps)
     choice = tuple(int(signs[n]) for n in closures.position)
     return reference_first(found, _holding(found, choice, float(mechanism.reference_input), period))
@@ -125,6 +123,8 @@ def _holding(found: list[Branch], choice: tuple[int, ...], at: float, period: fl
 
 def reference_first(found: list[Branch], first: int) -> list[Branch]:
     """The branches by circuits, which are counted from the first one's."""
+    if not found:
+        return []
     numbers = {found[first].circuit: 0}
     for branch in found:
         numbers.setdefault(branch.circuit, len(numbers))

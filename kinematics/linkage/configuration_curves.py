@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.closures import Decomposition
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import Mechanism, TopologyError
-from kinematics.linkage.positive_arcs import Arc, Domain, positive_arcs
+from kinematics.linkage.positive_arcs import TOUCHES, Arc, Domain, positive_arcs
 
 Real = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -146,6 +146,18 @@ class Closures:
         margin = motion.margins[self.links[level]][..., 0]
         return margin[0], margin[1] * place.rate
 
+    def always_folded(self, level: int, curve: Curve) -> bool:
+        """Whether a closure is folded flat all along a curve, where it yet exists: not so where its pins coincide."""
+        place = curve.place(curve.low + (curve.high - curve.low) * np.array([0.13, 0.31, 0.57, 0.77]))
+        if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
+            return False
+        for later in itertools.product((1, -1), repeat=len(self.links) - level - 1):
+            rest = np.repeat(np.array([1, *later], np.int64)[:, None], len(place.theta), axis=1)
+            signs = self.signs(np.vstack([place.signs, rest]))
+            if drive(self.mechanism, place.theta[:, None], signs=signs, order=0).valid.any():
+                return True
+        return False
+
     def swings(self, level: int, curve: Curve, v: float) -> bool:
         """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
         place = curve.place(np.array([v - 1e-7, v - 1e-7, v + 1e-7, v + 1e-7]))
@@ -162,7 +174,7 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
     Raises
     ------
     TopologyError
-        Where a link swings freely at a change point while others depend on it.
+        Where a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
     """
     waves = max([1.0, *(abs(gear.ratio) for gear in mechanism.gears), *(abs(1.0 / g.ratio) for g in mechanism.gears)])
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
@@ -213,6 +225,8 @@ def _way(curve: Curve, period: float) -> float:
 
 def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
     """The curves of the next closure over a curve's arcs."""
+    if not arcs and closures.always_folded(level, curve):
+        raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; its circuits are not known")
     found: list[Curve] = []
     points: dict[float, ChangePoint] = {}
     length = curve.high - curve.low

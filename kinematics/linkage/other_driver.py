@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.errors import DimensionError
 from kinematics.linkage.branches import Branch, reference_first
 from kinematics.linkage.closures import decompose
 from kinematics.linkage.configuration_curves import (
@@ -27,6 +28,7 @@ from kinematics.linkage.configuration_curves import (
 from kinematics.linkage.drive import MechanismMotion, assembly_signs, drive
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.positive_arcs import HAIR, Domain, positive_arcs
+from kinematics.linkage.program import program_of
 
 Real = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -56,9 +58,12 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
         for driver, listed in links.items():
             if driver == GROUND or not set(listed) & set(links[GROUND]):
                 continue
-            other = Mechanism(dict(mechanism.joints), links, driver, slides)
-            if not decompose(other).left:
-                return other
+            try:
+                other = Mechanism(dict(mechanism.joints), links, driver, slides)
+                if not program_of(other).class_iii:
+                    return other
+            except DimensionError:  # pivots on each other make no link that can drive or be driven
+                continue
     raise TopologyError("no pair of links closes this mechanism by dyads")
 
 

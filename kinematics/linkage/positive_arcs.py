@@ -36,7 +36,8 @@ TOUCHES = 1e-12
 """An extreme below this part of the function's greatest value touches zero: at a change point, to rounding."""
 
 VANISHES = 1e-13
-"""A function that stays below this is zero all over."""
+"""A function that stays below this at its first samples is zero all over; beside the ends, where roots of small
+differences are taken, rounding may be larger."""
 
 NOISE = 1e-12
 """Cells in which a function stays below this part of its greatest value are not divided: their shape is rounding."""
@@ -101,7 +102,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
     """The arcs on which each of the functions is positive, by rows, ascending."""
     if not domains:
         return []
-    samples = _resolved(function, domains)
+    samples, vanishes = _resolved(function, domains)
     samples = samples.merged(_extremes(function, samples))
     scale = np.full(len(domains), 0.0)
     np.maximum.at(scale, samples.row, samples.value)
@@ -111,7 +112,7 @@ def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Ar
     for row, domain in enumerate(domains):
         at, value = (column[starts[row] : starts[row + 1]] for column in (samples.at, samples.value))
         sure = np.flatnonzero(np.abs(value) > TOUCHES * scale[row])
-        if scale[row] <= VANISHES or not len(sure):
+        if vanishes[row] or not len(sure):
             pending.append((row, [], False))
             continue
         if domain.closed:  # once round from a place that is surely not zero
@@ -149,8 +150,8 @@ class _Boundary(NamedTuple):
     rises: bool | None
 
 
-def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
-    """Samples between which the functions are their cubics."""
+def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, NDArray[np.bool_]]:
+    """Samples between which the functions are their cubics; and which functions are zero all over."""
     places = []
     for domain in domains:
         cell = (domain.high - domain.low) / domain.cells
@@ -163,6 +164,10 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
     row = np.repeat(np.arange(len(domains)), [len(p) for p in places])
     at = np.concatenate(places)
     samples = Samples(row, at, *_known(function, row, at))
+    changes = np.diff(row) != 0
+    inner = ~(np.append(True, changes) | np.append(changes, True)) | np.array([d.closed for d in domains])[row]
+    largest = np.zeros(len(domains))
+    np.maximum.at(largest, row[inner], np.abs(samples.value[inner]))
     closing = np.array([n for n, domain in enumerate(domains) if domain.closed], np.int64)
     begins = np.searchsorted(row, closing)
     length = np.array([domain.high - domain.low for domain in domains])
@@ -172,6 +177,7 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
     narrow = NARROW * length
     noise = np.full(len(domains), VANISHES)
     np.maximum.at(noise, samples.row, NOISE * np.abs(samples.value))
+    noise[largest <= VANISHES] = np.inf
     left, right = samples.cells()
     found = [samples]
     while len(left.row):
@@ -192,7 +198,7 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> Samples:
         rough &= ~crowded[left.row]
         half = [samples.part(rough) for samples in (left, middle, right)]
         left, right = half[0].merged(half[1]), half[1].merged(half[2])
-    return found[0].merged(*found[1:])
+    return found[0].merged(*found[1:]), largest <= VANISHES
 
 
 def _known(function: Function, row: Rows, at: Real) -> tuple[Real, Real]:

@@ -7,9 +7,12 @@ close by dyads all toggles are roots of polynomials.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
+from kinematics.errors import MechanismError
 from kinematics.linkage import CROSSED, OPEN, Fourbar, catalogue, count_circuits, positions, toggle_angles
 from kinematics.linkage.branches import Branch, cycle
 from kinematics.linkage.closures import decompose
@@ -369,3 +372,87 @@ def test_slide_of_a_link_without_a_way() -> None:
     )
     assert branches(mechanism) == []
     assert holding_reference(mechanism, []) is None
+
+
+# -- joints on small whole numbers: pins on each other, links of one length, all in line -------------------------------
+
+
+def on_whole_numbers(name: str, rng: np.random.Generator) -> Mechanism:
+    """A mechanism of a type with its joints on a grid of 3 × 3 or 5 × 5 points."""
+    pattern = take(EVERY[name](rng, 1), 0)
+    reach = int(rng.integers(1, 3))
+    joints = {joint: complex(*rng.integers(-reach, reach + 1, 2)) for joint in pattern.joints}
+    slides = []
+    for slide in pattern.slides:
+        angle = float(rng.integers(0, 4)) * np.pi / 4.0
+        point = joints[slide.joint] + int(rng.integers(-1, 2)) * np.exp(1j * angle)
+        slides.append(Slide(slide.joint, slide.link, np.asarray(point), np.asarray(angle)))
+    gears = tuple(gear._replace(ratio=float(rng.choice([1.0, -1.0, 2.0, 0.5]))) for gear in pattern.gears)
+    return Mechanism({**joints}, pattern.links, pattern.input, tuple(slides), gears)
+
+
+def right_or_refused(mechanism: Mechanism) -> bool:
+    """Nothing but numbers where valid, all constraints kept, and each assembly just where its branches are."""
+    at = mechanism.reference_input + np.linspace(-np.pi, np.pi, 25)
+    found = drive(mechanism, at)
+    for jets in (found.joints, found.angles, found.slides):
+        for jet in jets.values():
+            np.testing.assert_array_equal(np.isfinite(jet[0]), found.valid)
+            np.testing.assert_array_equal(np.isfinite(jet).all(axis=0), found.smooth)
+    for link, listed in mechanism.links.items():
+        for one, other in pairwise(listed):
+            length = np.abs(mechanism.joints[one] - mechanism.joints[other])
+            off = np.abs(np.abs(found.joints[one][0] - found.joints[other][0]) - length)
+            assert off[found.valid].max(initial=0.0) < 1e-11, link
+    listed = branches(mechanism)
+    if mechanism.driven_by_slide or decompose(mechanism).left:
+        return True
+    steps = decompose(mechanism).steps
+    position = [n for n, step in enumerate(steps) if step.has_two_solutions]
+    period = cycle(mechanism)
+    inputs = np.linspace(0.0, period, 97) + 0.0123
+    for choice in np.ndindex(*(2,) * len(position)):
+        signs = [np.ones((), np.int64)] * len(steps)
+        for n, sign in zip(position, choice, strict=True):
+            signs[n] = np.array(1 - 2 * sign)
+        valid = drive(mechanism, inputs, signs=tuple(signs), order=0).valid
+        inside, edge = np.zeros(97, bool), np.zeros(97, bool)
+        for branch in listed:
+            if branch.signs == tuple(1 - 2 * sign for sign in choice):
+                offset, way = np.mod(inputs - branch.low, period), branch.high - branch.low
+                inside |= (offset <= way) | branch.full
+                edge |= (np.minimum(offset, period - offset) < 1e-5) | (np.abs(offset - way) < 1e-5)
+        np.testing.assert_array_equal(inside[~edge], valid[~edge])
+    return True
+
+
+def degenerate(name: str, seed: int, n: int) -> int:
+    """How many of n designs on whole numbers are answered; the others are refused with a reason."""
+    rng = np.random.default_rng([seed, list(EVERY).index(name)])
+    answered = 0
+    for _ in range(n):
+        try:
+            answered += right_or_refused(on_whole_numbers(name, rng))
+        except MechanismError:
+            continue
+    return answered
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_degenerate_designs_are_answered_right_or_refused(name: str) -> None:
+    assert degenerate(name, 51, 6) > 0
+
+
+def test_dyad_that_is_always_folded_is_refused() -> None:
+    """Fixed pivots on each other, and links that just reach: all turns as one body, and the assembly is undecided."""
+    joints = {"O2": 0j, "O4": 0j, "A": 3.0 + 0j, "B": 1.0 + 0j, "P": 1.0 + 1j}
+    links = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")}
+    with pytest.raises(TopologyError, match="folded flat at every input"):
+        branches(Mechanism({**joints}, links, "input"))
+
+
+def test_slide_that_cannot_be_moved_has_no_branch() -> None:
+    """A crank as long as its coupler, and a line square to the way out: the slider rests, the crank turns."""
+    line = Slide("B", "ground", np.asarray(0j), np.asarray(0.0))
+    links = {"ground": ("O2",), "crank": ("O2", "A"), "coupler": ("A", "B")}
+    assert branches(Mechanism({"O2": 2j, "A": 1j, "B": 0j}, links, "B", (line,))) == []
