@@ -15,10 +15,10 @@ pytestmark = [pytest.mark.campaign, pytest.mark.timeout(600)]
 MANY = 10_000
 """Designs of each type that are closed and differentiated."""
 
-ELIMINATIONS = 40
+ELIMINATIONS = 30
 """Designs of each type with two dyads or more whose branches are compared; of those with one, five times as many."""
 
-CONTINUATIONS = 4
+CONTINUATIONS = 3
 """Designs of each type that no dyads close from its input; each costs some seconds."""
 
 

@@ -253,7 +253,7 @@ class Elimination:
         near = np.sort(near)
         middles = np.concatenate([near[:-1] + np.diff(near) / 2.0, [(near[-1] + near[0] + period) / 2.0]])
         points = np.concatenate([middles, near])
-        for spread in (1e-3, 1e-5, 1e-7):
+        for spread in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
             points = np.concatenate([points, near - spread, near + spread])
         points = np.unique(np.mod(points, period))
         points = np.append(points, points[0] + period)
