@@ -151,12 +151,11 @@ class Closures:
         place = curve.place(curve.low + (curve.high - curve.low) * np.array([0.13, 0.31, 0.57, 0.77]))
         if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
             return False
-        for later in itertools.product((1, -1), repeat=len(self.links) - level - 1):
-            rest = np.repeat(np.array([1, *later], np.int64)[:, None], len(place.theta), axis=1)
-            signs = self.signs(np.vstack([place.signs, rest]))
-            if drive(self.mechanism, place.theta[:, None], signs=signs, order=0).valid.any():
-                return True
-        return False
+        signs = self.signs(np.vstack([place.signs, np.ones(len(place.theta), np.int64)]))
+        motion = drive(self.mechanism, place.theta[:, None], signs=signs, order=0)
+        if level + 1 == len(self.links):
+            return bool(motion.valid.any())
+        return bool(np.isfinite(motion.margins[self.links[level + 1]]).any())
 
     def swings(self, level: int, curve: Curve, v: float) -> bool:
         """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
