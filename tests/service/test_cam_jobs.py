@@ -1,0 +1,40 @@
+"""The examples of cams through HTTP: solved, verified, drawn, tabled and driven; a refusal names the field."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+
+from synthesis.kinds import KINDS
+
+EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
+NAMES = ("double dwell", "rise-fall-dwell", "critical path", "valve")
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=NAMES)
+def test_examples_run_and_are_drawn(client, example):
+    job = client.post("/v1/jobs", json={"problem": example}, headers={"Prefer": "wait=30"})
+    assert job.status_code == 200, job.text
+    body = job.json()
+    assert body["status"] == "succeeded"
+    (design,) = body["result"]["designs"]
+    assert design["verification"]["passed"]
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    for form, begins in (("svg", b"<"), ("dxf", b""), ("csv", b"")):
+        answer = client.get(f"{place}.{form}")
+        assert answer.status_code == 200, answer.text
+        assert len(answer.content) > 1000
+        assert answer.content.startswith(begins)
+    motion = client.get(f"{place}/motion?steps=36")
+    assert motion.status_code == 200, motion.text
+
+
+def test_a_broken_joint_is_refused_with_its_place(client):
+    example = copy.deepcopy(EXAMPLES[0])
+    example["segments"][1]["law"] = "simple_harmonic"
+    answer = client.post("/v1/jobs", json={"problem": example})
+    assert answer.status_code == 422
+    (first, *_) = answer.json()["errors"]
+    assert first["path"] == "/problem/segments/1"
+    assert "fundamental law" in first["detail"]
