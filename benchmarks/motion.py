@@ -2,8 +2,10 @@
 
     python -m benchmarks.motion [--tasks 100]
 
-Exact problems are Norton's examples, solved and verified in process. Searches are the three-position tasks of
-tests/cases, and random ordinary ones: the body moves within a few times its size and turns by up to 90°.
+Exact problems are Norton's examples and the five-position tasks of tests/cases, solved and verified in process.
+Searches are the three- and four-position tasks of tests/cases, and random ordinary ones: the body moves within a few
+times its size and turns by up to 90°. Most random tasks of four positions have no linkage; which have, brute force
+tells. Times are processor times.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.four_positions import brute_force
 from synthesis.designs import MotionResult
 from synthesis.dispatch import solve, warm_up
 from synthesis.kinds import parse_problem
@@ -24,6 +27,9 @@ from synthesis.problems import MotionProblem
 from tests.cases import search_tasks
 
 REPEATS = 400
+
+GOOD_ENOUGH = 20.0
+"""Degrees of transmission angle that count in tasks of four positions."""
 
 
 def at(magnitude: float, degrees: float) -> complex:
@@ -64,9 +70,9 @@ EXACT = {
 
 
 def timed(problem: MotionProblem) -> tuple[MotionResult, float]:
-    start = time.perf_counter()
+    start = time.process_time()
     result = solve(problem, lambda fraction, message: None)
-    return result, time.perf_counter() - start
+    return result, time.process_time() - start
 
 
 def ordinary(rng: np.random.Generator, n: int) -> MotionProblem:
@@ -74,6 +80,11 @@ def ordinary(rng: np.random.Generator, n: int) -> MotionProblem:
     points = rng.uniform(-1.0, 1.0, n) + 1j * rng.uniform(-1.0, 1.0, n)
     angles = rng.uniform(-90.0, 90.0, n)
     return motion([100.0 * complex(p) for p in points], [float(a) for a in angles])
+
+
+def stated(n: int) -> list[MotionProblem]:
+    """The tasks of n positions of tests/cases."""
+    return [parse_problem({"kind": "motion", "positions": task["positions"]}) for task in search_tasks(n)]
 
 
 def exact_table() -> None:
@@ -84,6 +95,12 @@ def exact_table() -> None:
         assert result.search.complete
         times = [1e3 * timed(problem)[1] for _ in range(REPEATS)]
         print(f"{name:<50}{statistics.median(times):>11.2f}{statistics.quantiles(times, n=10)[-1]:>9.2f}")
+    times = []
+    for problem in stated(5):
+        timed(problem)
+        times += [1e3 * timed(problem)[1] for _ in range(REPEATS // 20)]
+    name = "5 positions, the tasks of tests/cases"
+    print(f"{name:<50}{statistics.median(times):>11.2f}{statistics.quantiles(times, n=10)[-1]:>9.2f}")
 
 
 def search_row(name: str, problems: list[MotionProblem]) -> None:
@@ -95,6 +112,28 @@ def search_row(name: str, problems: list[MotionProblem]) -> None:
     print(f"{name:<50}{statistics.median(times):>11.2f}{max(times):>9.2f}{one:>10.1f}{five:>10.1f}")
 
 
+def four_by_brute_force(problems: list[MotionProblem]) -> None:
+    """How often the search reaches 20° where a grid over all dyads does."""
+    there = found = alone = 0
+    times, grid_times = [], []
+    for problem in problems:
+        result, seconds = timed(problem)
+        times.append(seconds)
+        start = time.process_time()
+        possible = brute_force(problem, GOOD_ENOUGH) > 0.0
+        grid_times.append(time.process_time() - start)
+        reached = any(design.metrics.min_transmission_angle >= GOOD_ENOUGH for design in result.designs)
+        there += possible
+        found += possible and reached
+        alone += reached and not possible
+    print(f"\n{'4 positions, random ordinary tasks':<42}{'tasks':>8}{'median s':>11}{'worst s':>9}")
+    print(f"{'search':<42}{len(problems):>8}{statistics.median(times):>11.2f}{max(times):>9.2f}")
+    print(f"{'brute force':<42}{len(problems):>8}{statistics.median(grid_times):>11.2f}{max(grid_times):>9.2f}")
+    print(f"{'brute force finds 20° in':<42}{there:>8}")
+    print(f"{'of these the search finds 20° in':<42}{found:>8}{100.0 * found / max(there, 1):>10.1f} %")
+    print(f"{'the search alone finds 20° in':<42}{alone:>8}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--tasks", type=int, default=100, help="random tasks per row")
@@ -102,11 +141,12 @@ def main() -> None:
     warm_up()
     exact_table()
     print(f"\n{'search over free choices':<50}{'median s':>11}{'worst s':>9}{'≥ 1, %':>10}{'≥ 5, %':>10}")
-    stated = [parse_problem({"kind": "motion", "positions": task["positions"]}) for task in search_tasks()]
-    search_row("3 positions, the tasks of tests/cases", stated)
+    search_row("4 positions, the tasks of tests/cases", stated(4))
+    search_row("3 positions, the tasks of tests/cases", stated(3))
     rng = np.random.default_rng(0)
     search_row("3 positions, random ordinary tasks", [ordinary(rng, 3) for _ in range(tasks)])
     search_row("2 positions, random ordinary tasks", [ordinary(rng, 2) for _ in range(tasks)])
+    four_by_brute_force([ordinary(rng, 4) for _ in range(tasks)])
 
 
 if __name__ == "__main__":

@@ -263,7 +263,9 @@ class _Pairs:
         if self.rejected:
             text += f" Rejected: {_listed(self.rejected)}."
         if not self.passed:
-            text += " These are all, so no design exists." if complete else " That does not prove that none exists."
+            text += (
+                " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
+            )
         return text
 
     def _summary_of_search(self, count: int, sound: int) -> str:

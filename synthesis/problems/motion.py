@@ -175,6 +175,38 @@ class MotionProblem(LinkageProblem):
                 {
                     "kind": "motion",
                     "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 40.0, "y": 15.0, "angle": -25.0},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0},
+                    ],
+                    "ground_line": {"point": [0.0, -60.0], "angle": 0.0},
+                    "input_side": {"fixed_pivot": [0.0, None]},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": -9.0, "y": 7.0, "angle": -14.0},
+                        {"x": -13.0, "y": 18.0, "angle": -28.0},
+                        {"x": -5.0, "y": 33.0, "angle": -46.0},
+                    ],
+                    "constraints": {"min_transmission_angle": 40.0, "max_link_ratio": 5.0},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": -4.0, "y": 4.0, "angle": 6.0},
+                        {"x": -25.0, "y": 11.0, "angle": 30.0},
+                        {"x": -32.0, "y": 10.0, "angle": 38.0},
+                        {"x": -37.0, "y": 8.0, "angle": 44.0},
+                    ],
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
                         {"x": 0.0, "y": 0.0, "angle": 0.0, "exact": True},
                         {"x": 12.0, "y": 7.0, "angle": -9.0},
                         {"x": 26.0, "y": 12.0, "angle": -17.0},

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synthesis.designs import LinkageDesign
-from synthesis.kinds import parse_problem
+from synthesis.kinds import KINDS, parse_problem
 from tests.cases import search_tasks
 from tests.synthesis.planted import Planted, PlantedDyad, plant
 from tests.synthesis.test_motion_search import confirm, run
@@ -349,3 +349,11 @@ def test_examples_of_partly_stated_sides_are_consistent() -> None:
         {"input_side": {"rotations": [None, 20.0, None]}},
     ):
         assert parse_problem({"kind": "motion", "positions": FOUR, **statement}).contradictions() == []
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_examples_of_the_options_have_answers(number: int) -> None:
+    schema_extra: Any = KINDS["motion"].problem.model_config["json_schema_extra"]
+    example = dict(schema_extra["examples"][number])
+    assert example.pop("kind") == "motion"
+    assert len(run(**example).designs) == 3
