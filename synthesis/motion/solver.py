@@ -75,6 +75,9 @@ _REASONS = {
 _NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
 """Reasons that say what could not be shown, not what cannot be; a search with one of them proves nothing."""
 
+_EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
+"""Reasons that hold whichever side drives."""
+
 
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve a motion-generation problem, each way of asking by its own method."""
@@ -129,7 +132,9 @@ class _Pairs:
         count = 0
         for i in range(len(self.inputs.fixed)):
             for j in range(i + 1 if self.alike else 0, len(self.outputs.fixed)):
-                verdicts = [self._verify(i, j), *([self._verify(j, i)] if self.alike else [])]
+                verdicts = [self._verify(i, j)]
+                if self.alike and verdicts[0] not in _EITHER_WAY:
+                    verdicts.append(self._verify(j, i))
                 self._count(verdicts)
                 count += 1
         progress(1.0, "verified")
@@ -263,9 +268,7 @@ class _Pairs:
         if self.rejected:
             text += f" Rejected: {_listed(self.rejected)}."
         if not self.passed:
-            text += (
-                " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
-            )
+            text += " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
         return text
 
     def _summary_of_search(self, count: int, sound: int) -> str:
