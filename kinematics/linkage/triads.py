@@ -7,15 +7,16 @@ them,
 
 one complex row a loop, as many real equations as unknown rotations φ. A solution is followed in θ by steps that cannot
 leap to another: by the affine covariant Newton–Kantorovich theorem (Deuflhard and Heindl, SIAM J. Numer. Anal. 16
-(1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is for every θ' with
+(1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is just one solution in a ball around φ for every θ' with
 
-    |θ' − θ| ≤ 1 / (2 η ω),    η ≥ ‖J⁻¹ k (z' − z)‖ / |z' − z|,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖,
+    η ω ≤ 1/2,    η ≥ ‖J⁻¹ k (z' − z)‖,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖ in the ball, of radius 2η;
 
-just one solution in a ball around φ; the ball is the same for all of them, so it is the continuation of φ. The norm is
-max |φ_l| / d_l with weights d that follow the rates of the links, which makes the steps longest. With the rows of J⁻¹
-written as complex ones, g, the largest of |ḡ k| / d over the rows serves as η, and the largest sum of |ḡ C| d² over the
-links, divided by the row's own d, as ω. Near a toggle both grow with the inverse root of the distance, so that the
-steps shrink in proportion to it, and the toggle is approached geometrically.
+the ball is the same for all of them, so it is the continuation of φ. Near a toggle J⁻¹ grows along one direction, which
+the rates of the links, t, tend to. Hence the norm is ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on all links but
+the fastest: across t it may be as fine as makes the step longest. With A = J⁻¹ C u in these coordinates the second
+derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the links' rotations; so
+ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. So a toggle is approached by steps
+that are a good part of the distance to it.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
 
-STALLED = 1e-13
-"""A certified step below this, radians, means a toggle: its distance is some hundred times as large, 1e-10 or less."""
+STALLED = 1e-12
+"""A certified step below this, radians, means a toggle: its distance is up to a hundred times as large, 1e-10."""
 
 CONVERGED = 1e-14
 """Newton's correction, radians, at which a position counts as solved."""
@@ -47,8 +48,11 @@ then given as not reached."""
 NODES_AT_ONCE = 256
 """Steps between two looks at how far the track has come."""
 
-LEAST_WEIGHT = 0.25
-"""Weight of the slowest links in the norm of the certificate, the fastest link's being 1."""
+CERTAIN = 0.9
+"""Part of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
+
+LEAST_SHARE = 1e-9
+"""Least ε in the norm of the certificate; at a toggle's distance of 1e-10 the best is some 1e-5."""
 
 LOST = 1e-12
 """Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
@@ -205,7 +209,7 @@ def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> floa
     links = len(phi)
     value, inverse = np.empty(links), np.empty((links, links))
     _evaluate(c, k, fixed, phi, at, value, inverse)
-    return _certified(c, k, inverse) if np.isfinite(_invert(inverse)) else 0.0
+    return _certified(c, k, phi, at, inverse) if np.isfinite(_invert(inverse)) else 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -228,7 +232,7 @@ def _march(
         _newton(c, k, fixed, phi, at, to, value, inverse, slope)
         nodes[n], angles[n] = nodes[n - 1] + step, phi
         # Newton's last inverse is that of the solution but for a correction of rounding size.
-        reach[n] = _certified(c, k, inverse) if np.isfinite(inverse).all() else 0.0
+        reach[n] = _certified(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
     return len(nodes), False
 
 
@@ -328,26 +332,61 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
 
 
 @njit(cache=True, nogil=True)
-def _certified(c: Complex, k: Complex, inverse: Real) -> float:
-    """1 / (2 η ω): the step within which the continuation is the only solution."""
+def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> float:
+    """The step within which the continuation is the only solution, less a tenth."""
     loops, links = c.shape
-    rate = np.empty(links)
+    z = complex(math.cos(at), math.sin(at))
+    rate, bend = np.empty(links), np.empty(links)
+    a = np.empty((links, links), np.complex128)
     for row in range(links):
         by_input = 0j
         for loop in range(loops):
             by_input += complex(inverse[row, loop], -inverse[row, loop + loops]) * k[loop]
-        rate[row] = abs(by_input)
-    eta = max(rate.max(), 1e-300)
-    omega = 1e-300
-    for row in range(links):
-        total = 0.0
-        for col in range(links):
+        by_input *= z
+        rate[row], bend[row] = by_input.imag, by_input.real
+    fastest = np.argmax(np.abs(rate))
+    eta = max(abs(rate[fastest]), 1e-300)
+    t = rate / (eta if rate[fastest] >= 0.0 else -eta)
+    t[fastest] = 1.0
+    for col in range(links):
+        u = complex(math.cos(phi[col]), math.sin(phi[col]))
+        for row in range(links):
             by_link = 0j
             for loop in range(loops):
                 by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
-            total += abs(by_link) * max(rate[col] / eta, LEAST_WEIGHT) ** 2
-        omega = max(omega, total / max(rate[row] / eta, LEAST_WEIGHT))
-    return float(0.5 / (eta * omega))
+            a[row, col] = by_link * u
+    for row in range(links):
+        if row != fastest:
+            bend[row] -= t[row] * bend[fastest]
+            for col in range(links):
+                a[row, col] -= t[row] * a[fastest, col]
+    along, across, beside = np.zeros(links), np.zeros(links), np.zeros(links)
+    for row in range(links):
+        for col in range(links):
+            along[row] += a[row, col].real * t[col] * t[col]
+            if col != fastest:
+                across[row] += 2.0 * abs(a[row, col].real * t[col])
+                beside[row] += abs(a[row, col].real)
+    best, share = 0.0, 1.0
+    while share > LEAST_SHARE:
+        ball = np.inf
+        for row in range(links):
+            second = abs(along[row]) + share * (across[row] + share * beside[row])
+            third = 0.0
+            for col in range(links):
+                weight = abs(t[col]) + (share if col != fastest else 0.0)
+                third += abs(a[row, col]) * weight**3
+            if row != fastest:
+                second, third = second / share, third / share
+            ball = min(ball, 1.0 / max(second + math.sqrt(second * second + 4.0 * third), 1e-300))
+        step = 2.0 * ball / (eta + math.sqrt(eta * eta + 2.0 * abs(bend[fastest]) * ball))
+        for row in range(links):
+            if row != fastest and bend[row] != 0.0:
+                step = min(step, math.sqrt(2.0 * share * ball / abs(bend[row])))
+        if step <= best:
+            break
+        best, share = step, share * 0.5
+    return CERTAIN * best
 
 
 @njit(cache=True, nogil=True)
