@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from synthesis.dispatch import solve, warm_up
+from synthesis.dispatch import solve, warm_up, warm_up_rest
 from synthesis.kinds import parse_problem
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.verification import verify
@@ -61,6 +61,7 @@ def main() -> None:
     parser.add_argument("--tasks", type=int, default=20, help="planted linkages per row")
     tasks = parser.parse_args().tasks
     warm_up()
+    warm_up_rest()
     print(f"{'positions':>9}{'noise':>9}{'median CPU s':>13}{'worst':>9}{'error : plant':>15}{'worse':>9}")
     for n in (8, 12, 20, 40):
         for noise in (1e-4, 1e-3, 1e-2):
