@@ -17,6 +17,7 @@ The multipliers of the solution are kept: :mod:`synthesis.cam.dual` makes of the
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any, Literal
@@ -153,6 +154,19 @@ def modeling() -> Any:
     return import_module("cvxpy")
 
 
+def minimized(cost: Any, constraints: list[Any]) -> bool:
+    """Solve a program of cvxpy; whether it has a solution. One of reduced accuracy counts: whoever asks measures it."""
+    cp = modeling()
+    problem = cp.Problem(cp.Minimize(cost), constraints)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Solution may be inaccurate")
+            problem.solve(solver=cp.CLARABEL)
+    except cp.SolverError:
+        return False
+    return problem.status in ("optimal", "optimal_inaccurate")
+
+
 def solve(program: ConvexProgram) -> Solution | None:
     """Solve a program.
 
@@ -191,12 +205,7 @@ def solve(program: ConvexProgram) -> Solution | None:
     else:
         cost = models[0].mean_square(program.rms_order)
         worth = float(models[0].scale[program.rms_order]) ** 2
-    problem = cp.Problem(cp.Minimize(cost), constraints)
-    try:
-        problem.solve(solver=cp.CLARABEL)
-    except cp.SolverError:
-        return None
-    if problem.status not in ("optimal", "optimal_inaccurate"):
+    if not minimized(cost, constraints):
         return None
     return Solution(
         tuple(model.motion() for model in models),

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from synthesis.cam.convex import Block, BlockModel, modeling
+from synthesis.cam.convex import Block, BlockModel, minimized, modeling
 from synthesis.cam.knots import KnotMotion
 from synthesis.cam.piecewise import Piecewise
 
@@ -137,12 +137,7 @@ def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, fl
         0.5 * step @ (speed[1:] + speed[:-1]) >= lift,
     ]
     cost = cp.norm(rate, "inf") if measure == "peak" else cp.sum_squares(cp.multiply(np.sqrt(step), rate))
-    problem = cp.Problem(cp.Minimize(cost), constraints)
-    try:
-        problem.solve(solver=cp.CLARABEL)
-    except cp.SolverError:
-        return None
-    if problem.status not in ("optimal", "optimal_inaccurate"):
+    if not minimized(cost, constraints):
         return None
     return np.sqrt(2.0 * np.maximum(np.asarray(energy.value, np.float64), 0.0))
 
@@ -181,9 +176,4 @@ def _linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Re
     constraints = list(model.constraints)
     if ceiling is not None:
         constraints.append(model.states[:, 1] * model.scale[1] <= (1.0 + ABOVE) * ceiling)
-    problem = cp.Problem(cp.Minimize(cost), constraints)
-    try:
-        problem.solve(solver=cp.CLARABEL)
-    except cp.SolverError:
-        return None
-    return model.motion() if problem.status in ("optimal", "optimal_inaccurate") else None
+    return model.motion() if minimized(cost, constraints) else None

@@ -16,6 +16,10 @@ from kinematics.cam.segments import dwell, law_segment
 SMOOTH = ("cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567", "trapezoidal")
 
 
+TRIES = 400
+"""Radii of the grid."""
+
+
 def random_program(rng: np.random.Generator, lift: float) -> Program:
     """One or two rises with their falls and dwells, of smooth laws."""
     moves = int(rng.integers(1, 3))
@@ -43,12 +47,21 @@ def dense_motion(program: Program, points: int = 8001) -> Motion:
 
 
 def first_sound(
-    program: Program, sound: Callable[[float, Motion], bool], start: float, stop: float, tries: int = 400
+    program: Program,
+    sound: Callable[[float, Motion], bool],
+    start: float,
+    stop: float,
+    also: float | None = None,
 ) -> float | None:
-    """The smallest sound radius: tried on a grid with many angles, then bisected with very many."""
+    """The smallest sound radius: tried on a grid with many angles, then bisected with very many.
+
+    A radius that is claimed to be sound is tried ``also``: what is sound may be less wide than the grid's step.
+    """
     coarse, fine = dense_motion(program, 301), dense_motion(program)
-    grid = np.linspace(start, stop, tries)
+    grid = np.linspace(start, stop, TRIES)
     step = float(grid[1] - grid[0])
+    if also is not None:
+        grid = np.sort(np.append(grid, also))
     for radius in map(float, grid):
         if not sound(radius, coarse):
             continue

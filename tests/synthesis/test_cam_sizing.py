@@ -101,7 +101,8 @@ def check_flat(seed: int) -> None:
         return bool((rho >= 0.4).all())
 
     stop = pivot - face - 1e-6 if size is None else min(1.2 * size.radius, pivot - face - 1e-6)
-    brute_base = first_sound(swing, sound, max(0.05, 1e-6 - face), stop)
+    claimed = None if size is None else size.radius * (1.0 + 1e-7)
+    brute_base = first_sound(swing, sound, max(0.05, 1e-6 - face), stop, claimed)
     assert (size is None) == (brute_base is None)
     if size is not None and brute_base is not None:
         assert size.radius == pytest.approx(brute_base, abs=AGREES * max(size.radius, 1.0))
