@@ -97,6 +97,39 @@ def test_sliders_are_dyads_at_infinity(kind: str) -> None:
         assert (len(found.dyads.fixed) + len(found.sliders)) % 2 == 0
 
 
+def test_a_double_dyad_is_said_and_counted_once() -> None:
+    """Between tasks of four and of two real dyads lies one where two coincide, before they become complex."""
+    rng = np.random.default_rng(6)
+    met = 0
+    for _ in range(20):
+        (few, n), (many, m) = rational_task(rng), rational_task(rng)
+        if {n, m} != {2, 4}:
+            continue
+        if n == 4:
+            few, many = many, few
+
+        def between(share: float, few: MotionTask = few, many: MotionTask = many) -> MotionTask:
+            turns = np.angle(few.turns) + share * (np.angle(many.turns) - np.angle(few.turns))
+            return MotionTask(few.points + share * (many.points - few.points), np.exp(1j * turns), 0j, 1.0)
+
+        low, high = 0.0, 1.0
+        while high - low > 1e-16 and low < (low + high) / 2.0 < high:
+            middle = (low + high) / 2.0
+            found = section(between(middle), open_choices(few))
+            if len(found.dyads.fixed) + len(found.sliders) < 3:
+                low = middle
+            else:
+                high = middle
+        found = section(between(high), open_choices(few))
+        if np.abs(found.dyads.fixed).max() > 1e3:  # the two meet at infinity
+            continue
+        assert found.double.any()
+        assert not found.proved
+        assert lengths_vary(between(high), *found.dyads) < 1e-9
+        met += 1
+    assert met >= 2
+
+
 def test_a_family_of_dyads_is_said() -> None:
     """A body point that is at one place in three positions and at another in two has its centre anywhere on a line."""
     angles = np.array([0.0, 0.4, -0.7, 0.2, 0.9])
