@@ -8,14 +8,26 @@ from __future__ import annotations
 
 from typing import Any
 
-from synthesis.analyses import cam, camshaft, contour_cam, gear_train, gearbox, linkage, planetary_train
+from synthesis.analyses import (
+    cam,
+    camshaft,
+    contour_cam,
+    gear_pair,
+    gear_train,
+    gearbox,
+    linkage,
+    planetary_train,
+)
 from synthesis.analyses.base import AnalysisRequest, Family
 
 FAMILIES: dict[str, Family] = {
     "cam": cam.FAMILY,
     "camshaft": camshaft.FAMILY,
     "contour_cam": contour_cam.FAMILY,
+    "bevel_pair": gear_pair.BEVEL_FAMILY,
     "gear_train": gear_train.FAMILY,
+    "helical_pair": gear_pair.HELICAL_FAMILY,
+    "worm_set": gear_pair.WORM_FAMILY,
     "gearbox": gearbox.FAMILY,
     "layshaft_gearbox": gearbox.LAYSHAFT_FAMILY,
     "planetary_train": planetary_train.FAMILY,
