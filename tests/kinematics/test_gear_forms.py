@@ -142,6 +142,12 @@ def test_bevel_pair(case: Case) -> None:
     assert pair.cone_distance * math.sin(pair.cones[0]) == pytest.approx(pair.pitch_radii[0])
 
 
+def test_equal_bevel_gears_are_alike() -> None:
+    pair = BevelPair(20, 20, 4.0)
+    for first, second in (pair.addenda, pair.dedenda, pair.thicknesses):
+        assert first == pytest.approx(second, rel=1e-12)
+
+
 @pytest.mark.parametrize("case", cases("worm_by_lead", "gear"))
 def test_worm_by_lead(case: Case) -> None:
     x = case.inputs
