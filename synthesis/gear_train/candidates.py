@@ -15,6 +15,7 @@ from fractions import Fraction
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synthesis.gear_train import kernels
 from synthesis.gear_train.kernels import Floats, Found, Gears, Integers, Rule
@@ -199,7 +200,7 @@ class Meshes:
 
 def coaxial_meshes(task: Task, k: int) -> Meshes:
     """Reverted trains: groups of equal centre distance, that is of equal pitch × (a + b)."""
-    return _grouped(task, k, [_meshes(task, i, len(task.pitches)) for i in range(k)], coaxial=True)
+    return _grouped(task, k, [_meshes(task, i, len(task.pitches), task.allowed) for i in range(k)], coaxial=True)
 
 
 def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float) -> Meshes | None:
@@ -207,13 +208,13 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
 
     If every stage ratio is within ``reach``, a stage of a train near enough has at least T (1 − t) / reach₁^(k−1).
     """
-    if not task.by_mesh or task.ordered:
+    if not task.by_mesh or task.ordered or k in task.idler_counts:
         return None
     low, high = reach
     ratio = float(task.target)
     least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - 1e-9)
     most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + 1e-9)
-    a, b, mark = _meshes(task, 0, 1)
+    a, b, mark = _meshes(task, 0, 1, task.allowed)
     kept = (b / a >= least) & (b / a <= most)
     if not math.comb(int(np.count_nonzero(kept)) + k - 1, k) <= FEW_TRAINS:
         return None
@@ -224,7 +225,7 @@ def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
     """Least and greatest ratio of each stage's allowed meshes; empty where a stage has none."""
     found = []
     for i in range(k):
-        a, b, _ = _meshes(task, i, 1)
+        a, b, _ = _meshes(task, i, 1, task.stages(k))
         if not len(a):
             return []
         ratio = b / a
@@ -234,10 +235,10 @@ def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
     return found
 
 
-def _meshes(task: Task, stage: int, pitches: int) -> tuple[Integers, Integers, Integers]:
+def _meshes(task: Task, stage: int, pitches: int, allowed: NDArray[np.bool_]) -> tuple[Integers, Integers, Integers]:
     """Allowed meshes of a stage, each with each of the first so many pitches."""
     drivers, driven = task.drivers[stage], task.driven[stage]
-    at = np.argwhere(task.allowed[np.ix_(drivers, driven)])
+    at = np.argwhere(allowed[np.ix_(drivers, driven)])
     a, b = drivers[at[:, 0]], driven[at[:, 1]]
     return np.tile(a, pitches), np.tile(b, pitches), np.repeat(np.arange(pitches), len(a))
 

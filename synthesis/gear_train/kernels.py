@@ -65,9 +65,10 @@ class Rule(NamedTuple):
     """What makes a train a candidate and how candidates are ranked.
 
     ``allowed[a, b]`` tells which meshes may be, where ``by_mesh``; ``stock[t]`` how many gears of t teeth there are,
-    where ``by_stock``; ``most_total`` bounds the sum of all teeth. ``ordered``: stages have ranges of their own and
-    keep their places. ``by_size``: the smallest trains first, else the nearest. ``largest``: the size of a train is its
-    largest gear, else the sum of all teeth.
+    where ``by_stock``. ``with_idler``: in one stage, of the pairs ``idled``, an idler stands between the gears, and has
+    to mesh soundly (``sound``) with both; of a stock it takes one more gear. ``most_total`` bounds the sum of all
+    teeth. ``ordered``: stages have ranges of their own and keep their places. ``by_size``: the smallest trains first,
+    else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth.
     """
 
     target: float
@@ -78,6 +79,9 @@ class Rule(NamedTuple):
     ordered: bool
     by_mesh: bool
     allowed: NDArray[np.bool_]
+    with_idler: bool
+    sound: NDArray[np.bool_]
+    idled: NDArray[np.bool_]
     by_stock: bool
     stock: Integers
     most_total: int
@@ -126,8 +130,30 @@ def within_limits(teeth: Integers, k: int, rule: Rule) -> bool:
 
 
 @njit(cache=True, nogil=True)
+def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Whether an idler that there is can stand in a stage, and all other stages are allowed without one."""
+    for stage in range(k):
+        a, b = teeth[stage], teeth[MOST_STAGES + stage]
+        others = True
+        for j in range(k):
+            others = others and (j == stage or rule.allowed[teeth[j], teeth[MOST_STAGES + j]])
+        if not others or not rule.idled[a, b]:
+            continue
+        if not rule.by_stock:
+            return True
+        for idler in range(len(rule.stock)):
+            if rule.stock[idler] > 0 and rule.sound[a, idler] and rule.sound[idler, b]:
+                spare = rule.stock[idler]
+                for j in range(k):
+                    spare -= (teeth[j] == idler) + (teeth[MOST_STAGES + j] == idler)
+                if spare > 0:
+                    return True
+    return False
+
+
+@njit(cache=True, nogil=True)
 def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Bring the driven gears of a train into the first order in which all meshes are allowed; False: there is none.
+    """Bring the driven gears of a train into the first order in which all stages are allowed; False: there is none.
 
     The first tried is both in rising order, whose largest stage ratio is the least of all pairings.
     """
@@ -144,7 +170,9 @@ def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
             free = True
             for j in range(stage):
                 free = free and chosen[j] != candidate
-            if free and (not rule.ordered or candidate == stage) and rule.allowed[teeth[stage], b[candidate]]:
+            a = teeth[stage]
+            fits = rule.allowed[a, b[candidate]] or (rule.with_idler and rule.idled[a, b[candidate]])
+            if free and (not rule.ordered or candidate == stage) and fits:
                 used = candidate
                 break
         chosen[stage] = used
@@ -153,7 +181,8 @@ def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
         elif stage == k - 1:
             for j in range(k):
                 teeth[MOST_STAGES + j] = b[chosen[j]]
-            return True
+            if not rule.with_idler or takes_idler(teeth, k, rule):
+                return True
         else:
             stage += 1
             chosen[stage] = -1

@@ -6,14 +6,14 @@ that belongs among the wanted, because two errors differ by less than they can t
 room.
 
 A ratio that no tolerance is stated for is first sought within :data:`NEAR`, where the loops have the least to look at;
-only if no train is that near, and the ratio is within reach, all errors are searched.
+only if fewer trains than are wanted are that near, and the ratio is within reach, all errors are searched.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cmp_to_key
@@ -97,12 +97,13 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
     found = _searched(task, counts, near, tolerance, wanted, progress)
     nearest = None
-    if not found.trains and whole is not None and _reaches(task.target, whole, 0.0):
+    few = not found.trains or (tolerance is None and len(found.trains) < wanted)
+    if few and whole is not None and _reaches(task.target, whole, 0.0):
         every = tuple(k for k, span in reach.items() if span is not None)
-        progress(0.5, "no train is that near; searching the nearest")
+        progress(0.5, "few trains are that near; searching the nearest")
         anyhow = _searched(task, every, UNLIMITED, None, wanted, lambda fraction, message: None)
         if tolerance is None:
-            found = anyhow
+            found = found._replace(trains=anyhow.trains) if found.trains else anyhow
         elif anyhow.trains:
             nearest = anyhow.trains[0]
     combinations = sum(_covered(task, k) for k in task.stage_counts)
@@ -120,7 +121,7 @@ def _searched(
 ) -> _Pass:
     """One search of all errors up to ``near``."""
     capacity = wanted + SPARE
-    rule = task.rule(near)
+    rules = [task.rule(near, k) for k in counts]
     listed = [_candidates(task, k, near) for k in counts]
     while True:
         size = task.most_teeth if task.largest else 2 * max(counts, default=0) * task.most_teeth
@@ -128,7 +129,7 @@ def _searched(
             size = min(size, task.most_total)
         found = Found.empty(capacity, size)
         done, work = 0, sum(one.combinations for one in listed) or 1
-        for k, one in zip(counts, listed, strict=True):
+        for k, one, rule in zip(counts, listed, rules, strict=True):
             parts = np.linspace(0, one.steps, min(PARTS, one.steps) + 1).astype(int)
             for first, last in itertools.pairwise(parts):
                 if one.least(int(first)) > _last_size(task, found) or one.finish(int(first), rule, found):
@@ -151,7 +152,7 @@ def _searched(
         best = min((train.ratio for train in [*trains, *rows]), key=cmp_to_key(task.target.nearer))
         equal = _equally_near(task, best)
         found.error[0] = abs(task.target.relative_error(best))
-        ties = sum(one.ties(equal, rule, found) for one in listed)
+        ties = sum(one.ties(equal, rule, found) for one, rule in zip(listed, rules, strict=True))
     return _Pass(trains[:wanted], _pareto(task, found, tolerance), ties)
 
 
@@ -213,18 +214,18 @@ def _train(row: Integers) -> Train:
     return Train(*(tuple(int(n) for n in part) for part in parts))
 
 
-def order(task: Task, trains: Iterable[Train], hunting_first: bool = False) -> list[Train]:
+def order(task: Task, trains: Iterable[Train], hunting: Container[Train] = ()) -> list[Train]:
     """Trains in the order of the ranking, by exact arithmetic.
 
     After error and size fewer stages, a smaller largest gear and the tooth numbers make the order definite.
-    ``hunting_first``: of trains of equal error (ranked by size: of equal size and error) those with hunting teeth.
+    Of trains of equal error (ranked by size: of equal size and error) those of ``hunting`` come first.
     """
     near = cmp_to_key(task.target.nearer)
 
     def key(train: Train) -> tuple[object, ...]:
         size, error = train.size(task.largest), near(train.ratio)
-        common = hunting_first and any(math.gcd(*mesh) > 1 for mesh in train.meshes)
-        first = (size, error, common) if task.by_size else (error, common, size)
+        other = train not in hunting
+        first = (size, error, other) if task.by_size else (error, other, size)
         return (*first, len(train.drivers), max(train.drivers + train.driven), train)
 
     return sorted(trains, key=key)

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterator
 from fractions import Fraction
 
-from kinematics.gear.teeth import largest_gear
 from synthesis.designs.gear_train import (
     GearTrainDesign,
     GearTrainMechanism,
@@ -34,7 +33,10 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
     if problem.hunting_tooth == "prefer" and trains:
         progress(0.0, "searching trains with hunting teeth")
         hunting = search(gear_train_task(problem, coprime=True), problem.exact_tolerance, problem.max_designs, progress)
-        trains = order(task, {*trains, *hunting.trains}, hunting_first=True)[: problem.max_designs]
+        # Of the same gears in another pairing, the one with hunting teeth stands for both.
+        met = {_gears(task, train) for train in hunting.trains}
+        trains = [train for train in trains if _gears(task, train) not in met]
+        trains = order(task, [*trains, *hunting.trains], set(hunting.trains))[: problem.max_designs]
     accepted: list[GearTrainDesign] = []
     failed: list[GearTrainDesign] = []
     rejected: Counter[str] = Counter()
@@ -75,6 +77,13 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
     )
 
 
+def _gears(task: Task, train: Train) -> tuple[object, ...]:
+    """What tells a train from others: its meshes where the pairing is part of it, else its drivers and driven gears."""
+    if task.ordered or task.reverted:
+        return tuple(train)
+    return tuple(sorted(train.drivers)), tuple(sorted(train.driven))
+
+
 def _least_error(task: Task, outcome: Outcome) -> float | None:
     found = [*outcome.trains, *outcome.pareto, *([outcome.nearest] if outcome.nearest else [])]
     return min((abs(task.target.relative_error(train.ratio)) for train in found), default=None)
@@ -97,7 +106,8 @@ def _mechanism(problem: GearTrainProblem, task: Task, train: Train) -> GearTrain
     """The train with an idler where it turns the wrong way; None where no idler keeps the demands."""
     ratio, idlers = train.ratio * (-1) ** len(train.drivers), []
     if needs_idler(problem, len(train.drivers)):
-        idler = next(_idlers(problem, task, train), None)
+        demands = {"any": [False], "prefer": [True, False], "require": [True]}[problem.hunting_tooth]
+        idler = next((idler for coprime in demands for idler in _idlers(problem, task, train, coprime)), None)
         if idler is None:
             return None
         ratio, idlers = -ratio, [idler]
@@ -106,27 +116,24 @@ def _mechanism(problem: GearTrainProblem, task: Task, train: Train) -> GearTrain
     )
 
 
-def _idlers(problem: GearTrainProblem, task: Task, train: Train) -> Iterator[Idler]:
+def _idlers(problem: GearTrainProblem, task: Task, train: Train, coprime: bool) -> Iterator[Idler]:
     """Idlers that keep the demands on meshes, from the most fitting.
 
     Between the sizes of the two gears of a stage an idler never interferes if they do not with one another: it is no
-    larger a mate of the smaller and no smaller a mate of the larger.
+    larger a mate of the smaller and no smaller a mate of the larger. The gears of its stage need not be fit to mesh
+    with one another, those of the other stages have to. ``coprime``: all meshes without a common divisor.
     """
     spare = Counter(problem.stocked()) - Counter(train.drivers + train.driven)
     for number, (driver, driven) in enumerate(train.meshes, 1):
+        others = [mesh for place, mesh in enumerate(train.meshes, 1) if place != number]
+        if not all(task.allowed[mesh] and (not coprime or math.gcd(*mesh) == 1) for mesh in others):
+            continue
         small, large = min(driver, driven), max(driver, driven)
-        choices = sorted(spare) if problem.stock is not None else range(small, task.most_teeth + 1)
+        choices = [int(n) for n in task.idlers if problem.stock is None or n in spare]
         for teeth in sorted(choices, key=lambda n: (not small <= n <= large, n)):
             pairs = [(driver, teeth), (teeth, driven)]
-            coprime = all(math.gcd(*pair) == 1 for pair in pairs)
-            sound = all(_sound(min(pair), max(pair), problem.pressure_angle) for pair in pairs)
-            if (coprime or problem.hunting_tooth != "require") and (sound or problem.interference == "report"):
+            if all(task.sound[pair] and (not coprime or math.gcd(*pair) == 1) for pair in pairs):
                 yield Idler(stage=number, teeth=teeth)
-
-
-def _sound(small: int, large: int, degrees: float) -> bool:
-    most = largest_gear(small, math.radians(degrees))
-    return most is None or large <= most
 
 
 def _summary(problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: list[GearTrainDesign]) -> str:

@@ -25,6 +25,10 @@ class Task:
     ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; stages that are ``ordered`` have their own,
     the others have the same and may change places. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
     in a unit in which all are whole numbers.
+
+    Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
+    one another, only with the idler: ``sound[a, b]`` tells which gears may mesh, ``idled[a, b]`` between which an idler
+    can stand, ``allowed[a, b]`` which may be a stage without one.
     """
 
     target: Target
@@ -33,6 +37,10 @@ class Task:
     ordered: bool
     allowed: NDArray[np.bool_]
     by_mesh: bool
+    sound: NDArray[np.bool_]
+    idled: NDArray[np.bool_]
+    idlers: Integers
+    idler_counts: tuple[int, ...]
     stock: Integers
     reverted: bool
     modules: tuple[Fraction, ...]
@@ -47,8 +55,12 @@ class Task:
         """The largest tooth number."""
         return len(self.allowed) - 1
 
-    def rule(self, tolerance: float) -> Rule:
-        """The task for the compiled loops."""
+    def stages(self, k: int) -> NDArray[np.bool_]:
+        """Driver and driven gear of the stages that a train of k stages may have."""
+        return self.allowed | self.idled if k in self.idler_counts else self.allowed
+
+    def rule(self, tolerance: float, k: int) -> Rule:
+        """The task for the compiled loops over trains of k stages."""
         head, rest = self.target.parts()
         stocked = len(self.stock) > 0
         return Rule(
@@ -60,6 +72,9 @@ class Task:
             ordered=self.ordered,
             by_mesh=self.by_mesh,
             allowed=self.allowed,
+            with_idler=k in self.idler_counts,
+            sound=self.sound,
+            idled=self.idled,
             by_stock=stocked,
             stock=self.stock if stocked else np.zeros(1, np.int64),
             most_total=2 * len(self.drivers) * self.most_teeth if self.most_total is None else self.most_total,
@@ -80,20 +95,34 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         stock[teeth] = count
     drivers, driven = tuple(positions[0::2]), tuple(positions[1::2])
     by_mesh = coprime or problem.max_stage_ratio is not None or problem.interference == "refuse"
-    allowed = _allowed_meshes(problem, most, coprime) if by_mesh else np.ones((most + 1, most + 1), np.bool_)
+    sound = _sound_meshes(problem, most, coprime)
+    limited = _within_stage_ratio(problem, most)
+    stage_counts = _stage_counts(problem, sum(counts.values()) if counts else None)
+    idler_counts = tuple(k for k in stage_counts if needs_idler(problem, k))
+    idlers = np.unique(np.concatenate(positions)) if counts else np.arange(min(v[0] for v in positions), most + 1)
+    allowed, idled = sound & limited, np.zeros_like(sound)
+    if idler_counts:
+        # Counted in floats, which the matrix product of whole numbers is not made for.
+        before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
+        idled = (before @ after > 0.0) & limited
+    stages = allowed | idled
     modules = tuple(problem.modules())
     return Task(
         target=problem.target,
-        drivers=tuple(_usable(values, allowed.T, mates) for values, mates in zip(drivers, driven, strict=True)),
-        driven=tuple(_usable(values, allowed, mates) for values, mates in zip(driven, drivers, strict=True)),
+        drivers=tuple(_usable(values, stages.T, mates) for values, mates in zip(drivers, driven, strict=True)),
+        driven=tuple(_usable(values, stages, mates) for values, mates in zip(driven, drivers, strict=True)),
         ordered=any(not np.array_equal(v, positions[k % 2]) for k, v in enumerate(positions)),
         allowed=allowed,
         by_mesh=by_mesh,
+        sound=sound,
+        idled=idled,
+        idlers=idlers,
+        idler_counts=idler_counts,
         stock=stock,
         reverted=problem.reverted,
         modules=modules,
         pitches=np.array(problem.pitches(), np.int64),
-        stage_counts=_stage_counts(problem, sum(counts.values()) if counts else None),
+        stage_counts=stage_counts,
         most_total=problem.max_total_teeth,
         by_size=problem.rank_by == "size" and problem.tolerance is not None,
         largest=problem.size == "largest_gear",
@@ -117,21 +146,27 @@ def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, 
     return tuple(found)
 
 
-def _allowed_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArray[np.bool_]:
-    """``allowed[a, b]`` for a driver of a teeth and a driven gear of b."""
+def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArray[np.bool_]:
+    """Which gears may mesh with one another."""
     a, b = np.ogrid[: most + 1, : most + 1]
-    allowed = np.minimum(a, b) > 0
+    sound = np.minimum(a, b) > 0
     if coprime:
-        allowed &= np.gcd(a, b) == 1
-    if problem.max_stage_ratio is not None:
-        limit = decimal(problem.max_stage_ratio)
-        mate = np.array([min(most, math.floor(n * limit)) for n in range(most + 1)])
-        allowed &= np.maximum(a, b) <= mate[np.minimum(a, b)]
+        sound &= np.gcd(a, b) == 1
     if problem.interference == "refuse":
-        sound = [largest_gear(n, math.radians(problem.pressure_angle)) if n else 0 for n in range(most + 1)]
-        bound = np.array([most if n is None else n for n in sound])
-        allowed &= np.maximum(a, b) <= bound[np.minimum(a, b)]
-    return allowed
+        largest = [largest_gear(n, math.radians(problem.pressure_angle)) if n else 0 for n in range(most + 1)]
+        bound = np.array([most if n is None else n for n in largest])
+        sound &= np.maximum(a, b) <= bound[np.minimum(a, b)]
+    return sound
+
+
+def _within_stage_ratio(problem: GearTrainProblem, most: int) -> NDArray[np.bool_]:
+    """Which gears may be driver and driven gear of a stage, for the limit of its ratio."""
+    a, b = np.ogrid[: most + 1, : most + 1]
+    if problem.max_stage_ratio is None:
+        return np.minimum(a, b) >= 0
+    limit = decimal(problem.max_stage_ratio)
+    mate = np.array([min(most, math.floor(n * limit)) for n in range(most + 1)])
+    return np.asarray(np.maximum(a, b) <= mate[np.minimum(a, b)], np.bool_)
 
 
 def _usable(values: Integers, allowed: NDArray[np.bool_], mates: Integers) -> Integers:

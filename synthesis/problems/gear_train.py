@@ -102,7 +102,9 @@ class GearTrainProblem(StatedProblem):
     )
     direction: Literal["any", "same", "opposite"] = Field(
         default="any",
-        description="How input and output turn. With `any` a positive ratio states the size only and no idler is used.",
+        description="How input and output turn. With `any` a positive ratio states the size only and no idler is used. "
+        "An idler has teeth within the ranges of the other gears, or is one more gear of the stock; of its stage the "
+        "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] = 3
     teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] = Field(

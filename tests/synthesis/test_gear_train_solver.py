@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from fractions import Fraction
 from typing import Any
@@ -67,6 +68,60 @@ def test_an_idler_keeps_the_demands_on_meshes() -> None:
 def test_an_idler_comes_from_the_stock() -> None:
     result = solved(ratio=3, direction="same", max_stages=1, stock=[20, 60, 33])
     assert result.designs[0].mechanism.idlers == [Idler(stage=1, teeth=33)]
+
+
+def test_driver_and_driven_gear_of_an_idler_need_not_mesh() -> None:
+    """With a common divisor between themselves, or too different for each other, they mesh with the idler only."""
+    hunting = solved(ratio=2, direction="same", max_stages=1, teeth={"min": 12, "max": 24}, hunting_tooth="require")
+    assert hunting.search.complete
+    assert hunting.search.ties == 1
+    (stage,), (idler,) = hunting.designs[0].mechanism.stages, hunting.designs[0].mechanism.idlers
+    assert (stage.driver, stage.driven) == (12, 24)
+    assert math.gcd(12, idler.teeth) == math.gcd(24, idler.teeth) == 1
+    narrow = {"teeth": [{"min": 14, "max": 14}, {"min": 40, "max": 40}], "max_stages": 1, "interference": "refuse"}
+    assert solved(ratio="20/7", **narrow).designs == []
+    saved = solved(ratio="20/7", direction="same", **narrow).designs[0]
+    assert not any(mesh.interferes for mesh in saved.metrics.meshes)
+
+
+@pytest.mark.parametrize("stock", [[12, 13, 14, 15, 16, 18, 20], [10, 12, 15, 18, 20, 24, 24], [11, 12, 13, 13, 26]])
+@pytest.mark.parametrize("ratio", ["-1", "-1.2", "-5/3"])
+def test_a_train_that_takes_no_idler_gives_way_to_the_next(stock: list[int], ratio: str) -> None:
+    """Every choice of five gears in every order, against the ranking and the count of ties."""
+    seen: dict[tuple[object, ...], Fraction] = {}
+    for a, b, c, d in itertools.permutations(stock, 4):
+        spare = list(stock)
+        for n in (a, b, c, d):
+            spare.remove(n)
+        takes = any(math.gcd(a, n) == math.gcd(n, b) == math.gcd(c, d) == 1 for n in spare)
+        if takes:
+            error = abs(Fraction(b * d, a * c) / abs(Fraction(ratio)) - 1)
+            seen[tuple(sorted((a, c))), tuple(sorted((b, d)))] = error
+    one = {Fraction(b, a) for a, b in itertools.permutations(stock, 2) if math.gcd(a, b) == 1}
+    errors = sorted([*seen.values(), *(abs(r / abs(Fraction(ratio)) - 1) for r in one)])
+    result = solved(ratio=ratio, max_stages=2, stock=stock, hunting_tooth="require", tolerance=0.2, max_designs=1)
+    assert result.search.complete
+    within = [error for error in errors if error <= Fraction(1, 5)]
+    assert [abs(design.metrics.relative_error) for design in result.designs] == pytest.approx(
+        [float(error) for error in within[:1]], abs=1e-15
+    )
+    assert result.search.ties == sum(error == within[0] for error in within)
+
+
+def test_hunting_teeth_stand_for_both_pairings() -> None:
+    result = solved(ratio="841/1000", hunting_tooth="prefer", max_stages=2, stock=[28, 23, 33, 16, 11, 18, 26, 31])
+    gears = [
+        (sorted(s.driver for s in d.mechanism.stages), sorted(s.driven for s in d.mechanism.stages))
+        for d in result.designs
+    ]
+    assert all(pair not in gears[:k] for k, pair in enumerate(gears))
+
+
+def test_as_many_trains_as_are_wanted() -> None:
+    """Fewer than are wanted lie within the first window of a search without a tolerance."""
+    result = solved(ratio="2.51", max_stages=1, teeth={"min": 12, "max": 35}, max_designs=20)
+    errors = sorted(abs(Fraction(b, a) / Fraction("2.51") - 1) for a in range(12, 36) for b in range(12, 36))[:20]
+    assert [abs(d.metrics.relative_error) for d in result.designs] == pytest.approx([float(e) for e in errors])
 
 
 def test_reverted_with_modules_of_its_stages() -> None:
