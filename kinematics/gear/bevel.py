@@ -33,9 +33,9 @@ def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
 class BevelPair:
     """A pinion and a gear of straight teeth at a right angle, with the pinion's addendum lengthened for strength.
 
-    Depths are those of the Gleason system (Shigley & Mischke, Mechanical Engineering Design, Table 13-3; Rao, Sec. 7.8),
-    with the diametral pitch P of the large end: working depth 2/P, whole depth 2.188/P + 0.005 (a length in the unit of
-    1/P), gear addendum (0.540 + 0.460/G²)/P. Equal gears, G = 1, have equal addenda 1/P.
+    Depths are those of the Gleason system (Shigley & Mischke, Mechanical Engineering Design, Tab. 13-3; Rao, 7.8). With
+    the diametral pitch P of the large end: working depth 2/P, whole depth 2.188/P + 0.005 (a length in the unit of the
+    distances), gear addendum (0.540 + 0.460/G²)/P. Equal gears, G = 1, have equal addenda 1/P.
     """
 
     pinion: int

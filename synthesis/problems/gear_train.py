@@ -40,6 +40,9 @@ ExactRatio = Annotated[
 ]
 """A number or a text of the grammar of :mod:`synthesis.gear_train.targets`."""
 
+Pitch = Annotated[PositiveNumber, Field(ge=1e-6, le=1e6)]
+"""A module or diametral pitch; beyond, lengths of trains would leave the numbers there are. Finer is a typing error."""
+
 ToothNumber = Annotated[Count, Field(ge=FEWEST_TEETH, le=MOST_TEETH)]
 
 
@@ -131,12 +134,12 @@ class GearTrainProblem(StatedProblem):
     reverted: Flag = Field(
         default=False, description="Every stage has the same centre distance, so that output and input can be coaxial."
     )
-    module: PositiveNumber | Annotated[list[PositiveNumber], Field(min_length=1, max_length=8)] | None = Field(
+    module: Pitch | Annotated[list[Pitch], Field(min_length=1, max_length=8)] | None = Field(
         default=None,
         description="Module in length units, 1 if left out; a list: for a reverted train what every stage may choose "
         "from, otherwise the modules of stage 1, 2, ...",
     )
-    diametral_pitch: PositiveNumber | None = Field(
+    diametral_pitch: Pitch | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
     )
     pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = Field(default=20.0, description="Degrees.")

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.gear.gearbox import preferred_numbers, preferred_ratio, progression
 from synthesis.problems.base import Contradiction, Count, Flag, PositiveNumber, StatedProblem, Statement
+from synthesis.problems.gear_train import Pitch
 from synthesis.problems.planetary_train import ToothRange
 
 MOST_SPEEDS = 36
@@ -110,7 +111,7 @@ class GearboxProblem(StatedProblem):
     tolerance: Annotated[float, Field(strict=True, gt=0.0, lt=0.5)] | None = Field(
         default=None, description="Largest |ln(speed/nominal)|; null: a tenth of a step, 0.1 (φ − 1)."
     )
-    module: PositiveNumber = Field(default=1.0, description="Of all gears, in the length unit.")
+    module: Pitch = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
     rank_by: Literal["error", "size"] = Field(
         default="error", description="error: least deviation first. size: least sum of tooth sums first."
@@ -182,7 +183,7 @@ class LayshaftProblem(StatedProblem):
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of any gear; null takes the best there is."
     )
-    module: PositiveNumber = Field(default=1.0, description="Of all gears, in the length unit.")
+    module: Pitch = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
     rank_by: Literal["error", "size"] = Field(
         default="error", description="Least largest error first, or least tooth sum within the tolerance first."

@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.gear_train.targets import parse_target
 from synthesis.problems.base import Contradiction, Count, PositiveNumber, StatedProblem, Statement
-from synthesis.problems.gear_train import ExactRatio
+from synthesis.problems.gear_train import ExactRatio, Pitch
 
 Teeth = Annotated[Count, Field(ge=4, le=1000)]
 
@@ -108,7 +108,7 @@ class PlanetaryProblem(StatedProblem):
     output: str | None = Field(default=None, description="The member taken off; null tries all.")
     fixed: str | None = Field(default=None, description="The member held; null tries all.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
-    module: PositiveNumber = Field(default=1.0, description="Module of all gears, in the length unit.")
+    module: Pitch = Field(default=1.0, description="Module of all gears, in the length unit.")
     pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of the ratio; null takes the best there is."

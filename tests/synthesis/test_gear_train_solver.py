@@ -296,6 +296,8 @@ def test_contradictions_are_told_by_field(fields: dict[str, Any], path: str) -> 
         {"tolerance": -0.1},
         {"max_stage_ratio": 0.5},
         {"pressure_angle": 5.0},
+        {"module": 1e-300},
+        {"diametral_pitch": 5e-324},
     ],
 )
 def test_ill_formed_statements_are_refused(fields: dict[str, Any]) -> None:
