@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -25,6 +26,7 @@ from synthesis.kinds import Progress
 from synthesis.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
 from synthesis.motion.choices import side_dyads
 from synthesis.motion.dyads import Dyads
+from synthesis.motion.sections import SliderDyad
 from synthesis.motion.sliders import Sliders, sliders
 from synthesis.motion.task import Complex, MotionTask, Real, motion_task
 from synthesis.problems import DyadChoices, MotionProblem, whole_point
@@ -78,6 +80,9 @@ LINKS, SLIDERS = 500, 160
 ALONE = 6000
 """Dyads of a side that is drawn where the other is determined."""
 
+_OPEN = {"degenerate", "residual", "cannot_be_driven", "outranked"}
+"""Reasons that say what was not shown of a pair, not what cannot be."""
+
 
 def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: Progress) -> MotionResult:
     """Linkages with the slider that is asked for on one side, for two to five positions."""
@@ -107,19 +112,64 @@ def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progres
     """
     if result.search.candidates and not result.search.complete:
         return result
-    for kind in ("PR", "RP"):
+    for kind, asked in _asking_for_sliders(problem):
+        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        if found.designs:
+            text = f"{result.summary} A slider does what pins cannot: {found.summary}"
+            return found.model_copy(update={"summary": text})
+    return result
+
+
+def beside_sliders(
+    problem: MotionProblem, result: MotionResult, known: tuple[SliderDyad, ...], progress: Progress
+) -> MotionResult:
+    """The answer to a problem whose dyads are all known, where some of them, ``known``, are sliders.
+
+    The linkages with a slider are as good as the others. Each way of driving one counts as a candidate. Choices that
+    belong to pins leave sliders out.
+    """
+    parts: list[MotionResult] = []
+    kinds = {slider.kind for slider in known}
+    met: dict[str, bool] = {}
+    for kind, asked in _asking_for_sliders(problem):
+        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        met[kind] = met.get(kind, False) or found.search.candidates > 0
+        if found.search.candidates:
+            parts.append(found)
+    if not met:
+        return result
+    missing = {kind for kind in kinds if not met.get(kind, True)}
+    rejected = Counter(result.search.rejected)
+    for part in parts:
+        rejected.update(part.search.rejected)
+    designs = [*result.designs, *(design for part in parts for design in part.designs)]
+    accepted = sum(part.search.accepted for part in parts)
+    search = result.search.model_copy(
+        update={
+            "method": f"{result.search.method}, slider_search",
+            "complete": result.search.complete and not missing and not _OPEN & rejected.keys(),
+            "candidates": result.search.candidates + sum(part.search.candidates for part in parts),
+            "accepted": result.search.accepted + accepted,
+            "rejected": dict(rejected),
+        }
+    )
+    noun = "linkage with a slider carries" if accepted == 1 else "linkages with a slider carry"
+    text = f"{result.summary} {accepted or 'No'} {noun} the body through all positions."
+    designs = ranked(designs, problem.rank_by)[: problem.max_designs]
+    return result.model_copy(update={"designs": designs, "search": search, "summary": text})
+
+
+def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", "RP"], MotionProblem]]:
+    """The problem with a slider asked for on each side that is open to it."""
+    kinds: tuple[Literal["PR", "RP"], ...] = ("PR", "RP")
+    for kind in kinds:
         for name in ("output_side", "input_side") if kind == "PR" else ("output_side",):
             choices: DyadChoices = getattr(problem, name)
             if choices.dyad != "any" or problem.ground_line is not None:
                 continue
             asked = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
-            if asked.contradictions():
-                continue
-            found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
-            if found.designs:
-                text = f"{result.summary} A slider does what pins cannot: {found.summary}"
-                return found.model_copy(update={"summary": text})
-    return result
+            if not asked.contradictions():
+                yield kind, asked
 
 
 def _inside(problem: MotionProblem, task: MotionTask, found: Sliders, kind: str) -> NDArray[np.bool_]:
@@ -147,7 +197,8 @@ def slider_linkages(
     driving = problem.input_side.dyad == "PR"
     limit = problem.constraints.min_transmission_angle
     progress(0.3, f"screening {len(links.fixed) * len(sliders.points)} pairs of links and sliders")
-    wanted = USABLE_TRANSMISSION_ANGLE if limit is None else limit
+    few = len(links.fixed) * len(sliders.points) <= LEAST_ATTEMPTS  # then all are driven
+    wanted = (0.0 if few else USABLE_TRANSMISSION_ANGLE) if limit is None else limit
     screened = _screen(problem, task, links, sliders, kind, driving, wanted)
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)

@@ -25,7 +25,7 @@ from synthesis.motion.driver_dyad import undriven, with_driver_dyads
 from synthesis.motion.dyads import DyadConditions, Dyads
 from synthesis.motion.least_squares import solve_least_squares
 from synthesis.motion.screening import SHORTEST_LINK, Screening, demands, screen
-from synthesis.motion.slider_search import solve_sliders, with_sliders
+from synthesis.motion.slider_search import beside_sliders, solve_sliders, with_sliders
 from synthesis.motion.task import MotionTask, motion_task
 from synthesis.problems import Constraints, DyadChoices, MotionProblem, whole_point
 from synthesis.ranking import distinct, ranked
@@ -109,7 +109,10 @@ def _solve_fourbars(problem: MotionProblem, progress: Progress) -> MotionResult:
     for name, cloud in zip(("input", "output"), clouds, strict=True):
         if not len(cloud.dyads.fixed):
             return pairs.none(cloud, name)
-    return pairs.searched(progress) if pairs.sampled else pairs.determined(progress)
+    if pairs.sampled:
+        return pairs.searched(progress)
+    result = pairs.determined(progress)
+    return beside_sliders(problem, result, pairs.sliders, progress) if pairs.sliders else result
 
 
 class _Pairs:
@@ -121,6 +124,7 @@ class _Pairs:
         self.sampled = inputs.sampled or outputs.sampled
         self.complete = inputs.complete and outputs.complete
         self.alike = inputs is outputs
+        self.sliders = inputs.sliders + outputs.sliders
         self.remarks = _remarks(problem, inputs, outputs)
         self.accepted = 0
         self.passed: list[LinkageDesign] = []

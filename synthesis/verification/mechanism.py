@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, barker_class
@@ -81,8 +81,8 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism) -> Linkag
     try:
         mechanism = _GIVEN.validate_python(told).mechanism()
         found = branches(mechanism)
-    except (MechanismError, DimensionError, TopologyError):
-        return None
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None  # ValidationError: a length beyond what any statement may hold
     here = holding_reference(mechanism, found)
     if here is None:
         return None

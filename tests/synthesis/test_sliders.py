@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import Any
 
@@ -197,3 +198,53 @@ def test_similar_tasks_have_similar_slider_points(turn: float, power: float, x: 
     one, other = (t.to_problem(complex(found(p, inverted=False).points[0]))
                   for t, p in zip(tasks, (four, moved), strict=True))  # fmt: skip
     assert other == pytest.approx(factor * one + shift, rel=1e-8, abs=1e-8 * abs(factor))
+
+
+def test_a_slider_of_five_positions_is_among_the_answers_beside_fourbars() -> None:
+    """A slider-crank's own positions: its pin B is a dyad like the three with two pins."""
+    o2, a, line = 1.3 + 0.4j, 2.1 + 1.9j, 0.4
+    along = cmath.exp(1j * line)
+    b = 5.2 + 0.3j
+    rod = abs(b - a)
+    positions = []
+    for turn in (0.0, -0.25, -0.6, -0.85, -1.2):
+        pin = o2 + (a - o2) * cmath.exp(1j * turn)
+        q = (pin - b) / along
+        slid = b + along * (q.real + math.sqrt(rod**2 - q.imag**2))
+        body = (slid - pin) / (b - a)
+        p = pin + body * (1.0 + 1.5j)
+        positions.append({"x": p.real, "y": p.imag, "angle": math.degrees(cmath.phase(body))})
+    problem = parse_problem({"kind": "motion", "positions": positions, "max_designs": 50})
+    result = solve(problem, lambda fraction, message: None)
+    assert isinstance(result, MotionResult)
+    search = result.search
+    assert search.complete
+    assert search.candidates == search.accepted + sum(search.rejected.values())
+    assert "fourbar" in {design.mechanism.type for design in result.designs}
+    wanted = np.array([o2, a, b])
+    gaps = []
+    for design in result.designs:
+        assert_drives_through(design, problem)
+        joints = design.mechanism.skeleton.joints
+        if design.mechanism.type == "slider_crank":
+            gaps.append(np.abs(np.array([complex(*joints[name]) for name in ("O2", "A", "B")]) - wanted).max())
+    assert min(gaps) < 1e-7
+
+
+def test_a_straight_translation_is_fitted_without_endless_links() -> None:
+    """Links of the nearest linkages grow beyond all statements there: they are refused, and the answer is honest."""
+    positions = [{"x": 10.0 * k, "y": 0.0, "angle": 0.0} for k in range(9)]
+    result = solve(parse_problem({"kind": "motion", "positions": positions}), lambda fraction, message: None)
+    assert isinstance(result, MotionResult)
+    assert not result.search.complete
+    assert all(design.verification.passed for design in result.designs)
+
+
+def test_a_slider_that_the_statement_leaves_out_is_told_of() -> None:
+    """A ground line is for pins; the block that could stand on it is told of, and nothing is called impossible."""
+    positions = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 30.0, "y": 18.0, "angle": -20.0},
+                 {"x": 55.0, "y": 22.0, "angle": -42.0}, {"x": 75.0, "y": 15.0, "angle": -60.0}]  # fmt: skip
+    result = solved(problem_of(positions, ground_line={"point": [0.0, 0.0], "angle": 90.0}))
+    assert result.designs == []
+    assert "a slider (RP)" in result.summary
+    assert "no design exists" not in result.summary
