@@ -133,6 +133,9 @@ class GearboxProblem(StatedProblem):
         if self.structure is not None and math.prod(self.structure) != self.speeds.count:
             detail = f"gives {math.prod(self.structure)} speeds, but speeds.count is {self.speeds.count}"
             found.append(Contradiction("/structure", detail))
+        if self.structure is not None and self.structure.count(1) > 1:
+            # Every ratio of one fixed stage goes with every ratio of the other: minutes, and more than the memory.
+            found.append(Contradiction("/structure", "at most one fixed stage; join the others to it"))
         if self.structure is not None and self.fixed_stage:
             found.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
         if self.speeds.progression_ratio ** (self.speeds.count - 1) > 1e6:

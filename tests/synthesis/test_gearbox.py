@@ -216,6 +216,7 @@ def test_impossible_gearboxes_are_proven(stated: dict[str, Any], words: str) -> 
     ("stated", "path"),
     [
         ({"structure": [2, 2]}, "/structure"),
+        ({"structure": [1, 1, 3, 2]}, "/structure"),
         ({"structure": [3, 2], "fixed_stage": True}, "/fixed_stage"),
         ({"teeth": {"min": 40, "max": 30}}, "/teeth/max"),
         ({"tooth_sum": {"min": 90, "max": 500}}, "/tooth_sum/max"),
