@@ -131,12 +131,15 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
 
 
 def undriven(problem: MotionProblem) -> MotionProblem:
-    """The problem of the fourbar alone: its own input need not turn through."""
+    """The problem of the fourbar alone: pins on both sides, and its own input need not turn through."""
+    pins = {"dyad": "RR"}
     return problem.model_copy(
         update={
             "driver_dyad": False,
             "max_designs": min(max(SPARE * problem.max_designs, LEAST_SPARE), 200),
             "include_failed": False,
+            "input_side": problem.input_side.model_copy(update=pins),
+            "output_side": problem.output_side.model_copy(update=pins),
             "constraints": problem.constraints.model_copy(update={"full_rotation": False}),
         }
     )
