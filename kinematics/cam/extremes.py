@@ -30,6 +30,10 @@ ROUNDED = 8.0 * float(np.finfo(np.float64).eps)
 HALVINGS = 24
 """At most; a kink or a jump inside a piece, which no polynomial fits, is closed in to 1e-7 of the piece."""
 
+CROWDED = 4096
+"""Parts still open, beyond those that the breaks ask for, at which the rest is taken as it is: kinks leave a few open
+in each round, and only a function that is rounding from end to end leaves so many, which no halving mends."""
+
 NEGLIGIBLE = 1e-15
 """Share of a polynomial's largest coefficient below which a leading one is rounding and is dropped."""
 
@@ -129,7 +133,7 @@ def _fit(function: Function, breaks: Real) -> tuple[Real, Real, Real, NDArray[np
         # The argument is rounded too, which no halving mends: on a short steep piece its rounding is all there is left.
         rounding = ROUNDED * np.abs(middle) / half * np.ptp(values, axis=1)
         good = np.abs(series[:, -3:]).max(axis=1) <= RESOLVED * size + rounding
-        if step == HALVINGS:
+        if step == HALVINGS or len(low) > CROWDED + 2 * len(breaks):
             good[:] = True
         done.append((low[good], high[good], series[good], owner[good]))
         bad = ~good

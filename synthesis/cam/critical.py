@@ -98,4 +98,5 @@ def smallest_allowed(
 
 
 def _at_radius(excess: Callable[[Motion, Real], Real], radius: Real, motion: Motion) -> Real:
-    return excess(motion, radius)
+    """The excess and one, of the size of the limit: the excess alone is rounding where the limit is just reached."""
+    return excess(motion, radius) + 1.0

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics.cam.extremes import extremes, roots
+from kinematics.cam.extremes import extremes, roots, stationary_points
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.program import Program
 from kinematics.cam.segments import (
@@ -254,3 +254,16 @@ def test_roots_of_a_wave() -> None:
     )
     assert len(roots(lambda x: 0.0 * x, np.array([0.0, 1.0]))) == 0
     assert len(roots(lambda x: 2.0 + x, np.array([0.0, 1.0]))) == 0
+
+
+def test_a_function_that_is_rounding_is_not_halved_for_ever() -> None:
+    asked = 0
+
+    def rounding(at: np.ndarray) -> np.ndarray:
+        nonlocal asked
+        asked += at.size
+        return (1.0 + 1e-12 * np.sin(7.0 * at)) - 1.0
+
+    _, values = stationary_points(rounding, np.array([0.0, 1.0, 3.0]))
+    assert asked < 500_000
+    assert values.max() == pytest.approx(1e-12, rel=1e-3)
