@@ -139,7 +139,7 @@ def _segments(design: CamDesign) -> Block:
         place = f"{length(segment.start, digits=4)}–{length(segment.start + segment.angle, digits=4)}°"
         peaks = (segment.peak_velocity, segment.peak_acceleration)
         law = clean(segment.law.replace("_", " "))
-        name = segment.motion if segment.motion == law else f"{segment.motion}, {law}"
+        name = law if segment.motion.replace("_", " ") == law else f"{segment.motion}, {law}"
         return [
             f"{k + 1}",
             name,
