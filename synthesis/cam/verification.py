@@ -2,8 +2,8 @@
 
 Nothing that a solver computed is taken over but the answer itself. The points of the profile alone give
 displacement, pressure angle and radius of curvature at cam angles four times as close as the design's; the
-displacement is compared with the program's table, and the program's table with what the problem states: laws by the
-analysis core, rests, heights, conditions, bands, and limits on the motion.
+displacement is compared with the program's table, its quintic between, and the program's table with what the problem
+states: laws by the analysis core, rests, heights, conditions, bands, and limits on the motion.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from kinematics.cam.segments import dwell, law_segment, polynomial_segment
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.cam.mechanism import core_follower, profile_points, table_angles
 from synthesis.designs import Check, Verification
-from synthesis.designs.cam import CamMechanism
+from synthesis.designs.cam import CamMechanism, ProgramTable
 from synthesis.problems.cam import CamProblem, Dwell, Move, OscillatingRoller, Polynomial, TranslatingRoller
 
 Real = NDArray[np.float64]
@@ -51,8 +51,8 @@ the acceleration bends, its local fifth degree is off by that much."""
 class Measured:
     """What the finished profile does, at the finer cam angles.
 
-    ``off`` is the deviation of the displacement from the program's table, at its angles, as a share of the lift; NaN
-    where the follower touches nothing.
+    ``off`` is the greatest deviation of the displacement from the program, at each angle of its table and from there to
+    the next, as a share of the lift; NaN where the follower touches nothing.
     """
 
     angle: Real
@@ -92,7 +92,8 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     lift = float(np.ptp(table)) or 1.0
     checks = _program_checks(problem, mechanism, table, lift)
     touches = bool(contact.valid.all())
-    off = np.abs(contact.s[::FINER] - table) / lift
+    program = _between(table_angles(mechanism), table, mechanism.program)
+    off = np.abs(contact.s - program).reshape(-1, FINER).max(axis=1) / lift
     gap = float(off.max()) if touches else math.inf
     allowed = REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED
     checks += [
@@ -126,6 +127,25 @@ def _finer(angle: Real) -> Real:
     """Each interval of a closed series of angles in equal parts."""
     step = np.diff(np.append(angle, TURN + angle[0]))
     return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
+
+
+def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
+    """Displacement at the finer angles, from the table's s, v, a at both ends of each interval: its quintic.
+
+    The profile's points are the contacts at the table's angles, so that between them alone it can go astray.
+    """
+    step = np.diff(np.append(angle, TURN + angle[0]))[:, None]
+    begin = s[:, None], step * np.array(program.v)[:, None], step**2 * np.array(program.a)[:, None]
+    end = tuple(np.roll(values, -1, axis=0) for values in (s, np.array(program.v), np.array(program.a)))
+    rest = end[0][:, None] - begin[0] - begin[1] - 0.5 * begin[2]
+    rest1 = step * end[1][:, None] - begin[1] - begin[2]
+    rest2 = step**2 * end[2][:, None] - begin[2]
+    u = np.arange(FINER) / FINER
+    third = 10.0 * rest - 4.0 * rest1 + 0.5 * rest2
+    fourth = -15.0 * rest + 7.0 * rest1 - rest2
+    fifth = 6.0 * rest - 3.0 * rest1 + 0.5 * rest2
+    found = begin[0] + u * (begin[1] + u * (0.5 * begin[2] + u * (third + u * (fourth + u * fifth))))
+    return np.asarray(found.reshape(-1), np.float64)
 
 
 def _curvature(contour: Contour) -> Real:
@@ -172,6 +192,10 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
         if limits.face_width is not None:
             checks.append(_at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK))
         base = mechanism.base_radius or 0.0
+    pivot = mechanism.follower.pivot_distance
+    if pivot is not None:
+        # The cam turns all around, so that its greatest radius comes to where the arm is borne.
+        checks.append(Check(name="clears_pivot", passed=measured.radius < pivot, value=measured.radius, limit=pivot))
     if limits.hub_radius > 0.0:
         checks.append(_at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK))
     if limits.size is not None:

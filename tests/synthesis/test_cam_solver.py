@@ -353,3 +353,39 @@ def test_smallest_flat_faced_cam_over_all_motions():
     best = only(answered(problem))
     assert best.optimality.gap <= 2e-3
     assert best.metrics.face_width <= 60.0 * 1.002
+
+
+def test_a_lift_that_vanishes_beside_the_roller_is_solved():
+    """The pitch curve is a circle but for rounding, and the limit on its curvature is just reached all around."""
+    small = moves("modified_sine", "cycloidal", 1e-5, 90.0, 90.0)
+    design = only(answered(cam(segments=small, follower={"type": "translating_roller", "roller_radius": 10.0})))
+    assert design.mechanism.prime_radius == pytest.approx(20.0, rel=1e-5)
+
+
+def test_a_cam_that_comes_to_the_pivot_of_its_arm_is_refused():
+    segments = moves("modified_sine", "cycloidal", 9.0, 30.0, 55.0)
+    follower = {"type": "oscillating_flat", "pivot_distance": 140.0, "face_offset": -7.0, "sense": -1}
+    limits = {"hub_radius": 137.0}
+    shown = answered(cam(segments=segments, follower=follower, limits=limits, include_failed=True))
+    (design,) = shown.designs
+    profile = design.mechanism.profile
+    assert max(math.hypot(x, y) for x, y in zip(profile.x, profile.y, strict=True)) > 140.0
+    assert [check.name for check in design.verification.checks if not check.passed] == ["clears_pivot"]
+
+
+def test_the_profile_is_held_against_the_program_between_its_points():
+    """Two hundred moves of less than two degrees, of which a profile of few points shows the ends alone."""
+    segments = [
+        {"motion": "rise" if k % 2 == 0 else "fall", "angle": 1.8, "lift": 1.0, "law": "polynomial_4567"}
+        for k in range(200)
+    ]
+    problem = cam(segments=segments, limits={"pressure_angle": 60.0, "curvature_ratio": 0.0})
+    design = only(answered(problem))
+    sparse = design.mechanism.model_copy(deep=True)
+    names = ("x", "y", "angle")
+    keep = [k for k, angle in enumerate(sparse.program.angle) if abs(angle / 0.9 - round(angle / 0.9)) < 1e-6]
+    for curve, fields in ((sparse.profile, names), (sparse.program, ("angle", "s", "v", "a", "j"))):
+        for name in fields:
+            setattr(curve, name, [getattr(curve, name)[k] for k in keep])
+    verdict, _ = verify(problem, sparse)
+    assert "reproduces_program" in [check.name for check in verdict.checks if not check.passed]
