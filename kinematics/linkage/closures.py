@@ -24,7 +24,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from kinematics.linkage.mechanism import GROUND, Mechanism, Slide
+from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide
 
 RECENT = 8
 """Mechanisms whose order of closures is remembered: root finding asks for it dozens of times."""
@@ -64,26 +64,39 @@ class Decomposition(NamedTuple):
 @lru_cache(maxsize=RECENT)
 def decompose(mechanism: Mechanism) -> Decomposition:
     """Order the closures of a mechanism from its input."""
-    known = [GROUND] if mechanism.driven_by_slide else [GROUND, mechanism.input]
-    joints = {joint for link in known for joint in mechanism.links[link]}
-    if mechanism.driven_by_slide:
-        joints.add(mechanism.input)
+    return order_of_closures(mechanism.links, mechanism.input, mechanism.slides, mechanism.gears)
+
+
+def order_of_closures(
+    links: dict[str, tuple[str, ...]], input: str, slides: tuple[Slide, ...], gears: tuple[GearPair, ...]
+) -> Decomposition:
+    """The same from what joins the links alone."""
+    known = [GROUND, input] if input in links else [GROUND]
+    joints = {joint for link in known for joint in links[link]}
+    if input not in links:
+        joints.add(input)
     steps: list[Step] = []
     while True:
-        step = _next(mechanism, known, joints)
+        step = _next(links, slides, gears, known, joints)
         if step is None:
             break
         steps.append(step)
         for link in (step.link, step.other if step.kind == "RRR" else ""):
             if link:
                 known.append(link)
-                joints.update(mechanism.links[link])
-    return Decomposition(tuple(steps), tuple(link for link in mechanism.links if link not in known))
+                joints.update(links[link])
+    return Decomposition(tuple(steps), tuple(link for link in links if link not in known))
 
 
-def _next(mechanism: Mechanism, known: list[str], joints: set[str]) -> Step | None:
-    unknown = [link for link in mechanism.links if link not in known]
-    pins = {link: [joint for joint in mechanism.links[link] if joint in joints] for link in unknown}
+def _next(
+    links: dict[str, tuple[str, ...]],
+    slides: tuple[Slide, ...],
+    gears: tuple[GearPair, ...],
+    known: list[str],
+    joints: set[str],
+) -> Step | None:
+    unknown = [link for link in links if link not in known]
+    pins = {link: [joint for joint in links[link] if joint in joints] for link in unknown}
     for link in unknown:
         if len(pins[link]) >= 2:
             return Step("carried", link, pins[link][0], pins[link][1])
@@ -91,19 +104,19 @@ def _next(mechanism: Mechanism, known: list[str], joints: set[str]) -> Step | No
         if not pins[link]:
             continue
         pin = pins[link][0]
-        for gear in mechanism.gears:
+        for gear in gears:
             if gear.second == link and gear.first in known:
                 return Step("gear", link, pin, other=gear.first, ratio=gear.ratio)
             if gear.first == link and gear.second in known and gear.ratio != 0.0:
                 return Step("gear", link, pin, other=gear.second, ratio=1.0 / gear.ratio)
-        for slide in mechanism.slides:
-            if slide.link in known and slide.joint in mechanism.links[link] and slide.joint not in joints:
+        for slide in slides:
+            if slide.link in known and slide.joint in links[link] and slide.joint not in joints:
                 return Step("RRP", link, pin, slide.joint, slide=slide)
             if slide.link == link and slide.joint in joints and slide.joint != pin:
                 return Step("RPR", link, pin, slide.joint, slide=slide)
     for link in unknown:
         for other in unknown:
-            shared = [j for j in mechanism.links[link] if j in mechanism.links[other] and j not in joints]
+            shared = [j for j in links[link] if j in links[other] and j not in joints]
             if link < other and pins[link] and pins[other] and shared:
                 return Step("RRR", link, pins[link][0], shared[0], other=other, other_pin=pins[other][0])
     return None

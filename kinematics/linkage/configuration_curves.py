@@ -21,15 +21,18 @@ the curves that it comes from.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from kinematics.linkage.closures import Decomposition
-from kinematics.linkage.drive import drive
+from kinematics.linkage.drive import drive_one, margins_of_one
 from kinematics.linkage.mechanism import Mechanism, TopologyError
 from kinematics.linkage.positive_arcs import TOUCHES, Arc, Domain, positive_arcs
 
@@ -44,6 +47,11 @@ INSIDE = 1e-7
 
 SWING = 0.1
 """Directions of a link on the two assemblies at a change point that differ by this, radians, are not one."""
+
+
+SHAPES = ("straight", "round", "bend")
+STRAIGHT, ROUND, BEND = range(3)
+"""How the parameter of a curve gives that of the curve below, by number."""
 
 
 class Turn(NamedTuple):
@@ -98,27 +106,17 @@ class Curve:
     turns: tuple[Turn, ...]
     ends: tuple[End, ...]
 
+    @cached_property
+    def chain(self) -> Real:
+        """This curve and those below it but for the input's circle, shape (closures, 4): shape, a, b − a and sign."""
+        if self.below is None:
+            return np.empty((0, 4))
+        own = np.array([[SHAPES.index(self.shape), self.a, self.b - self.a, self.sign]])
+        return np.concatenate([own, self.below.chain])
+
     def place(self, v: Real) -> Place:
         """Input and signs along the curve."""
-        if self.below is None:
-            return Place(v, np.ones(len(v)), np.zeros(len(v)), np.empty((0, len(v)), np.int64))
-        if self.shape == "straight":
-            below, sign = self.below.place(v), np.full(len(v), self.sign)
-            return below._replace(signs=np.vstack([below.signs, sign]))
-        half = self.b - self.a
-        if self.shape == "round":
-            half *= 0.5
-            sine, cosine = np.sin(v), np.cos(v)
-            u, rate, second, sign = self.a + half * (1.0 - cosine), half * sine, half * cosine, sine
-        else:
-            u, rate, second, sign = self.a + half * v * v, 2.0 * half * v, np.full(len(v), 2.0 * half), v
-        below = self.below.place(u)
-        return Place(
-            below.theta,
-            below.rate * rate,
-            below.second * rate * rate + below.rate * second,
-            np.vstack([below.signs, np.where(sign >= 0.0, 1, -1)]),
-        )
+        return places(self.chain[None], np.zeros(len(v), np.int64), v)
 
     def input_at(self, v: float) -> float:
         """The input at one place."""
@@ -133,17 +131,15 @@ class Closures:
         self.position = [n for n, step in enumerate(self.steps) if step.has_two_solutions]
         self.links = [self.steps[n].link for n in self.position]
 
-    def signs(self, chosen: Rows) -> tuple[Rows, ...]:
+    def signs(self, chosen: Rows) -> Rows:
         """Signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
-        every = [np.ones(chosen.shape[1], np.int64)] * len(self.steps)
-        for row, sign in enumerate(chosen):
-            every[self.position[row]] = sign
-        return tuple(every)
+        every = np.ones((len(self.steps), chosen.shape[1]), np.int64)
+        every[self.position[: len(chosen)]] = chosen
+        return every
 
     def margin(self, level: int, place: Place) -> tuple[Real, Real]:
         """Margin of a closure and its rate by the curve's parameter."""
-        motion = drive(self.mechanism, place.theta[:, None], signs=self.signs(place.signs), order=1)
-        margin = motion.margins[self.links[level]][..., 0]
+        margin = margins_of_one(self.mechanism, place.theta, self.signs(place.signs))[level]
         return margin[0], margin[1] * place.rate
 
     def always_folded(self, level: int, curve: Curve) -> bool:
@@ -152,7 +148,7 @@ class Closures:
         if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
             return False
         signs = self.signs(np.vstack([place.signs, np.ones(len(place.theta), np.int64)]))
-        motion = drive(self.mechanism, place.theta[:, None], signs=signs, order=0)
+        motion = drive_one(self.mechanism, place.theta[:, None], signs, 0)
         if level + 1 == len(self.links):
             return bool(motion.valid.any())
         return bool(np.isfinite(motion.margins[self.links[level + 1]]).any())
@@ -161,7 +157,7 @@ class Closures:
         """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
         place = curve.place(np.array([v - 1e-7, v - 1e-7, v + 1e-7, v + 1e-7]))
         signs = np.vstack([place.signs, [1, -1, 1, -1]])
-        motion = drive(self.mechanism, place.theta[:, None], signs=self.signs(signs), order=0)
+        motion = drive_one(self.mechanism, place.theta[:, None], self.signs(signs), 0)
         angle = motion.angles[self.links[level]][0, :, 0]
         apart = np.abs(np.angle(np.exp(1j * (angle[::2] - angle[1::2]))))
         return bool(np.nanmax(apart, initial=0.0) > SWING)
@@ -178,9 +174,10 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
     waves = max([1.0, *(abs(gear.ratio) for gear in mechanism.gears), *(abs(1.0 / g.ratio) for g in mechanism.gears)])
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
     for level in range(len(closures.links)):
+        below = chains(curves) if curves else np.empty((0, 0, 4))
 
-        def margin(row: Rows, at: Real, level: int = level, curves: list[Curve] = curves) -> tuple[Real, Real]:
-            return closures.margin(level, places(curves, row, at))
+        def margin(row: Rows, at: Real, level: int = level, below: Real = below) -> tuple[Real, Real]:
+            return closures.margin(level, places(below, row, at))
 
         turns = [waves * _way(curve, period) / (2.0 * np.pi) for curve in curves]
         domains = [
@@ -191,26 +188,40 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
     return curves
 
 
-def places(curves: Sequence[Curve], row: Rows, at: Real) -> Place:
+def chains(curves: Sequence[Curve]) -> Real:
+    """What :func:`places` needs of curves of one closure; shape (curves, closures, 4)."""
+    return np.stack([curve.chain for curve in curves])
+
+
+def places(chains: Real, row: Rows, at: Real) -> Place:
     """Places on many curves."""
-    order = np.argsort(row, kind="stable")
-    found = [curves[n].place(at[part]) for n, part in _parts(row, order)]
-    back = np.empty(len(row), np.int64)
-    back[order] = np.arange(len(row))
-
-    def whole(columns: list[Real]) -> Real:
-        return np.asarray(np.concatenate(columns, axis=-1)[..., back])
-
-    signs = np.concatenate([place.signs for place in found], axis=1)[:, back]
-    return Place(
-        whole([p.theta for p in found]), whole([p.rate for p in found]), whole([p.second for p in found]), signs
-    )
+    place = np.empty((3, len(at)))
+    signs = np.empty((chains.shape[1], len(at)), np.int64)
+    _places(chains, row, at, place, signs)
+    return Place(place[0], place[1], place[2], signs)
 
 
-def _parts(row: Rows, order: Rows) -> list[tuple[int, Rows]]:
-    """Rows that occur, and where."""
-    cuts = np.flatnonzero(np.diff(row[order])) + 1
-    return [(int(row[part[0]]), part) for part in np.split(order, cuts)]
+@njit(cache=True, nogil=True)
+def _places(chains: Real, row: Rows, at: Real, place: Real, signs: Rows) -> None:
+    closures = chains.shape[1]
+    for n in range(len(at)):
+        u, rate, second = at[n], 1.0, 0.0
+        for link in range(closures):
+            shape, a, half, sign = chains[row[n], link]
+            if shape == STRAIGHT:
+                signs[closures - 1 - link, n] = int(sign)
+                continue
+            if shape == ROUND:
+                half *= 0.5
+                sign, cosine = math.sin(u), math.cos(u)
+                u, first, bend = a + half * (1.0 - cosine), half * sign, half * cosine
+            else:
+                sign = u
+                u, first, bend = a + half * u * u, 2.0 * half * u, 2.0 * half
+            signs[closures - 1 - link, n] = 1 if sign >= 0.0 else -1
+            second = bend * rate * rate + first * second
+            rate *= first
+        place[0, n], place[1, n], place[2, n] = u, rate, second
 
 
 def _way(curve: Curve, period: float) -> float:

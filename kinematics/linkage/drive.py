@@ -134,6 +134,27 @@ def drive(
     return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
 
 
+def drive_one(mechanism: Mechanism, input: Real, signs: Signs, order: int) -> MechanismMotion:
+    """One design at inputs (D, N) on assemblies (steps, D) each, by the input, unchecked: what root finding calls."""
+    program = program_of(mechanism)
+    inputs = np.zeros((order + 1, *input.shape))
+    inputs[0], inputs[1:2] = input, 1.0
+    return _named(mechanism, program, inputs, np.zeros(len(input), np.int64), signs)
+
+
+def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
+    """Margins of one design's closures at inputs (N,) on assemblies (steps, N), and rates; shape (closures, 2, N)."""
+    program, count = program_of(mechanism), len(input)
+    moved = np.ones((count, 2, 1))
+    moved[:, 0, 0] = input - program.reference_input[0]
+    sines, margins = np.empty((len(program.closing), count, 1)), np.empty((len(program.closing), 2, count, 1))
+    own = np.zeros(count, np.int64)
+    none = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
+    masks = np.empty((2, 0, 0), np.bool_)
+    kernels.drive(*program[6:], own, signs, moved, none[0], none[1], none[0], none[0], sines, margins, masks)
+    return margins[..., 0]
+
+
 def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
     """Sweep, and name what comes out."""
     length, *shape = inputs.shape

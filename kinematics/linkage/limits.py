@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.branches import Branch, cycle, dyadic_branches
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import assembly_signs, drive
+from kinematics.linkage.drive import assembly_signs, drive, drive_one
 from kinematics.linkage.mechanism import Mechanism
 from kinematics.linkage.other_driver import branches_by_other_driver
+from kinematics.linkage.program import program_of
 from kinematics.linkage.roots import find_roots, sign_changes
 
 Real = NDArray[np.float64]
@@ -103,11 +104,14 @@ def limit_positions(
 
     def quantities(inputs: Real, order: int) -> Real:
         """Jets of all quantities, shape (order + 1, quantities, inputs)."""
-        motion = drive(mechanism, inputs, order=order)
-        return np.stack([*(motion.angles[n] for n in links), *(motion.slides[n] for n in slides)], axis=1)
+        motion = drive_one(mechanism, inputs[None], signs, order)
+        return np.stack([*(motion.angles[n] for n in links), *(motion.slides[n] for n in slides)], axis=1)[:, :, 0]
 
     if not links and not slides:
         return [], []
+    program = program_of(mechanism)
+    own = program.signs or [1] * len(program.rows)
+    signs = np.array(own, np.int64).reshape(-1, 1)
     grid = np.linspace(low, high, GRID)
     values, rate = quantities(grid, 1)
     changes = [(row, n) for row in range(len(rate)) for n in sign_changes(rate[row])]

@@ -15,17 +15,18 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.branches import Branch, reference_first
-from kinematics.linkage.closures import decompose
+from kinematics.linkage.closures import decompose, order_of_closures
 from kinematics.linkage.configuration_curves import (
     CELLS,
     Closures,
     Curve,
     Place,
+    chains,
     circuits,
     configuration_curves,
     places,
 )
-from kinematics.linkage.drive import MechanismMotion, assembly_signs, drive
+from kinematics.linkage.drive import MechanismMotion, assembly_signs, drive_one
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.positive_arcs import HAIR, Domain, positive_arcs
 from kinematics.linkage.program import program_of
@@ -58,10 +59,12 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
         for driver, listed in links.items():
             if driver == GROUND or not set(listed) & set(links[GROUND]):
                 continue
+            if order_of_closures(links, driver, slides, ()).left:
+                continue
             try:
                 other = Mechanism(dict(mechanism.joints), links, driver, slides)
-                if not program_of(other).class_iii:
-                    return other
+                program_of(other)
+                return other
             except DimensionError:  # pivots on each other make no link that can drive or be driven
                 continue
     raise TopologyError("no pair of links closes this mechanism by dyads")
@@ -111,6 +114,7 @@ class _TrueInput:
 
     def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
         self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
+        self.chains = chains(curves) if curves else np.empty((0, 0, 4))
         self.slide = mechanism.driven_by_slide
         self.base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
         self.link = {GROUND: self.base, self.base: GROUND}.get(mechanism.input, mechanism.input)
@@ -125,7 +129,7 @@ class _TrueInput:
     def _jet(self, place: Place, order: int) -> Real:
         """Jet of the true input by the other one; shape (order + 1, n)."""
         signs = self.closures.signs(place.signs)
-        motion = drive(self.other, place.theta[:, None], signs=signs, order=order)
+        motion = drive_one(self.other, place.theta[:, None], signs, order)
         if self.slide:
             return np.asarray(motion.slides[self.mechanism.input][..., 0])
         turned = _rotation(self.other, motion, self.link) - _rotation(self.other, motion, self.base)
@@ -134,7 +138,7 @@ class _TrueInput:
 
     def _rates(self, row: Rows, at: Real) -> tuple[Real, Real]:
         """First two derivatives of the true input by the parameters of curves."""
-        place = places(self.curves, row, at)
+        place = places(self.chains, row, at)
         jet = self._jet(place, 2)
         return jet[1] * place.rate, jet[2] * place.rate**2 + jet[1] * place.second
 

@@ -7,15 +7,19 @@ bisection. Evaluations are arrays over all brackets, because one of them costs h
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 
 STEPS = 100
 """Evaluations at most; a dozen is usual."""
+
+EPSILON, LEAST = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 
 
 def find_roots(
@@ -38,31 +42,47 @@ def find_roots(
         The ends of the final brackets where the function is not negative, and where it is not positive.
     """
     x1, x2 = low.astype(np.float64), high.astype(np.float64)
-    f1 = function(x1) if at_low is None else at_low
-    f2 = function(x2) if at_high is None else at_high
-    x3, f3 = x2.copy(), f2.copy()
-    t = np.full(len(x1), 0.5)
+    f1 = function(x1) if at_low is None else at_low.astype(np.float64)
+    f2 = function(x2) if at_high is None else at_high.astype(np.float64)
+    state = np.stack([x1, f1, x2, f2, x2, f2])
+    x = x1 + 0.5 * (x2 - x1)
     for _ in range(STEPS):
-        x = x1 + t * (x2 - x1)
-        f = function(x)
-        same = np.sign(f) == np.sign(f1)
-        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
-        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
-        x1, f1 = x, f
-        near = np.abs(f1) < np.abs(f2)
-        tolerance = 2.0 * np.finfo(float).eps * np.abs(np.where(near, x1, x2)) + np.finfo(float).tiny
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = tolerance / np.abs(x2 - x1)
-            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
-            safe = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
-            quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
-        if np.all((share > 0.5) | (f1 == 0.0)):
+        if _advance(state, function(x), x):
             break
-        t = np.where(safe & np.isfinite(quadratic), quadratic, 0.5)
-        t = np.clip(t, np.minimum(share, 0.5), np.maximum(1.0 - share, 0.5))
+    x1, f1, x2, f2, _, _ = state
     positive = np.where((f1 >= 0.0) & ((f2 < 0.0) | (np.abs(f1) <= np.abs(f2))), x1, x2)
     negative = np.where((f1 <= 0.0) & ((f2 > 0.0) | (np.abs(f1) <= np.abs(f2))), x1, x2)
     return positive, negative
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _advance(state: Real, values: Real, x: Real) -> bool:
+    """Take in the values at ``x``, and put the next places there; whether all brackets are closed.
+
+    ``state``, shape (6, n): the newest end of each bracket, its other end and the end before, a place and a value each.
+    """
+    done = True
+    for n in range(len(x)):
+        x1, f1, x2, f2, _, _ = state[:, n]
+        f = values[n]
+        x3, f3 = x1, f1
+        if np.sign(f) != np.sign(f1):
+            x3, f3, x2, f2 = x2, f2, x1, f1
+        x1, f1 = x[n], f
+        state[0, n], state[1, n], state[2, n], state[3, n], state[4, n], state[5, n] = x1, f1, x2, f2, x3, f3
+        near = x1 if abs(f1) < abs(f2) else x2
+        share = (2.0 * EPSILON * abs(near) + LEAST) / abs(x2 - x1)
+        if share > 0.5 or f1 == 0.0:
+            x[n] = x1
+            continue
+        done, t = False, 0.5
+        xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+        if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
+            t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        if not math.isfinite(t):
+            t = 0.5
+        x[n] = x1 + min(max(t, min(share, 0.5)), max(1.0 - share, 0.5)) * (x2 - x1)
+    return done
 
 
 def sign_changes(values: Real) -> NDArray[np.int64]:
