@@ -20,6 +20,10 @@ Real = NDArray[np.float64]
 GRID = 720
 """Inputs along the branch at which limit positions are looked for."""
 
+TOWARDS_END = 4.0 ** -np.arange(17.0, 5.0, -1.0)
+"""Distances from the ends of a branch at which it is looked at too, as parts of it, from 6e-11 on: at a toggle, where
+angles go with the root of the distance, rounding decides whether there is a position."""
+
 SAME_TOGGLE = 1e-8
 """Toggles closer than this (radians, or task units along a slide) are listed once."""
 
@@ -80,7 +84,9 @@ def limit_positions(
 ) -> tuple[list[tuple[float, float] | None], list[tuple[float, float] | None]]:
     """Least and greatest angles of links, and positions of slides, on the reference's branch.
 
-    They stand at the ends of the branch, or where a rate vanishes, which is found as a root.
+    They stand at the ends of the branch, or where a rate vanishes, found as a root. At an end the value is that
+    of the nearest known position, at the distance d, and twice d times the rate there: with the root of the distance
+    from a toggle the value changes so but for a part in proportion to d, and where it is smooth that is so anyway.
 
     Parameters
     ----------
@@ -112,8 +118,14 @@ def limit_positions(
     program = program_of(mechanism)
     own = program.signs or [1] * len(program.rows)
     signs = np.array(own, np.int64).reshape(-1, 1)
-    grid = np.linspace(low, high, GRID)
+    near = (high - low) * TOWARDS_END
+    grid = np.concatenate([low + near, np.linspace(low, high, GRID)[1:-1], high - near[::-1]])
     values, rate = quantities(grid, 1)
+    known = np.flatnonzero(np.isfinite(rate).all(axis=0))
+    ends = np.empty((len(values), 0))
+    if len(known) and not branch.full:
+        outer = known[[0, -1]]
+        ends = values[:, outer] + 2.0 * rate[:, outer] * (np.array([low, high]) - grid[outer])
     changes = [(row, n) for row in range(len(rate)) for n in sign_changes(rate[row])]
     if changes:
         of = np.array([row for row, _ in changes]), np.arange(len(changes))
@@ -123,9 +135,9 @@ def limit_positions(
         roots = find_roots(lambda inputs: quantities(inputs, 1)[1][of], left, right, at_left, at_right)[0]
         first = np.unique(np.concatenate([grid, roots]), return_index=True)[1]
         values = np.concatenate([values, quantities(roots, 0)[0]], axis=1)[:, first]
-    known = np.isfinite(values).all(axis=0)
+    values = np.concatenate([ends[:, :1], values[:, np.isfinite(values).all(axis=0)], ends[:, 1:]], axis=1)
     spans: list[tuple[float, float] | None] = []
-    for row, value in enumerate(values[:, known]):
+    for row, value in enumerate(values):
         if row < len(links):
             value = np.unwrap(value)
             if branch.full and abs(value[-1] - value[0]) > np.pi:
