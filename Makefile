@@ -9,6 +9,9 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
+# Files of tests are dealt out to two processes.
+SPREAD := -n 2 --dist loadfile
+
 export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: serve test campaign demo check quick bench lock clean
@@ -20,10 +23,10 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest -m "not campaign"
+	$(BIN)/pytest -m "not campaign" $(SPREAD)
 
 campaign: $(STAMP)
-	$(BIN)/pytest -m campaign
+	$(BIN)/pytest -m campaign $(SPREAD)
 
 check: $(STAMP)
 	$(BIN)/ruff check .
@@ -33,7 +36,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign" -q
+	$(BIN)/pytest -m "not slow and not campaign" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis
