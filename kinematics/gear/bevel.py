@@ -30,18 +30,58 @@ def cone_angles(shaft_angle: float, ratio: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class BevelPair:
-    """A pinion and a gear of straight teeth at a right angle, with the pinion's addendum lengthened for strength.
+class BevelTeeth:
+    """A system of straight bevel teeth at a right angle, with the pinion's addendum lengthened for strength.
 
-    Depths are those of the Gleason system (Shigley & Mischke, Mechanical Engineering Design, Tab. 13-3; Rao, 7.8). With
-    the diametral pitch P of the large end: working depth 2/P, whole depth 2.188/P + 0.005 (a length in the unit of the
-    distances), gear addendum (0.540 + 0.460/G²)/P. Equal gears, G = 1, have equal addenda 1/P.
+    With the diametral pitch P of the large end and the ratio G the working depth is 2/P, the whole depth 2.188/P +
+    ``added_depth``, and the gear's addendum (``least`` + ``lessening``/G²)/P; the pinion has the rest of 2/P.
+
+    Attributes
+    ----------
+    least, lessening : float
+        Coefficients of the gear's addendum.
+    added_depth : float
+        Length that the whole depth has beyond its share of the pitch, millimetres.
+    """
+
+    least: float
+    lessening: float
+    added_depth: float
+
+
+RAO_TEETH = BevelTeeth(0.540, 0.400, 0.05)
+"""Rao, Sec. 7.8: gear addendum (0.540 + 0.400/G²)/P, whole depth 2.188/P + 0.005 cm. Gears of equal teeth, G = 1, have
+unequal addenda 1.06/P and 0.94/P, so that which of them is called the pinion matters."""
+
+GLEASON_TEETH = BevelTeeth(0.540, 0.460, 0.0508)
+"""Gleason's 20° straight teeth (AGMA 208.03; Shigley & Mischke, Mechanical Engineering Design, Tab. 13-3): gear
+addendum (0.540 + 0.460/G²)/P, whole depth 2.188/P + 0.002 in. Gears of equal teeth have equal addenda 1/P."""
+
+
+@dataclass(frozen=True)
+class BevelPair:
+    """A pinion and a gear of straight teeth at a right angle.
+
+    Parameters
+    ----------
+    pinion, gear : int
+        Tooth numbers; the gear has no fewer teeth.
+    diametral_pitch : float
+        P at the large end, teeth per unit of pitch diameter.
+    pressure_angle : float
+        Radians.
+    system : BevelTeeth
+        Proportions of the teeth.
+    millimetre : float
+        One millimetre in the unit of the distances, for the depth that the system adds as a length.
     """
 
     pinion: int
     gear: int
     diametral_pitch: float
     pressure_angle: float = PRESSURE_ANGLE
+    system: BevelTeeth = RAO_TEETH
+    millimetre: float = 1.0
 
     def __post_init__(self) -> None:
         if not (0 < self.pinion <= self.gear and self.diametral_pitch > 0.0):
@@ -75,13 +115,14 @@ class BevelPair:
 
     @property
     def whole_depth(self) -> float:
-        """2.188 / P + 0.005."""
-        return 2.188 / self.diametral_pitch + 0.005
+        """2.188 / P and the length that the system adds, for clearance."""
+        return 2.188 / self.diametral_pitch + self.system.added_depth * self.millimetre
 
     @property
     def addenda(self) -> tuple[float, float]:
         """Of pinion and gear."""
-        gear = (0.54 + 0.46 * (self.pinion / self.gear) ** 2) / self.diametral_pitch
+        share = self.system.least + self.system.lessening * (self.pinion / self.gear) ** 2
+        gear = share / self.diametral_pitch
         return self.working_depth - gear, gear
 
     @property

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from kinematics.gear.bevel import BevelPair
+from kinematics.gear.bevel import GLEASON_TEETH, RAO_TEETH, BevelPair
 from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
@@ -23,8 +23,10 @@ from synthesis.problems.gear_train import ToothNumber
 
 RPM = 2.0 * math.pi / 60.0
 
-DEPTH_ADDED_IN = {"mm": 0.127, "cm": 0.0127, "m": 0.000127, "in": 0.005}
-"""What the whole depth of bevel teeth has beyond its share of the module: 0.005 inch, in each unit."""
+MILLIMETRE = {"mm": 1.0, "cm": 0.1, "m": 0.001, "in": 1.0 / 25.4}
+"""One millimetre in each unit."""
+
+BEVEL_TEETH = {"rao": RAO_TEETH, "gleason": GLEASON_TEETH}
 
 PressureAngle = Annotated[float, Field(strict=True, ge=10.0, le=30.0)]
 
@@ -64,6 +66,11 @@ class GivenBevelPair(Statement):
     teeth: tuple[ToothNumber, ToothNumber] = Field(description="Pinion and gear; the gear has no fewer teeth.")
     module: PositiveNumber = Field(description="At the large end.")
     pressure_angle: PressureAngle = 20.0
+    tooth_system: Literal["rao", "gleason"] = Field(
+        default="rao",
+        description="Proportions of the teeth. rao: Rao, Sec. 7.8, gear addendum (0.540 + 0.400/G²) modules. "
+        "gleason: (0.540 + 0.460/G²) modules, with which equal gears are alike.",
+    )
     face_width: PositiveNumber | None = None
 
 
@@ -100,6 +107,7 @@ class GearPairAnalysis(Answer):
     ratio: float = Field(description="Speed of the first over the second, without sign.")
     centre_distance: float | None = Field(description="Null for bevel gears, whose shafts meet.")
     cone_distance: float | None = Field(description="From the apex of bevel gears to the large end.")
+    tooth_system: str | None = Field(description="Of bevel gears: whose proportions the teeth have.")
     whole_depth: float | None
     transverse_contact_ratio: float | None = Field(description="Of helical gears on parallel shafts.")
     face_contact_ratio: float | None = Field(description="Face over axial pitch, where the face width is stated.")
@@ -182,7 +190,10 @@ class BevelPairRequest(_PairRequest):
     def answer(self) -> dict[str, Any]:
         """Dimensions in the shape of :class:`GearPairAnalysis`."""
         given, speed = self.mechanism, self.speed_rpm * RPM
-        pair = BevelPair(*given.teeth, 1.0 / given.module, math.radians(given.pressure_angle))
+        pair = BevelPair(
+            *given.teeth, 1.0 / given.module, math.radians(given.pressure_angle), BEVEL_TEETH[given.tooth_system],
+            MILLIMETRE[self.length_unit],
+        )  # fmt: skip
         ratio = given.teeth[1] / given.teeth[0]
         gears = [
             _gear(
@@ -195,8 +206,10 @@ class BevelPairRequest(_PairRequest):
                 (speed, speed / ratio), strict=True,
             )
         ]  # fmt: skip
-        depth = 2.188 * given.module + DEPTH_ADDED_IN[self.length_unit]
-        return _answer(ratio, gears, cone_distance=pair.cone_distance, whole_depth=depth)
+        return _answer(
+            ratio, gears, cone_distance=pair.cone_distance, whole_depth=pair.whole_depth,
+            tooth_system=given.tooth_system,
+        )  # fmt: skip
 
 
 class WormSetRequest(_PairRequest):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
-from kinematics.gear.bevel import BevelPair, cone_angles
+from kinematics.gear.bevel import GLEASON_TEETH, BevelPair, cone_angles
 from kinematics.gear.helical import (
     HelicalGear,
     crossed_at_distance,
@@ -121,7 +121,7 @@ def test_cone_angles(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("bevel_set", "gear"))
 def test_bevel_pair(case: Case) -> None:
     x = case.inputs
-    pair = BevelPair(x["Tp"], x["Tg"], x["pd"], rad(x["phi"]))
+    pair = BevelPair(x["Tp"], x["Tg"], x["pd"], rad(x["phi"]), millimetre=0.1)
     case.check(
         working=pair.working_depth,
         whole=pair.whole_depth,
@@ -142,10 +142,21 @@ def test_bevel_pair(case: Case) -> None:
     assert pair.cone_distance * math.sin(pair.cones[0]) == pytest.approx(pair.pitch_radii[0])
 
 
-def test_equal_bevel_gears_are_alike() -> None:
-    pair = BevelPair(20, 20, 4.0)
+def test_equal_bevel_gears_of_gleasons_system_are_alike() -> None:
+    """In Rao's they are not: the one that is called the pinion has the longer addendum."""
+    pair = BevelPair(20, 20, 4.0, system=GLEASON_TEETH)
     for first, second in (pair.addenda, pair.dedenda, pair.thicknesses):
         assert first == pytest.approx(second, rel=1e-12)
+    assert BevelPair(20, 20, 1.0).addenda == (pytest.approx(1.06), pytest.approx(0.94))
+
+
+def test_gleasons_teeth() -> None:
+    """A pair of 20 and 40 teeth of module 3 mm; by hand 0.540 · 3 + 0.460 · 3 / 4 = 1.965."""
+    pair = BevelPair(20, 40, 1.0 / 3.0, system=GLEASON_TEETH)
+    assert pair.addenda == (pytest.approx(4.035), pytest.approx(1.965))
+    assert pair.dedenda == (pytest.approx(2.529), pytest.approx(4.599))
+    assert pair.whole_depth == pytest.approx(6.564 + 0.002 * 25.4)
+    assert sum(pair.thicknesses) == pytest.approx(pair.circular_pitch)
 
 
 @pytest.mark.parametrize("case", cases("worm_by_lead", "gear"))

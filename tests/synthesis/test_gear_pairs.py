@@ -60,6 +60,51 @@ def test_crossed_gears_share_the_shaft_angle_and_slide():
     assert other["pitch_diameter"] / one["pitch_diameter"] != pytest.approx(1.5)
 
 
+@pytest.mark.parametrize("case", cases("bevel_set", "gear"))
+@pytest.mark.parametrize("unit", [("cm", 1.0), ("mm", 10.0), ("in", 1.0 / 2.54)])
+def test_bevel_teeth_of_the_book(case, unit):
+    """The default is the book's system, and the depth that it adds as a length follows the unit."""
+    name, centimetre = unit
+    x = case.inputs
+    request = parse_request(
+        {
+            "mechanism": {
+                "type": "bevel_pair",
+                "teeth": [x["Tp"], x["Tg"]],
+                "module": centimetre / x["pd"],
+                "pressure_angle": float(x["phi"]),
+            },
+            "length_unit": name,
+        }
+    )
+    found = request.answer()
+    pinion, gear = found["gears"]
+    assert found["tooth_system"] == "rao"
+    case.check(
+        working=(pinion["addendum"] + gear["addendum"]) / centimetre,
+        whole=found["whole_depth"] / centimetre,
+        aP=pinion["addendum"] / centimetre,
+        aG=gear["addendum"] / centimetre,
+        dP=pinion["dedendum"] / centimetre,
+        dG=gear["dedendum"] / centimetre,
+        pc=gear["circular_pitch"] / centimetre,
+        tP=pinion["tooth_thickness"] / centimetre,
+        tG=gear["tooth_thickness"] / centimetre,
+        gamma2=pinion["pitch_cone_angle"],
+        gamma3=gear["pitch_cone_angle"],
+        r2=0.5 * pinion["pitch_diameter"] / centimetre,
+        r3=0.5 * gear["pitch_diameter"] / centimetre,
+        re2=0.5 * pinion["virtual_teeth"] / x["pd"],
+        re3=0.5 * gear["virtual_teeth"] / x["pd"],
+    )
+
+
+def test_gleasons_bevel_teeth_by_name():
+    found = analysed("bevel_pair", teeth=[20, 40], module=3.0, tooth_system="gleason")
+    assert found["tooth_system"] == "gleason"
+    assert [gear["addendum"] for gear in found["gears"]] == [pytest.approx(4.035), pytest.approx(1.965)]
+
+
 def test_equal_bevel_gears_have_equal_cones_of_45_degrees():
     one, other = analysed("bevel_pair", teeth=[30, 30], module=3.0)["gears"]
     assert one["pitch_cone_angle"] == pytest.approx(45.0)
