@@ -12,12 +12,13 @@ from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
 from service.analyst import Analyst
-from service.api import analyses, docs, errors, health, jobs, problems
+from service.api import analyses, docs, errors, events, health, jobs, problems
 from service.api.head import HeadAsGet
 from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
+from service.jobs.feed import Feed
 from service.jobs.store import JobStore
 from service.settings import Settings
 
@@ -53,7 +54,11 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
             if unfinished:
                 log.info("unfinished jobs taken up again", jobs=len(unfinished))
             app.state.desk = JobDesk(store, executor, changes)
+            app.state.feed = Feed(store, changes)
+            following = asyncio.create_task(app.state.feed.run())
             yield
+            changes.close()
+            await following
         finally:
             changes.close()
             await run_in_threadpool(executor.stop)
@@ -77,7 +82,7 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
     app.state.settings = settings
     errors.install(app)
     docs.install(app)
-    routers = (jobs.router, analyses.router, problems.router, health.router)
+    routers = (jobs.router, events.router, analyses.router, problems.router, health.router)
     for router in routers:
         app.include_router(router)
     app.state.routes = [*app.routes, *(route for router in routers for route in router.routes)]

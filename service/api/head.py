@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+_ASKED = "mechsynth.head"
+
 
 class HeadAsGet:
     """Answers ``HEAD`` as if it were ``GET``; the server underneath keeps the body to itself."""
@@ -14,5 +16,10 @@ class HeadAsGet:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, its method exchanged in a copy: the server still knows it as ``HEAD``."""
         if scope["type"] == "http" and scope["method"] == "HEAD":
-            scope = {**scope, "method": "GET"}
+            scope = {**scope, "method": "GET", _ASKED: True}
         await self._app(scope, receive, send)
+
+
+def asked_for_head(scope: Scope) -> bool:
+    """Whether a request that looks like ``GET`` was ``HEAD``; of interest where the body does not end by itself."""
+    return _ASKED in scope

@@ -29,9 +29,12 @@ TAG = {"name": "jobs", "description": "State a problem, follow the job, read the
 RETRY_AFTER_S = 1
 """When a client that does not wait should look again; most jobs are done by then."""
 
-_ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
+ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
+"""What can be the id of a job. Only that reaches the database, which need not stand every string."""
+
+NO_JOB = "There is no job with this id."
+
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
-_NO_JOB = "There is no job with this id."
 
 
 def _desk(request: Request) -> JobDesk:
@@ -178,7 +181,7 @@ async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Respo
     responses={
         200: {"model": Job, "headers": _ETAG},
         304: {"description": "The job is as the client knows it.", "headers": _ETAG},
-        **errors.responses(e404=_NO_JOB),
+        **errors.responses(e404=NO_JOB),
     },
 )
 async def get_job(
@@ -209,14 +212,14 @@ async def get_job(
             "description": "The job was unfinished and is cancelled; its computation is being stopped.",
         },
         204: {"description": "The job was finished and is removed."},
-        **errors.responses(e404=_NO_JOB),
+        **errors.responses(e404=NO_JOB),
     },
 )
 async def delete_job(desk: Desk, job_id: str) -> Response:
     """Cancel a queued or running job; remove a finished one."""
-    job = await desk.cancel_or_delete(job_id) if _ULID.fullmatch(job_id) else None
+    job = await desk.cancel_or_delete(job_id) if ULID.fullmatch(job_id) else None
     if job is None:
-        raise not_found(_NO_JOB)
+        raise not_found(NO_JOB)
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
 
 
@@ -349,10 +352,9 @@ def _design_index(number: str, designs: int) -> int:
 
 
 async def _job(desk: JobDesk, job_id: str) -> JobRow:
-    # Only what can be an id reaches the database, which need not stand every string.
-    job = await desk.get(job_id) if _ULID.fullmatch(job_id) else None
+    job = await desk.get(job_id) if ULID.fullmatch(job_id) else None
     if job is None:
-        raise not_found(_NO_JOB)
+        raise not_found(NO_JOB)
     return job
 
 
@@ -365,7 +367,7 @@ def _job_of_cursor(cursor: str) -> str:
         job_id = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except ValueError:
         job_id = ""
-    if not _ULID.fullmatch(job_id):
+    if not ULID.fullmatch(job_id):
         raise invalid_request([("/query/cursor", "This is not a cursor that the service has given out.")])
     return job_id
 

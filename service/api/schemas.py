@@ -122,8 +122,13 @@ def list_item(job: JobSummary) -> dict[str, Any]:
         "created_at": job.created_at,
         "started_at": job.started_at,
         "finished_at": job.finished_at,
-        "progress": {"fraction": job.progress_fraction, "message": job.progress_message},
+        "progress": progress(job),
     }
+
+
+def progress(job: JobSummary) -> dict[str, Any]:
+    """How far a job is, as :class:`Progress`."""
+    return {"fraction": job.progress_fraction, "message": job.progress_message}
 
 
 def whole_job(job: JobRow) -> bytes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 
@@ -13,6 +13,7 @@ class Changes:
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._watches: dict[str, set[asyncio.Event]] = {}
+        self._of_all: set[Callable[[str | None], None]] = set()
         self.closed = False
         """True once nobody should wait any longer, because the service stops."""
 
@@ -38,12 +39,25 @@ class Changes:
             if not watchers:
                 del self._watches[job_id]
 
+    @contextmanager
+    def watch_all(self, told: Callable[[str | None], None]) -> Iterator[None]:
+        """Call ``told`` with the id of every job that changes, and with None at the end. On the event loop only."""
+        self._of_all.add(told)
+        try:
+            yield
+        finally:
+            self._of_all.discard(told)
+
     def close(self) -> None:
         """Wake everybody for the last time, so that no request is kept waiting by a service that stops."""
         self.closed = True
         for job_id in list(self._watches):
             self._wake(job_id)
+        for told in list(self._of_all):
+            told(None)
 
     def _wake(self, job_id: str) -> None:
         for event in self._watches.get(job_id, ()):
             event.set()
+        for told in self._of_all:
+            told(job_id)

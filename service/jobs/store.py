@@ -7,7 +7,7 @@ late matches no row and is refused; there is nothing to read before, and so noth
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from typing import Any
@@ -27,6 +27,7 @@ _ROW = tuple(field.name for field in fields(JobRow))
 _SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 _WHOLE = [jobs.c[name] for name in _ROW]
 _MESSAGE_LENGTH = 200
+_IDS_AT_ONCE = 500  # databases bound the number of parameters of a statement
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +117,16 @@ class JobStore:
         with self._engine.connect() as connection:
             row = connection.execute(select(*_WHOLE).where(jobs.c.id == job_id)).mappings().one_or_none()
         return None if row is None else JobRow(**_values(row))
+
+    def summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
+        """The jobs of these ids that there are, by id."""
+        found: dict[str, JobSummary] = {}
+        with self._engine.connect() as connection:
+            for start in range(0, len(job_ids), _IDS_AT_ONCE):
+                query = select(*_SUMMARY).where(jobs.c.id.in_(job_ids[start : start + _IDS_AT_ONCE]))
+                for row in connection.execute(query).mappings():
+                    found[row["id"]] = JobSummary(**_values(row))
+        return found
 
     def page(
         self, *, limit: int, status: Status | None = None, kind: str | None = None, before: str | None = None

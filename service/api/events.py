@@ -1,0 +1,144 @@
+"""``/v1/jobs/{id}/events``: a job as it goes on, as server-sent events.
+
+An event's id is the job's revision and state, ``7-running``. That is all that a client's resumption needs: the newest
+state is sent where the client does not have it, and what it has missed in between is of no interest any more.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi.sse import EventSourceResponse, format_sse_event
+from pydantic_core import to_json
+
+from service.api import errors
+from service.api.errors import Refusal, not_found
+from service.api.head import asked_for_head
+from service.api.jobs import NO_JOB, TAG, ULID
+from service.api.schemas import list_item, progress
+from service.jobs.feed import Feed, Follower
+from service.jobs.schema import JobSummary
+from service.jobs.states import Status
+
+KEEP_ALIVE_S = 15.0
+"""After so much silence a comment is sent, so that nobody between takes the connection for dead."""
+
+MAX_LISTENERS = 1000
+"""Streams at once; each is a connection and a task of the server."""
+
+STORE_ANSWERS_S = 10.0
+"""How long a client is kept waiting for the first look into the store."""
+
+_RECONNECT_MS = 1000
+_HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+_EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
+
+
+def _feed(request: Request) -> Feed:
+    feed = request.app.state.feed
+    assert isinstance(feed, Feed)
+    return feed
+
+
+News = Annotated[Feed, Depends(_feed)]
+
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]])
+
+
+@router.get(
+    "/{job_id}/events",
+    operation_id="follow_job",
+    summary="Follow a job",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "Events until the job has ended: `state` (the job as in a list) whenever its state changes, "
+            "first of all the present one, and `progress` in between. The event of the final state is the last one; "
+            "a job that is removed before anybody has seen it end ends with `removed`.",
+            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+        },
+        204: {"description": "The client has the event of the final state already; it need not come again."},
+        **errors.responses(e404=NO_JOB, e503="Too many clients listen at once."),
+    },
+)
+async def follow_job(
+    request: Request,
+    feed: News,
+    job_id: str,
+    last_event_id: Annotated[
+        str | None,
+        Header(description="The `id` of the last event that the client has; browsers send it by themselves."),
+    ] = None,
+) -> Response:
+    """The job as it goes on, as server-sent events.
+
+    A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
+    """
+    if feed.listeners >= MAX_LISTENERS:
+        raise Refusal(
+            503, "too-many-listeners", "Too many listeners", "Too many clients listen to jobs at once; ask again.",
+            headers={"Retry-After": "5"},
+        )  # fmt: skip
+    job = await _present(feed, job_id) if ULID.fullmatch(job_id) else None
+    if job is None:
+        raise not_found(NO_JOB)
+    seen = _seen(last_event_id)
+    if job.status.finished and seen == (job.revision, job.status):
+        return Response(status_code=204)
+    if asked_for_head(request.scope):
+        return EventSourceResponse(_nothing(), headers=_HEADERS)
+    return EventSourceResponse(_events(feed, job, seen), headers=_HEADERS)
+
+
+async def _present(feed: Feed, job_id: str) -> JobSummary | None:
+    with feed.follow(job_id) as follower:
+        await follower.news(STORE_ANSWERS_S)
+        if not follower.read:
+            raise Refusal(503, "not-ready", "Not ready", "The job store does not answer.", headers={"Retry-After": "1"})
+        return follower.job
+
+
+async def _events(feed: Feed, job: JobSummary, seen: tuple[int, Status] | None) -> AsyncIterator[bytes]:
+    """The stream of a job. It ends with the job, or without an event when the service stops."""
+    with feed.follow(job.id) as follower:
+        follower.tell(job)
+        while not feed.closed:
+            if not await follower.news(KEEP_ALIVE_S):
+                yield format_sse_event(comment="keep-alive")
+                continue
+            event = _event(follower, seen)
+            if event is not None:
+                yield event
+            if follower.job is None or follower.job.status.finished:
+                return
+            seen = (follower.job.revision, follower.job.status)
+
+
+def _event(follower: Follower, seen: tuple[int, Status] | None) -> bytes | None:
+    """What a client that has seen ``seen`` is to be told; None where there is nothing new."""
+    job = follower.job
+    if job is None:
+        return format_sse_event(event="removed", data_str="{}")
+    if seen is not None and job.revision <= seen[0]:
+        return None
+    state = seen is None or seen[1] != job.status
+    return format_sse_event(
+        event="state" if state else "progress",
+        data_str=to_json(list_item(job) if state else progress(job)).decode(),
+        id=f"{job.revision}-{job.status.value}",
+        retry=_RECONNECT_MS if seen is None else None,
+    )
+
+
+async def _nothing() -> AsyncIterator[bytes]:
+    return
+    yield b""
+
+
+def _seen(last_event_id: str | None) -> tuple[int, Status] | None:
+    # What is no id of ours is passed over, like by a client that comes for the first time.
+    found = _EVENT_ID.fullmatch(last_event_id or "")
+    return None if found is None else (int(found[1]), Status(found[2]))

@@ -1,0 +1,135 @@
+"""Follows the jobs that somebody listens to: one reader of the store for all listeners together.
+
+A worker writes its progress into the store and tells nobody, so the store has to be asked. It is asked for all followed
+jobs at once, every :data:`PERIOD_S` and whenever one of them is known to have changed; the number of listeners makes
+no difference to it. A job that nobody follows is not read, and a finished one not again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import structlog
+from starlette.concurrency import run_in_threadpool
+
+from service.jobs.changes import Changes
+from service.jobs.schema import JobSummary
+from service.jobs.store import JobStore
+
+PERIOD_S = 0.25
+"""How old the news of a job can be. Workers note their progress five times a second at most."""
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(slots=True, eq=False)
+class Follower:
+    """One listener's view of a job: always its newest state, never a queue of older ones."""
+
+    job: JobSummary | None = None
+    """The job as it was read last; None before the first reading, and of a job that is not there (any more)."""
+    read: bool = False
+    """Whether the job was looked for in the store."""
+    _news: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def news(self, within_s: float) -> bool:
+        """Wait for a change of the job; False when there is none in time."""
+        try:
+            async with asyncio.timeout(within_s):
+                await self._news.wait()
+        except TimeoutError:
+            return False
+        self._news.clear()
+        return True
+
+    def tell(self, job: JobSummary | None) -> None:
+        """Pass on what the store says of the job."""
+        if not self.read or job != self.job:
+            self.job, self.read = job, True
+            self._news.set()
+
+    def wake(self) -> None:
+        """End a wait without a change."""
+        self._news.set()
+
+
+class Feed:
+    """Tells followers of the changes of their jobs. To be used on the event loop only."""
+
+    def __init__(self, store: JobStore, changes: Changes) -> None:
+        self._store = store
+        self._changes = changes
+        self._followers: dict[str, set[Follower]] = {}
+        self._nudged = asyncio.Event()
+
+    @property
+    def listeners(self) -> int:
+        """How many follow a job now."""
+        return sum(map(len, self._followers.values()))
+
+    @property
+    def closed(self) -> bool:
+        """Whether nobody should listen any longer, because the service stops."""
+        return self._changes.closed
+
+    @contextmanager
+    def follow(self, job_id: str) -> Iterator[Follower]:
+        """The news of a job; the first is what it is now."""
+        follower = Follower()
+        followers = self._followers.setdefault(job_id, set())
+        followers.add(follower)
+        self._nudged.set()
+        try:
+            yield follower
+        finally:
+            followers.discard(follower)
+            if not followers:
+                self._followers.pop(job_id, None)
+
+    async def run(self) -> None:
+        """Read for the followers until the service stops, then wake them all."""
+        with self._changes.watch_all(self._nudge):
+            while not self.closed:
+                await self._wait()
+                self._nudged.clear()
+                await self._read()
+        for followers in self._followers.values():
+            for follower in followers:
+                follower.wake()
+
+    def _nudge(self, job_id: str | None) -> None:
+        if job_id is None or job_id in self._followers:
+            self._nudged.set()
+
+    async def _wait(self) -> None:
+        try:
+            async with asyncio.timeout(PERIOD_S if self._unfinished() else None):
+                await self._nudged.wait()
+        except TimeoutError:
+            pass
+
+    async def _read(self) -> None:
+        wanted = self._unfinished()
+        if not wanted:
+            return
+        # Who begins to follow while the store is being asked may have missed what it will answer.
+        asked = [(job_id, follower) for job_id in wanted for follower in self._followers[job_id]]
+        try:
+            found = await run_in_threadpool(self._store.summaries, wanted)
+        except Exception:  # whatever a database driver raises: those who listen wait until it answers again
+            log.exception("the store could not be read for those who listen")
+            await asyncio.sleep(PERIOD_S)
+            return
+        for job_id, follower in asked:
+            follower.tell(found.get(job_id))
+
+    def _unfinished(self) -> list[str]:
+        """The followed jobs that can have news."""
+        return [job_id for job_id, followers in self._followers.items() if not all(map(_done, followers))]
+
+
+def _done(follower: Follower) -> bool:
+    return follower.read and (follower.job is None or follower.job.status.finished)
