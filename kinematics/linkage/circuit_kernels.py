@@ -57,21 +57,149 @@ def limits(pivots: Complex, lengths: Real, ends: Real, toggles: Mask) -> None:
 
 
 @njit(**OPTIONS)
+def _stays(a: float, b: float, c: float, d: float, start: float, end: float) -> bool:
+    """Whether the input turns from start to end, measured from the ground line, without a toggle or change point."""
+    free, lower, upper, folded, extended = _limits(a, b, c, d)
+    low, high = min(start, end), max(start, end)
+    for toggle, exists in ((lower, folded), (upper, extended)):
+        for sign in (1.0, -1.0):
+            turns = math.ceil((low - AT_TOGGLE - sign * toggle) / FULL_TURN) if exists else 0.0
+            free = free and not (exists and sign * toggle + turns * FULL_TURN <= high + AT_TOGGLE)
+    middle = 0.5 * (low + high)
+    middle = abs(math.atan2(math.sin(middle), math.cos(middle)))
+    return bool(free and lower <= middle <= upper)
+
+
+@njit(**OPTIONS)
 def stays(pivots: Complex, lengths: Real, start: Real, end: Real, free: Mask) -> None:
     """Whether the input turns from start to end without a toggle or change point, into ``free`` (M,)."""
     for i in range(len(free)):
         j = i if pivots.shape[1] > 1 else 0
         ground = pivots[1, j] - pivots[0, j]
-        good, lower, upper, folded, extended = _limits(lengths[0, j], lengths[1, j], lengths[2, j], abs(ground))
         ground_angle = math.atan2(ground.imag, ground.real)
-        low, high = min(start[i], end[i]) - ground_angle, max(start[i], end[i]) - ground_angle
-        for toggle, exists in ((lower, folded), (upper, extended)):
-            for sign in (1.0, -1.0):
-                turns = math.ceil((low - AT_TOGGLE - sign * toggle) / FULL_TURN) if exists else 0.0
-                good = good and not (exists and sign * toggle + turns * FULL_TURN <= high + AT_TOGGLE)
-        middle = 0.5 * (low + high)
-        middle = abs(math.atan2(math.sin(middle), math.cos(middle)))
-        free[i] = good and lower <= middle <= upper
+        free[i] = _stays(
+            lengths[0, j], lengths[1, j], lengths[2, j], abs(ground), start[i] - ground_angle, end[i] - ground_angle
+        )
+
+
+@njit(**OPTIONS)
+def _joined(a: float, b: float, c: float, d: float) -> bool:
+    """Whether the circuits meet at change points."""
+    least, greatest, perimeter = min(d, a, b, c), max(d, a, b, c), d + a + b + c
+    low, high = min(max(d, a), max(b, c)), max(min(d, a), min(b, c))
+    return abs((greatest - max(low, high)) - (min(low, high) - least)) <= CHANGE_POINT * perimeter
+
+
+@njit(**OPTIONS)
+def _side(delta: float) -> float:
+    """The side of the ground line on which the input lies: 1, −1, or 0 on it."""
+    sine = math.sin(delta)
+    return 1.0 if sine > 0.0 else (-1.0 if sine < 0.0 else 0.0)
+
+
+@njit(**OPTIONS)
+def circuits(pivots: Complex, lengths: Real, theta: Real, sign: Real, other: Real, others: Real, same: Mask) -> None:
+    """Whether configurations that close lie on one circuit, into ``same`` (M,)."""
+    for i in range(len(same)):
+        j = i if pivots.shape[1] > 1 else 0
+        a, b, c, ground = lengths[0, j], lengths[1, j], lengths[2, j], pivots[1, j] - pivots[0, j]
+        ground_angle = math.atan2(ground.imag, ground.real)
+        good, _, _, folded, extended = _limits(a, b, c, abs(ground))
+        if _joined(a, b, c, abs(ground)):
+            same[i] = good
+        elif not folded and not extended:
+            same[i] = good and sign[i] == others[i]
+        else:
+            one_side = _side(theta[i] - ground_angle) == _side(other[i] - ground_angle)
+            same[i] = good and (not (folded and extended) or one_side)
+
+
+@njit(**OPTIONS)
+def _monotone(values: Real) -> bool:
+    """Whether values rise throughout, or fall throughout."""
+    rising, falling = True, True
+    for k in range(1, len(values)):
+        rising, falling = rising and values[k] > values[k - 1], falling and values[k] < values[k - 1]
+    return rising or falling
+
+
+@njit(**OPTIONS)
+def _least_cover(onward: Real) -> None:
+    """Rotations 0 ≤ ρ < 2π shifted by full turns into the shortest range that covers them and the first, in place."""
+    around = np.sort(onward)
+    widest, end = around[0] + FULL_TURN - around[-1], around[-1]
+    for k in range(len(around) - 1, 0, -1):
+        if around[k] - around[k - 1] >= widest:
+            widest, end = around[k] - around[k - 1], around[k - 1]
+    for k in range(len(onward)):
+        if onward[k] > end:
+            onward[k] -= FULL_TURN
+
+
+@njit(**OPTIONS)
+def _limits_around(delta: float, lower: float, upper: float, folded: bool, extended: bool) -> tuple[float, float]:
+    """Ends of the range of δ, radians, that holds ``delta``, for an input that has toggles."""
+    if not folded:
+        return -upper, upper
+    if not extended:
+        return lower, FULL_TURN - lower
+    return (lower, upper) if math.sin(delta) >= 0.0 else (-upper, -lower)
+
+
+@njit(**OPTIONS)
+def traverse(
+    pivots: Complex, lengths: Real, theta: Real, sign: Real, angles: Real
+) -> tuple[bool, bool, bool, float, float]:
+    """The motion of one design through targets (n,): on one branch, on one circuit, in order, and the range used.
+
+    The targets' angles, continuous from the first, go into ``angles`` (n,).
+    """
+    n, first, last = len(theta), theta[0], len(theta) - 1
+    a, b, c, ground = lengths[0, 0], lengths[1, 0], lengths[2, 0], pivots[1, 0] - pivots[0, 0]
+    d, ground_angle = abs(ground), math.atan2(ground.imag, ground.real)
+    good, lower, upper, folded, extended = _limits(a, b, c, d)
+    one_assembly = good
+    for k in range(n):
+        one_assembly = one_assembly and sign[k] == sign[0]
+    onward, backward = np.zeros(n), np.zeros(n)
+    for k in range(1, n):
+        onward[k] = np.mod(theta[k] - first, FULL_TURN)
+        backward[k] = onward[k] - FULL_TURN if onward[k] > 0.0 else 0.0
+    if one_assembly:
+        from_ground = first - ground_angle
+        ahead = _monotone(onward) and _stays(a, b, c, d, from_ground, from_ground + onward[last])
+        back = _monotone(backward) and _stays(a, b, c, d, from_ground, from_ground + backward[last])
+        if ahead or back:
+            turned = onward if ahead and (not back or abs(onward[last]) <= abs(backward[last])) else backward
+            angles[:] = first + turned
+            return True, True, True, first, first + turned[last]
+    same, pair = np.empty(1, np.bool_), np.empty((4, 1))
+    one_circuit = True
+    for k in range(n):
+        pair[0, 0], pair[1, 0], pair[2, 0], pair[3, 0] = first, sign[0], theta[k], sign[k]
+        circuits(pivots, lengths, pair[0], pair[1], pair[2], pair[3], same)
+        one_circuit = one_circuit and same[0]
+    if not folded and not extended:
+        _least_cover(onward)
+        angles[:] = first + onward
+        return one_assembly, one_circuit, False, angles.min(), angles.max()
+    low, high = _limits_around(first - ground_angle, lower, upper, folded, extended)
+    low, high = low + ground_angle, high + ground_angle
+    for k in range(n):
+        angle = low + np.mod(theta[k] - low, FULL_TURN)
+        angles[k] = angle - FULL_TURN if angle - high > low + FULL_TURN - angle else angle
+    start, end = angles.min(), angles.max()
+    if one_assembly:
+        free = _stays(a, b, c, d, start - ground_angle, end - ground_angle)
+        return free, free or one_circuit, False, start, end
+    around = 2.0 * (high - low)
+    for k in range(n):
+        onward[k] = angles[k] - low if sign[k] == sign[0] else around - (angles[k] - low)
+    begin = onward[0]
+    for k in range(n):
+        onward[k] = np.mod(onward[k] - begin, around)
+        backward[k] = onward[k] - around if onward[k] > 0.0 else 0.0
+    return False, one_circuit, (_monotone(onward) or _monotone(backward)) and one_circuit, start, end
 
 
 @njit(**OPTIONS)

@@ -116,19 +116,11 @@ def same_circuit(
     """
     angles = {"angle": np.shape(angle), "other_angle": np.shape(other_angle)}
     signs = {"assembly": np.shape(assembly), "other_assembly": np.shape(other_assembly)}
-    one_shape(designs=linkage.input.shape, **angles, **signs)
-    limits = input_limits(linkage)
-
-    def side(theta: ArrayLike) -> Real:
-        return np.sign(np.sin(np.asarray(theta, np.float64) - linkage.ground_angle))
-
-    joined = np.asarray(grashof_class(linkage.lengths) == 3)
-    crank = ~limits.folded_toggle & ~limits.extended_toggle
-    two_sided = limits.folded_toggle & limits.extended_toggle
-    same_assembly = np.asarray(assembly) == np.asarray(other_assembly)
-    same_side = side(angle) == side(other_angle)
-    on_one = joined | np.where(crank, same_assembly, ~two_sided | same_side)
-    return np.asarray(can_assemble(linkage) & on_one)
+    shape = one_shape(designs=linkage.input.shape, **angles, **signs)
+    same = np.empty(shape, np.bool_)
+    configurations = angle, assembly, other_angle, other_assembly
+    kernels.circuits(*over_designs(linkage.blocks, shape, *configurations), same.reshape(-1))
+    return same
 
 
 class Traversal(NamedTuple):
@@ -136,13 +128,14 @@ class Traversal(NamedTuple):
 
     ``angles`` are the targets' input angles, absolute and continuous from the first; ``start`` and ``end`` bound the
     range that is used, ``start`` being the first target where they are met in order. ``same_branch`` says that the
-    input turns over that range without a toggle and every target has one assembly; ``in_order`` that the targets are
-    met one after the other with the input turning one way, or, where they lie on both branches of a circuit, going
-    round the circuit one way.
+    input turns over that range without a toggle and every target has one assembly; ``same_circuit`` that the linkage
+    reaches them all without being taken apart; ``in_order`` that the targets are met one after the other with the input
+    turning one way, or, where they lie on both branches of a circuit, going round the circuit one way.
     """
 
     angles: Real
     same_branch: bool
+    same_circuit: bool
     in_order: bool
     start: float
     end: float
@@ -164,56 +157,8 @@ def traverse(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> T
     assembly : int
         Assembly signs of the targets, shape (n,).
     """
-    theta, sign = np.asarray(input_angle, np.float64), np.asarray(assembly)
-    first = float(theta[0])
-    onward = np.mod(theta - first, FULL_TURN)
-    onward[0] = 0.0
-    one_assembly = bool(np.all(sign == sign[0])) and bool(can_assemble(linkage))
-    if one_assembly:
-        backward = np.where(onward > 0.0, onward - FULL_TURN, 0.0)
-        ways = [
-            turned
-            for turned in (onward, backward)
-            if _monotone(turned) and bool(stays_on_branch(linkage, first, first + turned[-1]))
-        ]
-        if ways:
-            turned = min(ways, key=lambda way: abs(float(way[-1])))
-            return Traversal(first + turned, True, True, first, first + float(turned[-1]))
-    limits = input_limits(linkage)
-    if not (limits.folded_toggle or limits.extended_toggle):
-        turned = _covering(onward)
-        return Traversal(first + turned, one_assembly, False, first + float(turned.min()), first + float(turned.max()))
-    low, high = _limits_around(linkage, limits, first)
-    angles = low + np.mod(theta - low, FULL_TURN)
-    angles = np.where(angles - high > low + FULL_TURN - angles, angles - FULL_TURN, angles)
-    start, end = float(angles.min()), float(angles.max())
-    if one_assembly:
-        return Traversal(angles, bool(stays_on_branch(linkage, start, end)), False, start, end)
-    round_circuit = np.where(sign == sign[0], angles - low, 2.0 * (high - low) - (angles - low))
-    ahead = np.mod(round_circuit - round_circuit[0], 2.0 * (high - low))
-    one_way = _monotone(ahead) or _monotone(np.where(ahead > 0.0, ahead - 2.0 * (high - low), 0.0))
-    one_circuit = bool(np.all(same_circuit(linkage, first, sign[0], theta, sign)))
-    return Traversal(angles, False, one_way and one_circuit, start, end)
-
-
-def _covering(onward: Real) -> Real:
-    """Rotations 0 ≤ ρ < 2π shifted by full turns into the shortest range that covers them and the first."""
-    around = np.sort(onward)
-    gaps = np.diff(around, append=around[0] + FULL_TURN)
-    end = around[int(gaps.argmax())]
-    return np.asarray(np.where(onward > end, onward - FULL_TURN, onward))
-
-
-def _monotone(values: Real) -> bool:
-    steps = np.diff(values)
-    return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
-
-
-def _limits_around(linkage: Fourbar, limits: InputLimits, angle: float) -> tuple[float, float]:
-    """Ends, absolute radians, of the range of input angles that holds ``angle``, for an input that has toggles."""
-    ground, lower, upper = float(linkage.ground_angle), float(limits.lower), float(limits.upper)
-    if not limits.folded_toggle:
-        return ground - upper, ground + upper
-    if not limits.extended_toggle:
-        return ground + lower, ground + FULL_TURN - lower
-    return (ground + lower, ground + upper) if np.sin(angle - ground) >= 0.0 else (ground - upper, ground - lower)
+    theta, sign = np.array(input_angle, np.float64), np.array(assembly, np.float64)
+    angles = np.empty_like(theta)
+    pivots, lengths = linkage.blocks
+    found = kernels.traverse(pivots.reshape(3, 1), lengths.reshape(3, 1), theta, sign, angles)
+    return Traversal(angles, *found)

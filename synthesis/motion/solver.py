@@ -29,7 +29,7 @@ from synthesis.motion.slider_search import beside_sliders, solve_sliders, with_s
 from synthesis.motion.task import MotionTask, motion_task
 from synthesis.problems import Constraints, DyadChoices, MotionProblem, whole_point
 from synthesis.ranking import distinct, ranked
-from synthesis.verification import verify
+from synthesis.verification import demanded, verify
 
 USABLE_TRANSMISSION_ANGLES = 30.0, 20.0, 10.0, 0.0
 """Degrees. Where the client sets no limit, a search offers linkages below each of these only if it met none that
@@ -119,7 +119,7 @@ class _Pairs:
     """The pairs of input and output dyads of one problem, and what becomes of them."""
 
     def __init__(self, problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud) -> None:
-        self.problem, self.task = problem, task
+        self.problem, self.task, self.demanded = problem, task, demanded(problem)
         self.inputs, self.outputs = inputs.dyads, outputs.dyads
         self.sampled = inputs.sampled or outputs.sampled
         self.complete = inputs.complete and outputs.complete
@@ -192,7 +192,8 @@ class _Pairs:
         lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
         if min(lengths) <= SHORTEST_LINK * max(lengths):
             return "degenerate"
-        design = verify(self.problem, fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin)))
+        mechanism = fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin))
+        design = verify(self.problem, mechanism, self.demanded)
         if design is None:
             return "cannot_be_driven"
         if design.verification.passed:

@@ -289,15 +289,16 @@ class MotionProblem(LinkageProblem):
 
         0 where a coordinate is met exactly; infinite where it is fitted without a limit.
         """
-        return [self._limits_of(position) for position in self.positions]
+        fitted = self.fitted
+        return [self._limits_of(position, fitted) for position in self.positions]
 
-    def _limits_of(self, position: Position) -> tuple[float, float, float]:
+    def _limits_of(self, position: Position, fitted: bool) -> tuple[float, float, float]:
         tolerance = position.tolerance
         if isinstance(tolerance, Tolerance):
             return tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0
         if tolerance is not None:
             return tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi))
-        return (math.inf, math.inf, math.inf) if self.fitted and not position.exact else (0.0, 0.0, 0.0)
+        return (math.inf, math.inf, math.inf) if fitted and not position.exact else (0.0, 0.0, 0.0)
 
     @property
     def fitted(self) -> bool:

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from synthesis.designs import FourbarMechanism, LinkageDesign, LinkageMechanism
 from synthesis.problems import MotionProblem
+from synthesis.verification.demanded import Demanded, demanded
 from synthesis.verification.fourbar import verify_fourbar
 from synthesis.verification.mechanism import verify_mechanism
 
-__all__ = ["verify"]
+__all__ = ["Demanded", "demanded", "verify"]
 
 
-def verify(problem: MotionProblem, mechanism: LinkageMechanism) -> LinkageDesign | None:
+def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded | None = None) -> LinkageDesign | None:
     """Drive a mechanism through a problem's targets and measure it.
 
     Parameters
@@ -23,6 +24,8 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism) -> LinkageDesign
         What was asked.
     mechanism : LinkageMechanism
         Dimensions only; the skeleton is looked at where it is the dimensions, as for sixbars.
+    target : Demanded, optional
+        What the problem demands, ``demanded(problem)``, from a caller that verifies many mechanisms.
 
     Returns
     -------
@@ -30,6 +33,7 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism) -> LinkageDesign
         The mechanism with its checks and metrics; ``verification.passed`` tells whether it may be used. None where the
         dimensions do not make a linkage that can be assembled and driven at all.
     """
+    target = demanded(problem) if target is None else target
     if isinstance(mechanism, FourbarMechanism):
-        return verify_fourbar(problem, mechanism)
-    return verify_mechanism(problem, mechanism)
+        return verify_fourbar(problem, mechanism, target)
+    return verify_mechanism(problem, mechanism, target)

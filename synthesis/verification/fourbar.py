@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import (
+    BARKER,
     Fourbar,
-    barker_class,
-    can_assemble,
+    barker_type,
     positions,
-    same_circuit,
     transmission_extremes,
     traverse,
 )
@@ -31,7 +30,7 @@ from synthesis.problems import MotionProblem
 from synthesis.ranking import quality
 from synthesis.verification.checks import Driven, Side, choice_checks, constraint_checks, motion_checks, targets
 from synthesis.verification.closest import Motion, closest_inputs
-from synthesis.verification.demanded import Complex, Demanded, Real, demanded
+from synthesis.verification.demanded import Complex, Demanded, Real
 
 OWN = 1.5
 """A fitted target counts as met in the reference's own assembly unless the other one misses it this many times less."""
@@ -46,25 +45,22 @@ class _Met(NamedTuple):
     joints: Complex
 
 
-def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism) -> LinkageDesign | None:
+def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: Demanded) -> LinkageDesign | None:
     """Drive a fourbar through a problem's targets and measure it; see :func:`synthesis.verification.verify`."""
     try:
         fourbar = driven_fourbar(mechanism)
     except DimensionError:
         return None
-    if not can_assemble(fourbar.linkage):
+    linkage = fourbar.linkage
+    kind = int(barker_type(linkage))
+    if not kind:
         return None
-    target = demanded(problem)
     shift = body_shift(mechanism, problem.positions[0].angle)
     met = _held(target, fourbar, shift) if target.held.all() else _fitted(target, fourbar, shift)
     if met is None:
         return None
-    linkage = fourbar.linkage
     way = traverse(linkage, met.angles, met.assemblies)
-    on_circuit = way.same_branch or bool(
-        np.all(same_circuit(linkage, met.angles[0], met.assemblies[0], met.angles, met.assemblies))
-    )
-    barker = barker_class(linkage)
+    barker = BARKER[kind - 1]
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
     links, point = mechanism.links, complex(linkage.coupler_point)
     lengths = [links.ground, links.input, links.coupler, links.output]
@@ -85,7 +81,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism) -> Linka
         min_transmission_angle=math.degrees(least),
         transmission_angles={"coupler": math.degrees(least)},
         same_branch=way.same_branch,
-        visits_in_order=on_circuit and way.in_order,
+        visits_in_order=way.in_order,
         full_rotation=barker.motion in ("double_crank", "crank_rocker"),
         input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
         link_ratio=ratio,
@@ -93,7 +89,7 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism) -> Linka
         size=math.hypot(*span),
         quality=quality(math.sin(least), reach / target.size, ratio),
     )
-    checks = [*motion_checks(target, driven, on_circuit), *choice_checks(problem, target, driven)]
+    checks = [*motion_checks(target, driven, way.same_circuit), *choice_checks(problem, target, driven)]
     checks += constraint_checks(
         problem.constraints,
         lengths,
@@ -117,12 +113,13 @@ def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None
     reference = positions(linkage, fourbar.reference, fourbar.assembly)
     if not reference.valid:
         return None
-    coupler_angles = reference.coupler_angle + target.turns - shift
-    pins = target.points - linkage.coupler_point * np.exp(1j * coupler_angles)
-    angles = np.angle(pins - linkage.input_pivot)
+    coupler_angles = target.turns + (float(reference.coupler_angle) - shift)
+    pins = target.points - complex(linkage.coupler_point) * np.exp(1j * coupler_angles)
+    angles = np.angle(pins - complex(linkage.input_pivot))
     signs = np.array([fourbar.assembly, -fourbar.assembly])
     found = positions(linkage, angles, signs)
-    turned_off = np.abs(np.angle(np.exp(1j * (found.coupler_angle - coupler_angles))))
+    off = found.coupler_angle - coupler_angles
+    turned_off = np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
     residuals = np.where(found.valid, np.maximum(np.abs(found.p - target.points) / target.size, turned_off), np.inf)
     # The first target is met by the reference configuration itself, or not at all.
     first = abs(complex(reference.p) - target.points[0]) / target.size

@@ -39,7 +39,7 @@ from synthesis.problems import MotionProblem
 from synthesis.ranking import quality
 from synthesis.verification.checks import Driven, Side, choice_checks, constraint_checks, motion_checks, targets
 from synthesis.verification.closest import closest_inputs
-from synthesis.verification.demanded import Complex, Demanded, Real, demanded
+from synthesis.verification.demanded import Complex, Demanded, Real
 
 OWN = 1.5
 """A target counts as met on the reference's branch unless another one misses it this many times less."""
@@ -74,7 +74,7 @@ class _Way(NamedTuple):
     in_order: bool
 
 
-def verify_mechanism(problem: MotionProblem, design: LinkageMechanism) -> LinkageDesign | None:
+def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: Demanded) -> LinkageDesign | None:
     """Drive a linkage through a problem's targets and measure it; see :func:`synthesis.verification.verify`."""
     # Where dimensions say it all the skeleton is not looked at; a sixbar's dimensions are its skeleton.
     told = design.model_dump(exclude=None if isinstance(design, SixbarMechanism) else {"skeleton"})
@@ -86,7 +86,6 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism) -> Linkag
     here = holding_reference(mechanism, found)
     if here is None:
         return None
-    target = demanded(problem)
     body = _Body(mechanism, body_shift(design, problem.positions[0].angle))
     met = _closest(body, target, found, here)
     if met is None:

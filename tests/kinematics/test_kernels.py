@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 from numba import njit
 
-from kinematics.linkage import Fourbar, barker_type, input_limits, stays_on_branch, transmission_extremes
+from kinematics.linkage import (
+    Fourbar,
+    barker_type,
+    input_limits,
+    same_circuit,
+    stays_on_branch,
+    transmission_extremes,
+)
 from kinematics.linkage import fourbar as fourbar_module
 from kinematics.linkage import slider_crank as slider_module
 from kinematics.linkage.kernels import TILE, direction
@@ -191,6 +198,10 @@ def test_verdicts_on_a_design_agree_with_the_plain_twin() -> None:
     start = rng.uniform(-7.0, 7.0, 8000)
     end = start + rng.uniform(-1.0, 1.0, 8000) * rng.choice([0.1, 1.0, 7.0], 8000)
     np.testing.assert_array_equal(stays_on_branch(linkage, start, end), twins.stays_on_branch(linkage, start, end))
+    signs = rng.choice([-1, 1], (2, 8000))
+    found = same_circuit(linkage, start, signs[0], end, signs[1])
+    np.testing.assert_array_equal(found, twins.same_circuit(linkage, start, signs[0], end, signs[1]))
+    assert 0.1 < found.mean() < 0.9
     extremes = zip(
         transmission_extremes(linkage, start, end), twins.transmission_extremes(linkage, start, end), strict=True
     )

@@ -128,6 +128,18 @@ def stays_on_branch(linkage: Fourbar, start: Real, end: Real) -> Real:
     return np.asarray(free & (lower <= middle) & (middle <= upper))
 
 
+def same_circuit(linkage: Fourbar, angle: Real, assembly: Real, other_angle: Real, other_assembly: Real) -> Real:
+    """By the number of toggles: of none the assembly tells the circuit, of both the side of the ground line."""
+    _, _, folded, extended = input_limits(linkage)
+
+    def side(theta: Real) -> Real:
+        return np.asarray(np.sign(np.sin(theta - linkage.ground_angle)))
+
+    crank, two_sided = ~folded & ~extended, folded & extended
+    on_one = np.where(crank, assembly == other_assembly, ~two_sided | (side(angle) == side(other_angle)))
+    return np.asarray(can_assemble(linkage) & ((grashof_class(linkage.lengths) == 3) | on_one))
+
+
 def transmission_extremes(linkage: Fourbar, start: Real, end: Real) -> tuple[Real, Real]:
     """From the shortest and the longest diagonal of the range."""
     a, b, c, d = linkage.input, linkage.coupler, linkage.output, linkage.ground
