@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.designs import LinkageDesign
+
+Ranked = TypeVar("Ranked", bound=LinkageDesign)
 
 BULKY = 3.0
 """A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
@@ -87,10 +90,10 @@ _KEYS: dict[str, Callable[[LinkageDesign], float]] = {
 }
 
 
-def ranked(designs: Sequence[LinkageDesign], rank_by: str) -> list[LinkageDesign]:
+def ranked(designs: Sequence[Ranked], rank_by: str) -> list[Ranked]:
     """Designs in the order asked for, those that break a check after all others; ties by quality."""
 
-    def key(design: LinkageDesign) -> tuple[bool, float, float]:
+    def key(design: Ranked) -> tuple[bool, float, float]:
         value = _KEYS[rank_by](design)
         if rank_by == "accuracy":
             value = math.floor(math.log10(max(value, 1e-12)))  # residuals at rounding level are all alike

@@ -48,7 +48,7 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
-from synthesis.designs.path import CognateTriples, PathResult
+from synthesis.designs.path import CognateTriples, PathDesign, PathMetrics, PathResult
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -96,6 +96,8 @@ __all__ = [
     "MotionResult",
     "ParetoPlanetaryTrain",
     "ParetoTrain",
+    "PathDesign",
+    "PathMetrics",
     "PathResult",
     "PlanetPlaces",
     "PlanetaryDesign",

@@ -5,7 +5,12 @@ from __future__ import annotations
 from pydantic import Field
 
 from synthesis.designs.base import Answer, Result
-from synthesis.designs.linkage import LinkageDesign
+from synthesis.designs.linkage import LinkageDesign, LinkageMetrics
+
+
+def nothing(value: object) -> bool:
+    """Whether a field that may be left out is."""
+    return value is None
 
 
 class CognateTriples(Answer):
@@ -19,7 +24,25 @@ class CognateTriples(Answer):
     closed_under_conjugation: bool = Field(description="Whether complex solutions come in pairs, as they must.")
 
 
-class PathResult(Result[LinkageDesign]):
+class PathMetrics(LinkageMetrics):
+    """Measured properties of a linkage that guides a point, with its errors in length units."""
+
+    sum_of_squares: float = Field(description="Of the distances of P from the points, length units squared.")
+    rms_distance: float = Field(description="Root mean square of these distances, length units.")
+    max_distance: float = Field(description="The largest of them, length units.")
+
+
+class PathDesign(LinkageDesign):
+    """A linkage that guides a point, with the proof of what it does."""
+
+    metrics: PathMetrics
+
+
+class PathResult(Result[PathDesign]):
     """Linkages whose coupler point goes through the points."""
 
-    triples: CognateTriples
+    triples: CognateTriples | None = Field(
+        default=None,
+        exclude_if=nothing,
+        description="For up to nine points of free timing; left out where other methods were used.",
+    )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from synthesis.designs import CognateTriples, LinkageDesign, PathResult, Search
+from synthesis.designs import CognateTriples, PathDesign, PathResult, Search
 from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.continuation import follow, refine
@@ -115,8 +115,8 @@ class _Harvest:
 
     def __init__(self, problem: PathProblem) -> None:
         self.problem = problem
-        self.passed: list[LinkageDesign] = []
-        self.failed: list[LinkageDesign] = []
+        self.passed: list[PathDesign] = []
+        self.failed: list[PathDesign] = []
         self.rejected: Counter[str] = Counter()
         self.candidates = self.on_one_circuit = 0
 
@@ -184,7 +184,7 @@ class _Harvest:
         return text
 
 
-def _different(designs: list[LinkageDesign], size: float) -> list[LinkageDesign]:
+def _different(designs: list[PathDesign], size: float) -> list[PathDesign]:
     """The designs without repetitions, in their order."""
     if not designs:
         return []

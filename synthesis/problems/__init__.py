@@ -37,7 +37,7 @@ from synthesis.problems.motion import (
     Tolerance,
     whole_point,
 )
-from synthesis.problems.path import PathPoint, PathProblem
+from synthesis.problems.path import CouplerPointLimits, PathConstraints, PathPivots, PathPoint, PathProblem
 from synthesis.problems.planetary_train import (
     PlanetaryProblem,
     PlanetaryTeeth,
@@ -50,6 +50,7 @@ __all__ = [
     "Contradiction",
     "ContradictionError",
     "Count",
+    "CouplerPointLimits",
     "CouplerVector",
     "DriverDyad",
     "DyadChoices",
@@ -64,6 +65,8 @@ __all__ = [
     "MotionProblem",
     "Number",
     "PartialPoint",
+    "PathConstraints",
+    "PathPivots",
     "PathPoint",
     "PathProblem",
     "PlanetaryProblem",

@@ -1,16 +1,28 @@
-"""Path generation: a linkage whose coupler point goes through points."""
+"""Path generation: a linkage whose coupler point goes through points, or near them."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import math
+from itertools import pairwise
+from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.problems.base import Contradiction, Count, Number, Statement
-from synthesis.problems.linkage import LinkageProblem
+from synthesis.problems.base import Contradiction, Count, Flag, Interval, Number, PartialPoint, Statement
+from synthesis.problems.linkage import Constraints, LinkageProblem, Region
 
 EQUAL_POINTS = 1e-9
 """Points closer than this share of the coordinates' size count as equal."""
+
+EQUAL_ANGLES = 1e-9
+"""Crank angles closer than this, in degrees modulo full turns, are one angle."""
+
+MOST_FREE = 9
+"""Points that a fourbar can meet exactly, in general: it has nine dimensions."""
+
+MOST_POINTS = 1000
+"""Points that are taken; a curve that needs more is oversampled."""
 
 
 class PathPoint(Statement):
@@ -18,6 +30,9 @@ class PathPoint(Statement):
 
     x: Number
     y: Number
+    crank_angle: Number | None = Field(
+        default=None, description="Angle of the crank where P is here, degrees; for prescribed timing."
+    )
 
     @property
     def point(self) -> complex:
@@ -25,12 +40,45 @@ class PathPoint(Statement):
         return complex(self.x, self.y)
 
 
-class PathProblem(LinkageProblem):
-    """Path generation: a fourbar whose coupler point goes exactly through three to nine points.
+class CouplerPointLimits(Statement):
+    """Where P may lie on the coupler: along the line A → B, and across it to the left, from A, in length units."""
 
-    Nine points are as many as a fourbar can meet. For nine every fourbar is computed: all 1442 cognate triples, real
-    and complex, from which the real ones are verified with both cognates and either fixed pivot as the input's. Fewer
-    points leave freedom: points on a smooth curve between them, drawn anew in each round, make them nine.
+    along: Interval | None = None
+    across: Interval | None = None
+
+
+class PathConstraints(Constraints):
+    """What a usable linkage must satisfy, with limits that tasks of path generation have in addition."""
+
+    input_pivot_region: Region | None = Field(default=None, description="For the input's fixed pivot alone.")
+    coupler_point: CouplerPointLimits | None = None
+
+
+class PathPivots(Statement):
+    """Fixed pivots that are given; null leaves a pivot, or one of its coordinates, open."""
+
+    input: PartialPoint | None = None
+    output: PartialPoint | None = None
+
+    def given(self) -> int:
+        """How many coordinates are given."""
+        return sum(value is not None for pivot in (self.input, self.output) for value in pivot or ())
+
+    @model_validator(mode="after")
+    def _apart(self) -> Self:
+        if self.input is not None and self.input == self.output and None not in self.input:
+            raise ValueError("the fixed pivots must differ")
+        return self
+
+
+class PathProblem(LinkageProblem):
+    """Path generation: a fourbar whose coupler point goes exactly through points, or as near to them as can be.
+
+    With *free* timing the input angles at the points are free: nine points are as many as a fourbar can meet. For nine
+    every fourbar is computed: all 1442 cognate triples, real and complex, from which the real ones are verified with
+    both cognates and either fixed pivot as the input's. Fewer points leave freedom: points on a smooth curve between
+    them, drawn anew in each round, make them nine. With *prescribed* timing each point has its crank angle: five points
+    can be met exactly, and for five every fourbar is found. More points are fitted by least squares.
     """
 
     model_config = ConfigDict(
@@ -54,26 +102,189 @@ class PathProblem(LinkageProblem):
     )
 
     kind: Literal["path"]
-    points: list[PathPoint] = Field(min_length=3, max_length=9, description="In the order in which they are visited.")
-    timing: Literal["free"] = Field(default="free", description="At which input angles the points are met is free.")
-    method: Literal["auto", "exact"] = Field(default="auto", description="How the points are met: exactly.")
+    points: list[PathPoint] = Field(
+        min_length=3, max_length=MOST_POINTS, description="In the order in which they are visited."
+    )
+    timing: Literal["free", "prescribed"] = Field(
+        default="free", description="Whether each point has a crank angle at which it is met."
+    )
+    crank_phase: Literal["free", "absolute", "ground_line"] = Field(
+        default="free",
+        description="What prescribed crank angles are measured from: any line, so that only their differences count; "
+        "the x axis; or the line from the input's fixed pivot to the output's.",
+    )
+    crank_direction: Literal["as_given", "either"] = Field(
+        default="as_given", description="Whether the crank may turn the other way round than its angles do."
+    )
+    closed: Flag = Field(
+        default=False, description="The points go all round a closed curve, and the input turns through."
+    )
+    method: Literal["auto", "exact", "least_squares"] = Field(
+        default="auto",
+        description="How the points are met: exactly, or with the least sum of the squares of the distances. auto: "
+        "exactly where so many points can be.",
+    )
     mechanism: Literal["fourbar"] = "fourbar"
+    fixed_pivots: PathPivots = PathPivots()
+    constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
-        default=3, description="For fewer than nine points: how often points are drawn between them."
+        default=3, description="For fewer than nine points of free timing: how often points are drawn between them."
     )
 
     @property
     def task_size(self) -> float:
         """The greatest distance between two points, by which tolerances are measured, in length units."""
-        points = [point.point for point in self.points]
-        return max(abs(p - q) for p in points for q in points) or 1.0
+        points = np.array([point.point for point in self.points])
+        return float(np.abs(points[:, None] - points).max()) or 1.0
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the points have crank angles."""
+        return self.timing == "prescribed"
+
+    @property
+    def most_exact(self) -> int:
+        """How many points can be met exactly, in general: as many as there are freedoms for."""
+        free = MOST_FREE - self.fixed_pivots.given()
+        return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
+
+    @property
+    def fitted(self) -> bool:
+        """Whether the points are met as nearly as can be, and not exactly."""
+        if self.method == "auto":
+            return len(self.points) > self.most_exact
+        return self.method == "least_squares"
+
+    @property
+    def crank_turns(self) -> list[float]:
+        """Prescribed crank angles as one run of the crank from the first, radians: onward, or backward where shorter.
+
+        Where the points are not met in order within one turn, the differences as they are given.
+        """
+        angles = [point.crank_angle or 0.0 for point in self.points]
+        onward = [0.0]
+        for one, other in pairwise(angles):
+            onward.append(onward[-1] + _turn(other - one))
+        backward = [0.0]
+        for one, other in pairwise(angles):
+            backward.append(backward[-1] - _turn(one - other))
+        runs = [run for run in (onward, backward) if abs(run[-1]) <= 360.0 + EQUAL_ANGLES]
+        run = min(runs, key=lambda turns: abs(turns[-1])) if runs else [angle - angles[0] for angle in angles]
+        return [math.radians(turn) for turn in run]
 
     def contradictions(self) -> list[Contradiction]:
-        """Equal points, and demands that exclude one another."""
-        size = max(max(abs(p.x), abs(p.y)) for p in self.points)
+        """Equal points, timing that is incomplete or cannot be kept, and demands that exclude one another."""
+        return [
+            *self._timing(),
+            *self._equal_points(),
+            *self._method(),
+            *self._pivots(),
+            *self._closed(),
+            *self.constraints.contradictions(),
+        ]
+
+    def _timing(self) -> list[Contradiction]:
+        given = [k for k, point in enumerate(self.points) if point.crank_angle is not None]
+        if not self.prescribed:
+            found = [
+                Contradiction(
+                    f"/points/{k}/crank_angle", 'timing is free; state "timing": "prescribed", or leave it out'
+                )
+                for k in given[:1]
+            ]
+            for name, value, default in (
+                ("crank_phase", self.crank_phase, "free"),
+                ("crank_direction", self.crank_direction, "as_given"),
+            ):
+                if value != default:
+                    found.append(Contradiction(f"/{name}", "speaks of prescribed timing; the timing is free"))
+            return found
+        missing = [k for k in range(len(self.points)) if k not in set(given)]
+        if missing:
+            return [Contradiction(f"/points/{k}/crank_angle", "timing is prescribed; give an angle") for k in missing]
+        return [*self._equal_angles(), *self._turns()]
+
+    def _equal_angles(self) -> list[Contradiction]:
+        """An exact task cannot have two points at one angle of the crank; a fit wants three angles at least."""
+        angles = [point.crank_angle or 0.0 for point in self.points]
+        if self.fitted:
+            different = {round(_turn(angle) / EQUAL_ANGLES) % round(360.0 / EQUAL_ANGLES) for angle in angles}
+            if len(different) < 3:
+                return [Contradiction("/points", "prescribed timing needs three different crank angles at least")]
+            return []
+        return [
+            Contradiction(f"/points/{k}/crank_angle", f"equal to that of point {j}; exact points need different angles")
+            for k, later in enumerate(angles)
+            for j, earlier in enumerate(angles[:k])
+            if abs(math.remainder(later - earlier, 360.0)) <= EQUAL_ANGLES
+        ]
+
+    def _turns(self) -> list[Contradiction]:
+        turned = self.crank_turns
+        if self.constraints.in_order and abs(turned[-1] - turned[0]) > 0.0:
+            steps = [other - one for one, other in pairwise(turned)]
+            if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + EQUAL_ANGLES):
+                detail = (
+                    "the crank angles do not follow one another within one turn; "
+                    'reorder the points, or state "in_order": false'
+                )
+                return [Contradiction("/points", detail)]
+        return []
+
+    def _equal_points(self) -> list[Contradiction]:
+        points = np.array([point.point for point in self.points])
+        size = float(np.abs(np.concatenate([points.real, points.imag])).max())
+        equal = np.abs(points[:, None] - points) <= EQUAL_POINTS * size
+        if self.fitted:
+            different = sum(not equal[k, :k].any() for k in range(len(points)))
+            if different < 3:
+                return [Contradiction("/points", f"only {different} of them differ; three different points are needed")]
+            return []
+        if self.prescribed:
+            if equal.all():
+                return [Contradiction("/points", "all equal; points must differ")]
+            return []
+        return [
+            Contradiction(f"/points/{k}", f"equal to point {j}; points must differ")
+            for k in range(len(points))
+            for j in range(k)
+            if equal[k, j]
+        ]
+
+    def _method(self) -> list[Contradiction]:
+        if self.method == "exact" and len(self.points) > self.most_exact:
+            timing = "with prescribed timing" if self.prescribed else "with free timing"
+            detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"
+            return [Contradiction("/method", detail)]
+        if self.fitted or self.prescribed:
+            return [Contradiction("/timing" if self.prescribed else "/method", "is not solved by this version")]
+        return []
+
+    def _pivots(self) -> list[Contradiction]:
         found = []
-        for k, later in enumerate(self.points):
-            for j, earlier in enumerate(self.points[:k]):
-                if abs(later.point - earlier.point) <= EQUAL_POINTS * size:
-                    found.append(Contradiction(f"/points/{k}", f"equal to point {j}; points must differ"))
-        return [*found, *self.constraints.contradictions()]
+        limits = self.constraints
+        for side, pivot, regions in (
+            ("input", self.fixed_pivots.input, (limits.fixed_pivot_region, limits.input_pivot_region)),
+            ("output", self.fixed_pivots.output, (limits.fixed_pivot_region,)),
+        ):
+            for region in regions:
+                if pivot is None or region is None:
+                    continue
+                at = complex(
+                    region.x[0] if pivot[0] is None else pivot[0], region.y[0] if pivot[1] is None else pivot[1]
+                )
+                if not region.contains(at):
+                    found.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
+        return found
+
+    def _closed(self) -> list[Contradiction]:
+        if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):
+            detail = f"the input of a {self.constraints.grashof} linkage does not turn through, as a closed curve asks"
+            return [Contradiction("/constraints/grashof", detail)]
+        return []
+
+
+def _turn(degrees: float) -> float:
+    """An angle in [0, 360), one that is 0 to rounding as 0."""
+    turned = math.fmod(degrees, 360.0) % 360.0
+    return 0.0 if 360.0 - turned <= EQUAL_ANGLES else turned

@@ -1,9 +1,6 @@
 """Verification of a fourbar that guides a point: it is driven to where its coupler point passes each demanded point.
 
-The pin A lies on the crank's circle and at the coupler point's distance from the demanded point: two places, of which
-the output link excludes one, as a rule. They give the input angles to which the linkage is driven, in both assemblies;
-what is measured is where P then stands. A curve may pass a point twice: the passage on the first target's circuit
-counts.
+:mod:`synthesis.verification.passages` finds the inputs; what is measured is where P then stands.
 """
 
 from __future__ import annotations
@@ -16,35 +13,40 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import (
+    Fourbar,
     barker_class,
     can_assemble,
-    positions,
     same_circuit,
+    stays_on_branch,
     transmission_extremes,
     traverse,
 )
-from synthesis.designs import Check, FourbarMechanism, LinkageDesign, LinkageMetrics, Target, Verification
+from synthesis.designs import Check, FourbarMechanism, PathDesign, PathMetrics, Target, Verification
 from synthesis.linkages import DrivenFourbar, driven_fourbar
 from synthesis.problems import PathProblem
 from synthesis.ranking import quality
-from synthesis.verification.checks import TARGET_REACHED, constraint_checks
+from synthesis.verification.checks import CHOICE_KEPT, TARGET_REACHED, constraint_checks
+from synthesis.verification.passages import Passages, at_angles, at_points, in_order, nearest
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+SLACK = 1e-9
+"""Coordinates outside a stated interval by this share of its ends' size count as inside: rounding."""
 
-class _Passages(NamedTuple):
-    """The linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses."""
+
+class _Way(NamedTuple):
+    """The motion through the targets: inputs in one run, what it is worth, and the range that is used."""
 
     angles: Real
-    assemblies: NDArray[np.int64]
-    a: Complex
-    b: Complex
-    p: Complex
-    misses: Real
+    same_branch: bool
+    on_circuit: bool
+    in_order: bool
+    start: float
+    end: float
 
 
-def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> LinkageDesign | None:
+def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign | None:
     """Drive a fourbar past a problem's points and measure it.
 
     Parameters
@@ -56,7 +58,7 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> LinkageDes
 
     Returns
     -------
-    LinkageDesign or None
+    PathDesign or None
         None where the dimensions make no linkage that can be assembled, or it stays out of reach of a point.
     """
     try:
@@ -67,14 +69,11 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> LinkageDes
     if not can_assemble(linkage):
         return None
     points = np.array([point.point for point in problem.points])
-    passed = _passages(fourbar, points)
+    passed = _passages(problem, fourbar, points)
     if passed is None:
         return None
     size = problem.task_size
-    way = traverse(linkage, passed.angles, passed.assemblies)
-    on_circuit = way.same_branch or bool(
-        np.all(same_circuit(linkage, passed.angles[0], passed.assemblies[0], passed.angles, passed.assemblies))
-    )
+    way = _way(linkage, passed)
     barker = barker_class(linkage)
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
     links, point = mechanism.links, complex(linkage.coupler_point)
@@ -83,29 +82,37 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> LinkageDes
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
     residuals = passed.misses / size
-    metrics = LinkageMetrics(
+    metrics = PathMetrics(
         grashof=barker.motion,
         barker=barker.code,
         min_transmission_angle=math.degrees(least),
         transmission_angles={"coupler": math.degrees(least)},
         same_branch=way.same_branch,
-        visits_in_order=on_circuit and way.in_order,
+        visits_in_order=way.on_circuit and way.in_order,
         full_rotation=barker.motion in ("double_crank", "crank_rocker"),
         input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
         link_ratio=max(lengths) / min(lengths),
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
         size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
         quality=quality(math.sin(least), reach / size, max(lengths) / min(lengths)),
+        sum_of_squares=float(np.sum(passed.misses**2)),
+        rms_distance=math.sqrt(float(np.mean(passed.misses**2))),
+        max_distance=float(passed.misses.max()),
     )
-    residual = float(residuals.max())
-    checks = [
-        Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED),
-        Check(name="same_circuit", passed=on_circuit),
-        *constraint_checks(problem.constraints, lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics),
-    ]
+    checks = []
+    if not problem.fitted:
+        residual = float(residuals.max())
+        checks.append(
+            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
+        )
+    checks.append(Check(name="same_circuit", passed=way.on_circuit))
+    checks += constraint_checks(
+        problem.constraints, lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics
+    )
+    checks += _path_checks(problem, mechanism, linkage, metrics, size)
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
-    return LinkageDesign(
+    return PathDesign(
         mechanism=mechanism,
         targets=[
             Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
@@ -116,33 +123,72 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> LinkageDes
     )
 
 
-def _passages(fourbar: DrivenFourbar, points: Complex) -> _Passages | None:
-    """Where P passes each point, on the reference's circuit if it can be; None where no crank angle brings it near."""
-    linkage = fourbar.linkage
-    reference = positions(linkage, fourbar.reference, fourbar.assembly)
-    if not reference.valid:
-        return None
-    reach = points - linkage.input_pivot
-    a, r, f = float(linkage.input), abs(complex(linkage.coupler_point)), np.abs(reach)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        lean = np.arccos(np.clip((a * a + f * f - r * r) / (2.0 * a * f), -1.0, 1.0))
-    angles = np.angle(reach) + np.stack([lean, lean, -lean, -lean])
-    assemblies = np.array([1, -1, 1, -1])
-    signs = np.broadcast_to(assemblies[:, None], angles.shape)
-    if not np.isfinite(angles).all():
-        return None
-    at = positions(linkage, angles, assemblies)
-    misses = np.where(at.valid, np.abs(at.p - points), np.inf)
-    here = same_circuit(linkage, fourbar.reference, fourbar.assembly, angles, signs)
-    # The first target is met by the reference configuration itself, or not at all.
-    first = abs(complex(reference.p) - points[0])
-    good = misses <= np.maximum(4.0 * misses.min(axis=0), TARGET_REACHED * np.abs(points - points[0]).max())
-    best = np.where(good & here, 0.0, np.where(good, 1.0, 2.0)).argmin(axis=0), np.arange(len(points))
-    if not np.isfinite(misses[best]).all():
-        return None
-    chosen = [np.array(part[best]) for part in (angles, signs, at.a, at.b, at.p, misses)]
-    for part, value in zip(
-        chosen, (fourbar.reference, fourbar.assembly, reference.a, reference.b, reference.p, first), strict=True
-    ):
-        part[0] = value
-    return _Passages(*chosen)
+def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where the linkage meets the points, as the problem asks for it."""
+    if problem.prescribed:
+        turns = np.array(problem.crank_turns)
+        ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
+        found = [passed for way in ways if (passed := at_angles(fourbar, points, way)) is not None]
+        return min(found, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
+    if not problem.fitted:
+        return at_points(fourbar, points)
+    return in_order(fourbar, points) if problem.constraints.in_order else nearest(fourbar, points)
+
+
+def _way(linkage: Fourbar, passed: Passages) -> _Way:
+    """The motion from the first target to the last."""
+    if passed.run:
+        steps = np.diff(passed.angles)
+        low, high = float(passed.angles.min()), float(passed.angles.max())
+        one_way = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and high - low <= math.tau * (1.0 + SLACK)
+        on_branch = bool(stays_on_branch(linkage, low, high))
+        angles, start, end, ordered = passed.angles, low, high, one_way
+    else:
+        way = traverse(linkage, passed.angles, passed.assemblies)
+        angles, start, end, on_branch, ordered = way.angles, way.start, way.end, way.same_branch, way.in_order
+    on_circuit = on_branch or bool(
+        np.all(same_circuit(linkage, passed.angles[0], passed.assemblies[0], passed.angles, passed.assemblies))
+    )
+    return _Way(angles, on_branch, on_circuit, ordered and (on_branch or not passed.run), start, end)
+
+
+def _path_checks(
+    problem: PathProblem, mechanism: FourbarMechanism, linkage: Fourbar, metrics: PathMetrics, size: float
+) -> list[Check]:
+    """What only tasks of path generation demand: pivots, P's place on the coupler, the crank's phase, a closed path."""
+    checks = []
+    limits = problem.constraints
+    o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
+    if limits.input_pivot_region is not None:
+        checks.append(Check(name="input_pivot_region", passed=limits.input_pivot_region.contains(o2)))
+    if limits.coupler_point is not None:
+        point = complex(linkage.coupler_point)
+        inside = all(
+            interval is None or _within(value, interval)
+            for value, interval in (
+                (point.real, limits.coupler_point.along),
+                (point.imag, limits.coupler_point.across),
+            )
+        )
+        checks.append(Check(name="coupler_point", passed=inside))
+    if problem.fixed_pivots.given():
+        gap = 0.0
+        for pivot, stated in ((o2, problem.fixed_pivots.input), (o4, problem.fixed_pivots.output)):
+            for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
+                gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
+        checks.append(Check(name="fixed_pivots", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.crank_phase != "free":
+        stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0
+        if problem.crank_phase == "ground_line":
+            stands -= math.degrees(math.atan2((o4 - o2).imag, (o4 - o2).real))
+        signs = (1.0, -1.0) if problem.crank_direction == "either" else (1.0,)
+        gap = min(abs(math.radians(math.remainder(stands - sign * wanted, 360.0))) for sign in signs)
+        checks.append(Check(name="crank_phase", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.closed and not limits.full_rotation:
+        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
+    return checks
+
+
+def _within(value: float, interval: tuple[float, float]) -> bool:
+    slack = SLACK * max(abs(interval[0]), abs(interval[1]))
+    return interval[0] - slack <= value <= interval[1] + slack

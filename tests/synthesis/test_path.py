@@ -125,8 +125,9 @@ def test_fewer_points_are_met_by_linkages_through_drawn_ones():
     ("changes", "where"),
     [
         ({"points": [{"x": 0.0, "y": 0.0}] * 2}, ("points",)),
-        ({"points": [{"x": float(n), "y": 0.0} for n in range(10)]}, ("points",)),
-        ({"timing": "prescribed"}, ("timing",)),
+        ({"points": [{"x": float(n), "y": 0.0} for n in range(1001)]}, ("points",)),
+        ({"timing": "some"}, ("timing",)),
+        ({"fixed_pivots": {"input": [1.0, 1.0], "output": [1.0, 1.0]}}, ("fixed_pivots",)),
         ({"rounds": 0}, ("rounds",)),
         ({"points": [{"x": 0.0, "y": 0.0, "angle": 1.0}] * 3}, ("points", 0, "angle")),
     ],
@@ -138,6 +139,56 @@ def test_ill_formed_statements_name_the_field(changes, where):
     assert ("<path>", *where) in [error["loc"] for error in caught.value.errors()]
 
 
-def test_equal_points_are_contradictions():
-    problem = statement([0.0j, 1.0 + 1.0j, 2.0 + 0.0j, 1.0 + 1.0j])
-    assert [fault.path for fault in problem.contradictions()] == ["/points/3"]
+def turned(*angles, **changes):
+    """A statement with prescribed timing: points on a parabola, at these crank angles."""
+    points = [{"x": float(n), "y": n * n * 1.0, "crank_angle": angle} for n, angle in enumerate(angles)]
+    return parse_problem({"kind": "path", "timing": "prescribed", "points": points, **changes})
+
+
+@pytest.mark.parametrize(
+    ("problem", "where"),
+    [
+        (statement([0.0j, 1.0 + 1.0j, 2.0 + 0.0j, 1.0 + 1.0j]), "/points/3"),
+        (statement([0.0j, 1.0 + 1.0j, 0.0j], method="least_squares"), "/points"),
+        (statement([n * n + 1.0j * n for n in range(10)], method="exact"), "/method"),
+        (statement([0.0j, 1.0 + 1.0j, 3.0j], crank_phase="absolute"), "/crank_phase"),
+        (statement([0.0j, 1.0 + 1.0j, 3.0j], crank_direction="either"), "/crank_direction"),
+        (
+            statement([0.0j, 1.0 + 1.0j, 3.0j], closed=True, constraints={"grashof": "non_grashof"}),
+            "/constraints/grashof",
+        ),
+        (turned(0.0, 30.0, None), "/points/2/crank_angle"),
+        (turned(0.0, 30.0, 360.0), "/points/2/crank_angle"),
+        (turned(0.0, 30.0, 60.0, timing="free"), "/points/0/crank_angle"),
+        (turned(0.0, 30.0, 20.0, 40.0), "/points"),
+        (turned(0.0, 30.0, 60.0, 90.0, 120.0, 150.0, method="exact"), "/method"),
+        (turned(0.0, 30.0, 60.0, 90.0, 120.0, method="exact", crank_phase="absolute"), "/method"),
+        (turned(0.0, 30.0, 30.0, 0.0, method="least_squares"), "/points"),
+        (
+            turned(
+                0.0,
+                30.0,
+                60.0,
+                fixed_pivots={"input": [5.0, None]},
+                constraints={"input_pivot_region": {"x": [0.0, 1.0], "y": [0.0, 1.0]}},
+            ),
+            "/fixed_pivots/input",
+        ),
+    ],
+)
+def test_contradictions_name_the_field(problem, where):
+    assert where in [fault.path for fault in problem.contradictions()]
+
+
+@pytest.mark.parametrize(
+    ("angles", "run"),
+    [
+        ((0.0, 30.0, 60.0), (0.0, 30.0, 60.0)),
+        ((350.0, 10.0, 30.0), (0.0, 20.0, 40.0)),
+        ((20.0, 0.0, 320.0, 200.0), (0.0, -20.0, -60.0, -180.0)),
+        ((0.0, 120.0, 240.0, 360.0), (0.0, 120.0, 240.0, 360.0)),
+        ((10.0, 10.0 - 1e-12, 50.0), (0.0, 0.0, 40.0)),
+    ],
+)
+def test_prescribed_angles_are_one_run_of_the_crank(angles, run):
+    assert np.allclose(turned(*angles).crank_turns, np.radians(run), atol=1e-10)

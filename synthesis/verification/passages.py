@@ -1,0 +1,264 @@
+"""Where a driven fourbar's coupler point meets demanded points, or comes nearest to them: three ways of asking.
+
+*At the points*, where they are to be met exactly and timing is free: the pin A lies on the crank's circle and at the
+coupler point's distance from the demanded point, two places, of which the output link excludes one as a rule. They
+give the input angles to which the linkage is driven, in both assemblies. A curve may pass a point twice: the passage on
+the first target's circuit counts.
+
+*At the crank angles*, where these are prescribed: the first is the reference's, the others follow it.
+
+*Nearest, in order*, where points are fitted and timing is free: the input is looked for at which P comes nearest to
+each point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
+which dynamic programming finds the least sum of squares; closer and closer looks then do the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage import full_rotation, positions, same_circuit, toggle_angles
+from synthesis.linkages import DrivenFourbar
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+MET = 1e-9
+"""Distance, as a share of the task's size, up to which places count as alike where one circuit is to be chosen."""
+
+GRID = 360
+"""Inputs that are looked at first: one degree of a full turn."""
+
+STRIDE = 5
+"""A crank's first input is tried at every so many of the grid's: the closer looks move it by more than that."""
+
+SPREAD = 17
+"""Inputs in each closer look at a target, over the two steps around the best of the last."""
+
+CLOSER = 0.25
+"""Each closer look's step as a share of the last's: targets that settle against each other may move on together."""
+
+LOOKS = 24
+"""Closer looks: 4²⁴ times finer than the grid, 1e-16 of a turn."""
+
+OUT_OF_REACH = 1e30
+"""A squared distance where there is no position: never taken where there is another."""
+
+
+class Passages(NamedTuple):
+    """The linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses.
+
+    ``run`` tells that the angles are one run of the input from the first target, and not angles modulo full turns.
+    """
+
+    angles: Real
+    assemblies: Whole
+    a: Complex
+    b: Complex
+    p: Complex
+    misses: Real
+    run: bool = False
+
+
+def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P passes each point, on the reference's circuit if it can be; None where no crank angle brings it near."""
+    linkage = fourbar.linkage
+    reference = positions(linkage, fourbar.reference, fourbar.assembly)
+    if not reference.valid:
+        return None
+    reach = points - linkage.input_pivot
+    a, r, f = float(linkage.input), abs(complex(linkage.coupler_point)), np.abs(reach)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lean = np.arccos(np.clip((a * a + f * f - r * r) / (2.0 * a * f), -1.0, 1.0))
+    angles = np.angle(reach) + np.stack([lean, lean, -lean, -lean])
+    assemblies = np.array([1, -1, 1, -1])
+    signs = np.broadcast_to(assemblies[:, None], angles.shape)
+    if not np.isfinite(angles).all():
+        return None
+    at = positions(linkage, angles, assemblies)
+    misses = np.where(at.valid, np.abs(at.p - points), np.inf)
+    here = same_circuit(linkage, fourbar.reference, fourbar.assembly, angles, signs)
+    # The first target is met by the reference configuration itself, or not at all.
+    first = abs(complex(reference.p) - points[0])
+    good = misses <= np.maximum(4.0 * misses.min(axis=0), MET * np.abs(points - points[0]).max())
+    best = np.where(good & here, 0.0, np.where(good, 1.0, 2.0)).argmin(axis=0), np.arange(len(points))
+    if not np.isfinite(misses[best]).all():
+        return None
+    passed = Passages(angles[best], np.array(signs[best]), at.a[best], at.b[best], at.p[best], misses[best])
+    own = (fourbar.reference, fourbar.assembly, reference.a, reference.b, reference.p, first)
+    for part, value in zip(passed[:6], own, strict=True):
+        part[0] = value
+    return passed
+
+
+def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real) -> Passages | None:
+    """Where P is when the input has turned by ``turns`` (radians) from its reference; None where it cannot turn so."""
+    return _driven(fourbar, points, fourbar.reference + turns, run=True)
+
+
+def in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P comes nearest to the points one after the other, the input turning one way on the reference's branch.
+
+    Of all ways to do so the one with the least sum of squared distances, within one turn of the input.
+    """
+    found = [_ordered(fourbar, points, way) for way in (1.0, -1.0)]
+    run, _ = min(found, key=lambda pair: pair[1])
+    return _driven(fourbar, points, run, run=True)
+
+
+def nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P comes nearest to each point, in any order, on the reference's branch."""
+    low, high = _branch(fourbar)
+    step = (high - low) / GRID
+    grid = np.linspace(low, high, GRID + 1)
+    at = positions(fourbar.linkage, grid, fourbar.assembly)
+    path = np.where(at.valid, at.p, np.inf)
+    inputs = np.array([grid[np.abs(path - point).argmin()] for point in points])
+    spread = np.linspace(-1.0, 1.0, SPREAD)
+    for _ in range(LOOKS):
+        tried = np.clip(inputs[:, None] + step * spread, low, high)
+        squares = _squares(fourbar, points, tried)
+        inputs = tried[np.arange(len(points)), squares.argmin(axis=1)]
+        step *= 2.0 / (SPREAD - 1)
+    return _driven(fourbar, points, inputs, run=False)
+
+
+def _driven(fourbar: DrivenFourbar, points: Complex, angles: Real, *, run: bool) -> Passages | None:
+    at = positions(fourbar.linkage, angles, fourbar.assembly)
+    if not np.all(at.valid):
+        return None
+    signs = np.full(len(points), fourbar.assembly)
+    return Passages(angles, signs, at.a, at.b, at.p, np.abs(at.p - points), run)
+
+
+def _branch(fourbar: DrivenFourbar) -> tuple[float, float]:
+    """The input's range on the reference's branch, half a turn to either side for a crank."""
+    at = fourbar.reference
+    if full_rotation(fourbar.linkage):
+        return at - math.pi, at + math.pi
+    toggles = toggle_angles(fourbar.linkage)
+    above = np.remainder(toggles - at, math.tau)
+    below = np.remainder(at - toggles, math.tau)
+    return at - float(below.min()), at + float(above.min())
+
+
+def _squares(fourbar: DrivenFourbar, points: Complex, inputs: Real) -> Real:
+    """Squared distances at inputs of shape (n, m) from points (n,); infinite where there is no position."""
+    at = positions(fourbar.linkage, inputs.ravel(), fourbar.assembly)
+    gaps = at.p.reshape(inputs.shape) - points[:, None]
+    return np.where(at.valid.reshape(inputs.shape), gaps.real**2 + gaps.imag**2, np.inf)
+
+
+def _ordered(fourbar: DrivenFourbar, points: Complex, way: float) -> tuple[Real, float]:
+    """The run of the input, turning one way, with the least sum of squares, and that sum."""
+    low, high = _branch(fourbar)
+    crank = bool(full_rotation(fourbar.linkage))
+    if way < 0.0:
+        low, high = high, low
+    grid = np.linspace(low, high, GRID + 1)
+    squares = np.minimum(_squares(fourbar, points, np.broadcast_to(grid, (len(points), GRID + 1))), OUT_OF_REACH)
+    step = abs(high - low) / GRID
+    columns = _round(squares[:, :-1].copy()) if crank else _along(squares)
+    run = np.asarray(low + way * step * columns, np.float64)
+    longest = math.tau if crank else math.inf
+    for _ in range(LOOKS):
+        tried: Real = run[:, None] + way * step * np.linspace(-1.0, 1.0, SPREAD)
+        if not crank:
+            tried = np.clip(tried, min(low, high), max(low, high))
+        found = np.minimum(_squares(fourbar, points, tried), OUT_OF_REACH)
+        run = way * _chosen(found, way * tried, longest)
+        step *= CLOSER
+    return run, float(_squares(fourbar, points, run[:, None]).sum())
+
+
+@njit(cache=True, nogil=True)
+def _least(squares: Real, first: int, count: int, totals: Real, back: NDArray[np.int32], chosen: Whole) -> float:
+    """The least sum over columns that do not fall from row to row: ``count`` of them from ``first``, modulo all."""
+    rows, columns = squares.shape
+    for k in range(count):
+        totals[0, k] = squares[0, (first + k) % columns]
+    for row in range(1, rows):
+        before, now = totals[(row - 1) % 2], totals[row % 2]
+        best, at = np.inf, 0
+        for k in range(count):
+            if before[k] < best:
+                best, at = before[k], k
+            now[k] = best + squares[row, (first + k) % columns]
+            back[row, k] = at
+    last = totals[(rows - 1) % 2]
+    k = int(np.argmin(last[:count]))
+    least = float(last[k])
+    for row in range(rows - 1, -1, -1):
+        chosen[row] = first + k
+        if row:
+            k = back[row, k]
+    return least
+
+
+@njit(cache=True, nogil=True)
+def _along(squares: Real) -> Whole:
+    """Columns that do not fall from row to row, with the least sum."""
+    rows, columns = squares.shape
+    chosen = np.empty(rows, np.int64)
+    _least(squares, 0, columns, np.empty((2, columns)), np.empty((rows, columns), np.int32), chosen)
+    return chosen
+
+
+@njit(cache=True, nogil=True)
+def _round(squares: Real) -> Whole:
+    """The same for a curve that closes: columns go on beyond the last with the first, over one turn from the start."""
+    rows, columns = squares.shape
+    totals, back = np.empty((2, columns + 1)), np.empty((rows, columns + 1), np.int32)
+    chosen, trial = np.empty(rows, np.int64), np.empty(rows, np.int64)
+    best = np.inf
+    for first in range(0, columns, STRIDE):
+        least = _least(squares, first, columns + 1, totals, back, trial)
+        if least < best:
+            best = least
+            chosen[:] = trial
+    return chosen
+
+
+@njit(cache=True, nogil=True)
+def _chosen(squares: Real, values: Real, longest: float) -> Real:
+    """One of the values of each row, ascending in each row and not falling from row to row, with the least sum.
+
+    The last is at most ``longest`` after the first.
+    """
+    rows, columns = squares.shape
+    best_run = np.empty(rows)
+    back = np.zeros((rows, columns), np.int64)
+    totals = np.empty((2, columns))
+    overall = np.inf
+    starts = columns if longest < np.inf else 1
+    for start in range(starts):
+        for k in range(columns):
+            allowed = starts == 1 or k == start
+            totals[0, k] = squares[0, k] if allowed else np.inf
+        for row in range(1, rows):
+            before, now = totals[(row - 1) % 2], totals[row % 2]
+            best, at, seen = np.inf, 0, 0
+            for k in range(columns):
+                while seen < columns and values[row - 1, seen] <= values[row, k]:
+                    if before[seen] < best:
+                        best, at = before[seen], seen
+                    seen += 1
+                now[k] = best + squares[row, k]
+                back[row, k] = at
+        last = totals[(rows - 1) % 2]
+        limit = values[0, start] + longest if starts > 1 else np.inf
+        k, least = -1, np.inf
+        for n in range(columns):
+            if values[rows - 1, n] <= limit and last[n] < least:
+                k, least = n, last[n]
+        if k >= 0 and least < overall:
+            overall = least
+            for row in range(rows - 1, -1, -1):
+                best_run[row] = values[row, k]
+                k = back[row, k]
+    return best_run
