@@ -31,10 +31,12 @@ EXPORTS: dict[str, dict[Form, str]] = {
     },
     "gearbox": {
         "svg": "service.render.gearbox_exports:gearbox_sheet",
+        "dxf": "service.render.gearbox_dxf:gearbox_drawing",
         "csv": "service.render.gearbox_exports:gearbox_table",
     },
     "layshaft_gearbox": {
         "svg": "service.render.gearbox_exports:layshaft_sheet",
+        "dxf": "service.render.gearbox_dxf:layshaft_drawing",
         "csv": "service.render.gearbox_exports:layshaft_table",
     },
 }

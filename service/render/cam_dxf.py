@@ -17,18 +17,15 @@ Coordinates are the cam's own frame in the problem's unit, which the header name
 
 from __future__ import annotations
 
-import io
 import math
 
-import ezdxf
 import numpy as np
-from ezdxf import units
-from ezdxf.filemanagement import new
 from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
+from service.render import dxf
 from service.render.cam import CamScene
 from service.render.svg import clean
 from synthesis.designs.cam import CamDesign
@@ -36,11 +33,6 @@ from synthesis.problems.cam import CamProblem
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-# Without the time and the random marks of its making, so that the same cam gives the same file.
-ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]
-
-UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
 
 LAYERS = {
     "PROFILE": (5, "CONTINUOUS"),
@@ -66,12 +58,10 @@ STRAIGHT = 1e-12
 def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a DXF document (R2010)."""
     scene = CamScene(design.mechanism)
-    document = new("R2010", setup=["linetypes"])
-    document.units = UNITS[problem.length_unit]
+    document = dxf.new_drawing(clean(title) or "Cam", problem.length_unit)
     for name, (colour, linetype) in LAYERS.items():
         document.layers.add(name, color=colour, linetype=linetype)
     document.layers.get("PROFILE_ARCS").freeze()
-    document.header.custom_vars.append("Title", clean(title) or "Cam")
     space = document.modelspace()
     _spline(space, scene.contour, "PROFILE")
     space.add_lwpolyline(
@@ -87,15 +77,9 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     _follower(space, scene)
     arm = 0.08 * scene.base_radius
     for end in (arm, 1j * arm):
-        _line(space, -end, end, "CENTRE")
-    _line(space, complex(arm), complex(3.0 * arm), "CENTRE")
-    text = io.StringIO()
-    document.write(text)
-    return text.getvalue()
-
-
-def _line(space: Modelspace, start: complex, end: complex, layer: str) -> None:
-    space.add_line((start.real, start.imag), (end.real, end.imag), dxfattribs={"layer": layer})
+        dxf.add_line(space, -end, end, "CENTRE")
+    dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
+    return dxf.written(document)
 
 
 def _spline(space: Modelspace, contour: Contour, layer: str) -> None:
@@ -180,15 +164,15 @@ def _follower(space: Modelspace, scene: CamScene) -> None:
         if follower.roller_radius > 0.0:
             space.add_circle((centre.real, centre.imag), follower.roller_radius, dxfattribs=layer)
         end = scene.pivot if scene.pivot is not None else centre + scene.base_radius
-        _line(space, centre, end, "FOLLOWER")
+        dxf.add_line(space, centre, end, "FOLLOWER")
     else:
         start, end = scene.faces(len(scene.angle))[0]
         if isinstance(follower, OscillatingFlat):
             along = scene.face_direction(0)
             pivot = complex(follower.pivot_distance)
             start += along * ((pivot - start) * along.conjugate()).real
-            _line(space, start, pivot, "FOLLOWER")
-        _line(space, start, end, "FOLLOWER")
+            dxf.add_line(space, start, pivot, "FOLLOWER")
+        dxf.add_line(space, start, end, "FOLLOWER")
     if scene.pivot is not None:
         pin = 0.04 * scene.base_radius
         space.add_circle((scene.pivot.real, scene.pivot.imag), pin, dxfattribs=layer)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from kinematics.gear.teeth import Gear
+from service.render.meshing import facing
 from service.render.svg import Box
 from synthesis.designs.gear_train import GearTrainDesign
 from synthesis.gear_train.verification import driven_train
@@ -54,7 +55,7 @@ def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
             gear = Gear(teeth, stage.module, train.pressure_angle)
             if previous is not None:
                 centre += ahead * (previous.pitch_radius + gear.pitch_radius)
-                tooth_at = _meshing(previous, tooth_at, gear, cmath.phase(ahead))
+                tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
             found.append(PlacedGear(number + 1, role, gear, centre, tooth_at, speed))
             previous = gear
         shaft = centre
@@ -68,16 +69,6 @@ def _direction(number: int, stages: int, coaxial: bool) -> complex:
     if stages == 3:
         return cmath.exp(2j * math.pi * number / 3.0)
     return complex((-1) ** number)
-
-
-def _meshing(one: Gear, tooth_at: float, other: Gear, direction: float) -> float:
-    """Angle of a tooth of ``other``, which stands in ``direction`` from ``one``, so that a space faces ``one``'s tooth.
-
-    The tooth of ``one`` nearest to the line of centres is δ past it; a space of ``other`` is then as far past the
-    contact on the pitch circle, which is the other way round.
-    """
-    past = math.remainder(tooth_at - direction, 2.0 * math.pi / one.teeth)
-    return direction + math.pi - past * one.pitch_radius / other.pitch_radius + math.pi / other.teeth
 
 
 def box_around(gears: list[PlacedGear]) -> Box:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import pins
 from kinematics.gear.teeth import Gear
+from service.render.meshing import facing
 from synthesis.designs.planetary_train import PlanetaryMechanism
 
 
@@ -87,17 +88,6 @@ def _direction(arrangement: Arrangement, centres: dict[str, complex], one: str, 
     if arrangement.places[one].internal or arrangement.places[other].internal:
         return cmath.phase(here or there)
     return cmath.phase(there - here)
-
-
-def facing(one: Gear, tooth_at: float, other: Gear, ahead: float) -> float:
-    """Angle of a tooth of ``other`` so that a space of it faces the tooth of ``one`` nearest to their contact.
-
-    ``ahead`` is the direction from the centre of ``one`` to the contact; with internal teeth both see it the same way.
-    """
-    past = math.remainder(tooth_at - ahead, 2.0 * math.pi / one.teeth) * one.pitch_radius / other.pitch_radius
-    if one.internal or other.internal:
-        return ahead + past + math.pi / other.teeth
-    return ahead + math.pi - past + math.pi / other.teeth
 
 
 def _turned(

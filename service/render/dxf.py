@@ -1,0 +1,78 @@
+"""DXF documents (R2010): a new one in the problem's unit, gears in it, and its text.
+
+A gear is drawn on two layers of one name: ``NAME_PITCH`` has its pitch circle, ``NAME_TEETH`` the closed outline of its
+teeth, true involutes with their fillets.
+"""
+
+from __future__ import annotations
+
+import io
+
+import ezdxf
+from ezdxf import units
+from ezdxf.document import Drawing
+from ezdxf.enums import TextEntityAlignment
+from ezdxf.filemanagement import new
+from ezdxf.layouts.layout import Modelspace
+
+from kinematics.errors import DimensionError
+from kinematics.gear.profile import outline
+from kinematics.gear.teeth import Gear
+
+# Without the time and the random marks of its making, so that the same design gives the same file.
+ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]
+
+UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
+
+
+def new_drawing(title: str, unit: str) -> Drawing:
+    """An empty drawing whose lengths are in ``unit``."""
+    document = new("R2010", setup=["linetypes"])
+    document.units = UNITS[unit]
+    document.header.custom_vars.append("Title", title)
+    return document
+
+
+def written(document: Drawing) -> str:
+    """The drawing as text."""
+    text = io.StringIO()
+    document.write(text)
+    return text.getvalue()
+
+
+def add_gear_layers(document: Drawing, name: str, colour: int) -> None:
+    """The two layers of a gear."""
+    document.layers.add(f"{name}_PITCH", color=colour, linetype="DASHDOT")
+    document.layers.add(f"{name}_TEETH", color=colour)
+
+
+def teeth_outline(gear: Gear, at: complex, tooth_at: float) -> list[tuple[float, float]] | None:
+    """The outline of all teeth; None for teeth whose cutter would come to a point, which have none."""
+    try:
+        return [(float(z.real), float(z.imag)) for z in at + outline(gear, tooth_at)]
+    except DimensionError:
+        return None
+
+
+def add_gear(space: Modelspace, name: str, gear: Gear, at: complex, teeth: list[tuple[float, float]] | None) -> None:
+    """Pitch circle and outline on the layers of ``name``."""
+    space.add_circle((at.real, at.imag), gear.pitch_radius, dxfattribs={"layer": f"{name}_PITCH"})
+    if teeth is not None:
+        space.add_lwpolyline(teeth, close=True, dxfattribs={"layer": f"{name}_TEETH"})
+
+
+def add_cross(space: Modelspace, at: complex, arm: float, layer: str) -> None:
+    """A cross at a shaft."""
+    for end in (complex(arm), 1j * arm):
+        add_line(space, at - end, at + end, layer)
+
+
+def add_line(space: Modelspace, start: complex, end: complex, layer: str) -> None:
+    """A straight line."""
+    space.add_line((start.real, start.imag), (end.real, end.imag), dxfattribs={"layer": layer})
+
+
+def add_words(space: Modelspace, at: complex, words: str, height: float, layer: str = "TEXT") -> None:
+    """A line of text about a point."""
+    entity = space.add_text(words, height=height, dxfattribs={"layer": layer})
+    entity.set_placement((at.real, at.imag), align=TextEntityAlignment.MIDDLE_CENTER)
