@@ -12,14 +12,14 @@ from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
 from service.analyst import Analyst
-from service.api import analyses, docs, errors, events, health, jobs, problems
-from service.api.head import HeadAsGet
+from service.api import analyses, docs, errors, events, health, jobs, metrics, problems
 from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
 from service.jobs.feed import Feed
 from service.jobs.store import JobStore
+from service.metrics import Metrics
 from service.settings import Settings
 
 log = structlog.get_logger(__name__)
@@ -34,7 +34,7 @@ Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the 
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
 
 
-def create_app(settings: Settings, executor: Executor) -> FastAPI:
+def create_app(settings: Settings, executor: Executor, measured: Metrics) -> FastAPI:
     """The service as an ASGI application. Its start upgrades the store and takes unfinished jobs up again."""
 
     @asynccontextmanager
@@ -43,7 +43,7 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
         store = JobStore(engine)
         changes = Changes(asyncio.get_running_loop())
         app.state.analyst = Analyst()
-        app.state.analyst.start(after=executor.ready)
+        app.state.analyst.start(after=lambda: executor.ready() > 0)
         try:
             executor.subscribe(changes.publish)
             executor.start()
@@ -53,9 +53,10 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
                 executor.submit(job_id)
             if unfinished:
                 log.info("unfinished jobs taken up again", jobs=len(unfinished))
-            app.state.desk = JobDesk(store, executor, changes)
-            app.state.feed = Feed(store, changes)
-            following = asyncio.create_task(app.state.feed.run())
+            app.state.desk = JobDesk(store, executor, changes, measured)
+            feed = app.state.feed = Feed(store, changes)
+            measured.watch(lambda: feed.listeners, executor.ready, store.unfinished)
+            following = asyncio.create_task(feed.run())
             yield
             changes.close()
             await following
@@ -78,11 +79,11 @@ def create_app(settings: Settings, executor: Executor) -> FastAPI:
         separate_input_output_schemas=False,
         openapi_tags=[jobs.TAG, analyses.TAG, problems.TAG, health.TAG],
     )
-    app.add_middleware(HeadAsGet)
     app.state.settings = settings
+    app.state.metrics = measured
     errors.install(app)
     docs.install(app)
-    routers = (jobs.router, events.router, analyses.router, problems.router, health.router)
+    routers = (jobs.router, events.router, analyses.router, problems.router, health.router, metrics.router)
     for router in routers:
         app.include_router(router)
     app.state.routes = [*app.routes, *(route for router in routers for route in router.routes)]

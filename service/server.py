@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from service import logs
 from service.jobs.database import sqlite_file
 from service.jobs.local import LocalExecutor
+from service.metrics import Metrics
 from service.settings import Settings
 
 
@@ -32,16 +33,17 @@ def serve(settings: Settings) -> None:
     """
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)
-    logs.configure(settings.log_level)
+    logs.configure(settings.log_level, settings.log_format)
     with _data_folder(settings), _store(settings), _listener(settings) as listener:
-        executor = _executor(settings)
+        metrics = Metrics()
+        executor = _executor(settings, metrics)
         try:
             # A worker takes as long to start as the web framework to import: side by side, the service is ready in
             # half the time. The tables are made in between, long before any worker is given a job.
             executor.start()
             from service.web import WebServer
 
-            WebServer(settings, executor).run(sockets=[listener])
+            WebServer(settings, executor, metrics).run(sockets=[listener])
         except _Ended:
             pass
         except SystemExit:  # uvicorn's way to say that the application did not start
@@ -60,9 +62,9 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
     raise _Ended
 
 
-def _executor(settings: Settings) -> LocalExecutor:
+def _executor(settings: Settings, metrics: Metrics) -> LocalExecutor:
     try:
-        return LocalExecutor(settings)
+        return LocalExecutor(settings, metrics)
     except (SQLAlchemyError, ImportError, OSError) as error:
         raise _no_database(error) from None
 

@@ -39,6 +39,7 @@ class Settings(BaseSettings):
         int, Field(ge=0, le=30, description="Longest wait that Prefer: wait is granted, seconds.")
     ] = 30
     log_level: Literal["debug", "info", "warning", "error"] = "info"
+    log_format: Literal["text", "json"] = "text"
 
     @property
     def store_url(self) -> str:

@@ -8,9 +8,12 @@ import socket
 
 import uvicorn
 
+from service.api.head import HeadAsGet
 from service.app import create_app
 from service.jobs.executor import Executor
+from service.metrics import Metrics
 from service.settings import Settings
+from service.telemetry import Telemetry
 
 GRACE_S = 2
 """How long requests under way may take to end when the service stops."""
@@ -21,13 +24,13 @@ _READY_PERIOD_S = 0.02
 class WebServer(uvicorn.Server):
     """Serves the application on a bound socket until SIGINT or SIGTERM."""
 
-    def __init__(self, settings: Settings, executor: Executor) -> None:
-        self._app = create_app(settings, executor)
+    def __init__(self, settings: Settings, executor: Executor, metrics: Metrics) -> None:
+        self._app = create_app(settings, executor, metrics)
         self._executor = executor
         self._announcement: asyncio.Task[None] | None = None
         super().__init__(
             uvicorn.Config(
-                self._app,
+                HeadAsGet(Telemetry(self._app, metrics)),
                 log_config=None,
                 access_log=False,
                 server_header=False,
@@ -53,7 +56,7 @@ class WebServer(uvicorn.Server):
         await super().shutdown(sockets)
 
     async def _announce(self, listener: socket.socket) -> None:
-        while not self._executor.ready():
+        while self._executor.ready() == 0:
             await asyncio.sleep(_READY_PERIOD_S)
         host, port = listener.getsockname()[:2]
         shown = f"[{host}]" if ":" in host else host

@@ -14,6 +14,7 @@ from service.analyst import LONGEST_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
 from service.api.errors import Refusal, invalid_mechanism, invalid_request, sentence
+from service.telemetry import span
 
 TAG = {"name": "analyses", "description": "Drive a given mechanism."}
 
@@ -70,7 +71,8 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
         422 or 503 when it is not there in time.
     """
     try:
-        return Response(await analyst.call(work, *args, **kwargs), media_type="application/json")
+        with span("analysis"):
+            return Response(await analyst.call(work, *args, **kwargs), media_type="application/json")
     except TooLong:
         fault = ("/mechanism", f"The analysis was given up after {LONGEST_S:g} seconds; are all lengths meant so?")
         raise invalid_mechanism([fault]) from None

@@ -14,6 +14,8 @@ from pydantic_core import to_json
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
+from service import telemetry
+
 PROBLEM_JSON = "application/problem+json"
 
 MAX_ERRORS = 20
@@ -178,6 +180,7 @@ def _answer(
     errors: Sequence[tuple[str, str]] = (),
     headers: Mapping[str, str] | None = None,
 ) -> Response:
+    telemetry.refused(type_)
     content: dict[str, Any] = {
         "type": type_,
         "title": title,

@@ -22,6 +22,7 @@ from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused
+from service.telemetry import span
 from synthesis.kinds import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
@@ -274,7 +275,9 @@ async def export_design_csv(desk: Desk, job_id: str, number: str) -> Response:
 
 async def _file(desk: JobDesk, job_id: str, number: str, form: Literal["svg", "dxf", "csv"]) -> Response:
     job, result = await _solved(desk, job_id)
-    return Response(await run_in_threadpool(_rendered, job, result, number, form), media_type=_MEDIA_TYPES[form])
+    with span("drawing"):
+        drawn = await run_in_threadpool(_rendered, job, result, number, form)
+    return Response(drawn, media_type=_MEDIA_TYPES[form])
 
 
 def _rendered(job: JobRow, result: str, number: str, form: Literal["svg", "dxf", "csv"]) -> str:

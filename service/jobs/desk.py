@@ -14,6 +14,8 @@ from service.jobs.executor import Executor
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
 from service.jobs.store import JobStore, Repeatable
+from service.metrics import Metrics
+from service.telemetry import span
 
 log = structlog.get_logger(__name__)
 
@@ -25,6 +27,7 @@ class JobDesk:
     store: JobStore
     executor: Executor
     changes: Changes
+    metrics: Metrics
 
     async def accept(
         self, *, kind: str, label: str | None, problem: str, wait_s: float, repeatable: Repeatable | None
@@ -38,9 +41,11 @@ class JobDesk:
         KeyReused
             When the key came with another request before.
         """
-        job, new = await run_in_threadpool(self._stored, kind, label, problem, repeatable)
+        with span("store"):
+            job, new = await run_in_threadpool(self._stored, kind, label, problem, repeatable)
         if new:
             log.info("job accepted", job=job.id, kind=kind)
+            self.metrics.accepted(kind)
         with self.changes.watch(job.id) as changed:
             if new:
                 self.executor.submit(job.id)
@@ -48,7 +53,8 @@ class JobDesk:
                 job = await self.get(job.id) or job  # it may have ended before it was watched
             if wait_s <= 0:
                 return job
-            return await self._ended(job, changed, wait_s)
+            with span("job"):
+                return await self._ended(job, changed, wait_s)
 
     def _stored(self, kind: str, label: str | None, problem: str, repeatable: Repeatable | None) -> tuple[JobRow, bool]:
         if repeatable is None:
@@ -100,4 +106,4 @@ class JobDesk:
         except Exception:  # whatever a database driver raises means the same here: no store
             log.exception("the store does not answer")
             return "The job store does not answer."
-        return None if self.executor.ready() else "No worker has finished starting yet."
+        return None if self.executor.ready() > 0 else "No worker has finished starting yet."

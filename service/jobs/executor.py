@@ -31,8 +31,8 @@ class Executor(Protocol):
         """Stop the computation of a job that is cancelled in the store already; native code included."""
         ...
 
-    def ready(self) -> bool:
-        """Whether there is a worker that has finished starting."""
+    def ready(self) -> int:
+        """How many workers have finished starting."""
         ...
 
     def stop(self) -> None:

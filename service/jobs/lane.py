@@ -27,6 +27,7 @@ from service.jobs import faults, worker
 from service.jobs.executor import Changed
 from service.jobs.states import Status
 from service.jobs.store import JobStore
+from service.metrics import Metrics
 
 CHECK_PERIOD_S = 1.0
 """An idle lane looks this often whether its worker is alive, so that a job never meets a dead one."""
@@ -63,6 +64,7 @@ class Lane(threading.Thread):
         settings: worker.WorkerSettings,
         timeout_s: float,
         changed: Changed,
+        metrics: Metrics,
         after: Lane | None,
     ) -> None:
         super().__init__(name=name, daemon=True)
@@ -71,6 +73,7 @@ class Lane(threading.Thread):
         self._settings = settings
         self._timeout_s = timeout_s
         self._changed = changed
+        self._metrics = metrics
         self._after = after
         self._lock = threading.Lock()
         self._stopping = threading.Event()
@@ -120,7 +123,7 @@ class Lane(threading.Thread):
 
     def _could_not_start(self, reason: str) -> None:
         log.error("worker could not be started", lane=self.name, reason=reason)
-        self._discard_worker()
+        self._replace_worker("start_failed")
         self.settled.set()
         self._stopping.wait(RETRY_PERIOD_S)
 
@@ -130,7 +133,7 @@ class Lane(threading.Thread):
             self._run_job(job_id)
         except Exception:  # a defect of the lane's own: it is this job's end, not that of all that come after
             log.exception("the lane failed", lane=self.name, job=job_id)
-            self._discard_worker()
+            self._replace_worker("defect")
             try:
                 self._stored(self._store.give_up, job_id, faults.INTERNAL_ERROR.as_json(job_id))
             except Exception:  # then the job is taken up again at the next start of the service
@@ -143,7 +146,8 @@ class Lane(threading.Thread):
     def _ensure_worker(self) -> None:
         if self._pool is not None and self._pool.active:
             return
-        self._discard_worker()
+        if self._pool is not None:
+            self._replace_worker("died_idle")
         # spawn: a forked child would inherit the server's threads' locks and open connections.
         self._pool = pebble.ProcessPool(
             max_workers=1, initializer=worker.start, initargs=(self._settings,), context=get_context("spawn")
@@ -161,6 +165,11 @@ class Lane(threading.Thread):
         self.ready = True
         log.info("worker ready", lane=self.name, pid=pid)
 
+    def _replace_worker(self, reason: str) -> None:
+        """End the worker; the next look after it makes another."""
+        self._metrics.worker_restart(reason)
+        self._discard_worker()
+
     def _discard_worker(self) -> None:
         self.ready = False
         pool, self._pool = self._pool, None
@@ -174,26 +183,33 @@ class Lane(threading.Thread):
 
     def _run_job(self, job_id: str) -> None:
         try:
-            outcome = self._call(self._timeout_s, worker.run, job_id, job_id=job_id)
+            ran: worker.Ran = self._call(self._timeout_s, worker.run, job_id, job_id=job_id)
         except TimeoutError:
-            self._discard_worker()
+            self._metrics.attempt("timeout")
+            self._replace_worker("timeout")
             fault = faults.timeout(self._timeout_s)
             if self._stored(self._store.give_up, job_id, fault.as_json(job_id)):
                 log.warning("job failed", job=job_id, reason="timeout")
         except CancelledError:
-            self._discard_worker()
+            if self._stopping.is_set():
+                self._discard_worker()
+            else:
+                self._metrics.attempt("cancelled")
+                self._replace_worker("cancelled")
             if self._stopping.is_set() and self._stored(self._store.requeue, job_id):
                 log.info("job requeued", job=job_id, reason="the service stops")
         except WorkerLost as loss:
-            self._discard_worker()
+            self._metrics.attempt("worker lost")
+            self._replace_worker("lost")
             status = self._stored(self._store.crashed, job_id)
             log.warning("worker lost", lane=self.name, job=job_id, reason=str(loss), job_is_now=status)
             if status == Status.QUEUED:
                 self._queue.put(job_id)
         else:
-            if outcome == "out of memory":
+            self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
+            if ran.outcome == "out of memory":
                 # Libraries that were refused memory half-way through may be left in any state.
-                self._discard_worker()
+                self._replace_worker("out_of_memory")
 
     def _call(self, timeout_s: float, function: Any, *args: Any, job_id: str | None = None) -> Any:
         """Call a function in the worker.

@@ -10,6 +10,7 @@ from service.jobs.executor import Changed
 from service.jobs.lane import Lane
 from service.jobs.store import JobStore
 from service.jobs.worker import WorkerSettings
+from service.metrics import Metrics
 from service.settings import Settings
 
 STOP_TIMEOUT_S = 5.0
@@ -25,8 +26,9 @@ class LocalExecutor:
         When the store cannot be reached.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, metrics: Metrics) -> None:
         self._settings = settings
+        self._metrics = metrics
         # What the executor writes is found out anew if it is lost, like what the workers write.
         self._engine = connect(settings.store_url, durable=False)
         self._store = JobStore(self._engine)
@@ -45,6 +47,7 @@ class LocalExecutor:
             server_pid=os.getpid(),
             memory_mb=self._settings.job_memory_mb,
             log_level=self._settings.log_level,
+            log_format=self._settings.log_format,
         )
         # The first worker has the machine to itself until it is ready, so that the service is ready soon. And when it
         # is the first ever and compiles the kernels, the others find them compiled.
@@ -57,6 +60,7 @@ class LocalExecutor:
                 for_workers,
                 self._settings.job_timeout_s,
                 self._changed,
+                self._metrics,
                 after=first,
             )
             first = first or lane
@@ -77,9 +81,9 @@ class LocalExecutor:
         for lane in self._lanes:
             lane.cancel(job_id)
 
-    def ready(self) -> bool:
-        """Whether a worker has finished starting."""
-        return any(lane.ready and lane.is_alive() for lane in self._lanes)
+    def ready(self) -> int:
+        """How many workers have finished starting."""
+        return sum(lane.ready and lane.is_alive() for lane in self._lanes)
 
     def stop(self) -> None:
         """Stop all lanes at once and wait for them."""

@@ -12,13 +12,13 @@ from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Engine, RowMapping, case, delete, insert, select, text, update
+from sqlalchemy import Engine, RowMapping, case, delete, func, insert, select, text, update
 from sqlalchemy.exc import IntegrityError
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
 from service.jobs.schema import JobRow, JobSummary, jobs
-from service.jobs.states import FINISHED, MOVES, Status
+from service.jobs.states import FINISHED, MOVES, UNFINISHED, Status
 
 MAX_CRASHES = 3
 """A job whose worker died is tried again this many times."""
@@ -117,6 +117,13 @@ class JobStore:
         with self._engine.connect() as connection:
             row = connection.execute(select(*_WHOLE).where(jobs.c.id == job_id)).mappings().one_or_none()
         return None if row is None else JobRow(**_values(row))
+
+    def unfinished(self) -> dict[str, int]:
+        """How many jobs are in each of the states that are not final."""
+        query = select(jobs.c.status, func.count()).where(jobs.c.status.in_(UNFINISHED)).group_by(jobs.c.status)
+        with self._engine.connect() as connection:
+            counted = {row[0]: row[1] for row in connection.execute(query)}
+        return {status.value: counted.get(status.value, 0) for status in (Status.QUEUED, Status.RUNNING)}
 
     def summaries(self, job_ids: Sequence[str]) -> dict[str, JobSummary]:
         """The jobs of these ids that there are, by id."""

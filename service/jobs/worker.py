@@ -39,6 +39,15 @@ log = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
+class Ran:
+    """An attempt that the worker has ended: what became of it, the kind of its problem, and how long it took."""
+
+    outcome: Outcome
+    kind: str | None
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
 class WorkerSettings:
     """What a worker has to know; passed to it when it starts."""
 
@@ -46,6 +55,7 @@ class WorkerSettings:
     server_pid: int
     memory_mb: int
     log_level: str
+    log_format: logs.Format
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +78,7 @@ def start(settings: WorkerSettings) -> None:
     # As many workers as processors run side by side, so threads inside them would only compete.
     for variable in _THREADS:
         os.environ[variable] = "1"
-    logs.configure(settings.log_level)
+    logs.configure(settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
@@ -83,7 +93,7 @@ def hello() -> int:
     return os.getpid()
 
 
-def run(job_id: str) -> Outcome:
+def run(job_id: str) -> Ran:
     """Run a queued job to its end. The store has the answer when this returns.
 
     Raises whatever the store raises: the executor then treats the worker as dead and the job is tried again.
@@ -91,13 +101,14 @@ def run(job_id: str) -> Outcome:
     assert _post is not None, "start() comes first"
     claim = _post.store.claim(job_id)
     if claim is None:
-        return "not claimed"
+        return Ran("not claimed", None, 0.0)
     bound = log.bind(job=job_id, attempt=claim.attempt)
     bound.info("job running")
     began = time.perf_counter()
     outcome = _attempt(_post, job_id, claim)
-    bound.info(f"job {outcome}", seconds=round(time.perf_counter() - began, 4))
-    return outcome
+    seconds = time.perf_counter() - began
+    bound.info(f"job {outcome}", seconds=round(seconds, 4))
+    return Ran(outcome, claim.kind, seconds)
 
 
 def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:

@@ -93,7 +93,7 @@ def test_the_openapi_document_is_complete(openapi):
     ids = [op["operationId"] for _, _, op in operations(openapi)]
     assert sorted(ids) == [
         "analyse", "create_job", "delete_job", "draw_design", "export_design_csv", "export_design_dxf",
-        "follow_job", "get_job", "healthz", "list_jobs", "list_problems", "move_design", "readyz",
+        "follow_job", "get_job", "healthz", "list_jobs", "list_problems", "metrics", "move_design", "readyz",
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)

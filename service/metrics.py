@@ -1,0 +1,142 @@
+"""What the service counts and measures about itself, in Prometheus' form.
+
+No label holds anything that a client has chosen: operations, methods, kinds, outcomes and reasons are from lists of the
+service's own, so that nobody can fill the memory with new ones or put a secret into them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Final
+
+import structlog
+from prometheus_client import (
+    CollectorRegistry,
+    Counter,
+    Gauge,
+    GCCollector,
+    Histogram,
+    PlatformCollector,
+    ProcessCollector,
+)
+from prometheus_client.core import GaugeMetricFamily
+from prometheus_client.registry import Collector
+
+METHODS: Final = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
+
+_REQUEST_SECONDS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
+_JOB_SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
+
+log = structlog.get_logger(__name__)
+
+
+class Metrics:
+    """All metrics of one server, in a registry of their own."""
+
+    def __init__(self) -> None:
+        self.registry = CollectorRegistry()
+        for collector in (ProcessCollector, PlatformCollector, GCCollector):
+            collector(registry=self.registry)
+        self._requests = Counter(
+            "mechsynth_http_requests",
+            "Requests that were answered.",
+            ["operation", "method", "status"],
+            registry=self.registry,
+        )
+        self._request_seconds = Histogram(
+            "mechsynth_http_request_seconds",
+            "From the head of a request to the end of its answer, waits and streams included.",
+            ["operation"],
+            buckets=_REQUEST_SECONDS,
+            registry=self.registry,
+        )
+        self._rejections = Counter(
+            "mechsynth_http_rejections",
+            "Requests that were answered with an error, by the type of the problem.",
+            ["reason"],
+            registry=self.registry,
+        )
+        self._jobs_accepted = Counter(
+            "mechsynth_jobs_accepted", "Jobs that were accepted.", ["kind"], registry=self.registry
+        )
+        self._attempts = Counter(
+            "mechsynth_job_attempts",
+            "Attempts at jobs that have ended, by how.",
+            ["outcome"],
+            registry=self.registry,
+        )
+        self._job_seconds = Histogram(
+            "mechsynth_job_seconds",
+            "Computation of an attempt at a job that its worker has brought to an end.",
+            ["kind"],
+            buckets=_JOB_SECONDS,
+            registry=self.registry,
+        )
+        self._worker_restarts = Counter(
+            "mechsynth_worker_restarts",
+            "Worker processes that were replaced, by why.",
+            ["reason"],
+            registry=self.registry,
+        )
+        self._listeners = Gauge(
+            "mechsynth_event_listeners", "Clients that listen to the events of a job.", registry=self.registry
+        )
+        self._workers = Gauge(
+            "mechsynth_workers_ready", "Worker processes that have finished starting.", registry=self.registry
+        )
+
+    def request(self, operation: str, method: str, status: int, seconds: float) -> None:
+        """A request has been answered."""
+        self._requests.labels(operation, method if method in METHODS else "other", str(status)).inc()
+        self._request_seconds.labels(operation).observe(seconds)
+
+    def rejection(self, type_: str) -> None:
+        """A request was answered with a problem of this type (``/problems/...``)."""
+        self._rejections.labels(type_.removeprefix("/problems/")).inc()
+
+    def accepted(self, kind: str) -> None:
+        """A job was accepted."""
+        self._jobs_accepted.labels(kind).inc()
+
+    def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
+        """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
+        self._attempts.labels(outcome.replace(" ", "_")).inc()
+        if kind is not None:
+            self._job_seconds.labels(kind).observe(seconds)
+
+    def worker_restart(self, reason: str) -> None:
+        """A worker process is being replaced."""
+        self._worker_restarts.labels(reason).inc()
+
+    def watch(
+        self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]
+    ) -> None:
+        """Ask these whenever the metrics are read: listeners, ready workers, and unfinished jobs by their state."""
+        self._listeners.set_function(listeners)
+        self._workers.set_function(workers)
+        self.registry.register(_Queue(queue))
+
+
+class _Queue(Collector):
+    """The unfinished jobs, counted in the store, which several servers may share."""
+
+    def __init__(self, queue: Callable[[], Mapping[str, int]]) -> None:
+        self._queue = queue
+
+    def describe(self) -> Iterator[GaugeMetricFamily]:
+        yield _family()
+
+    def collect(self) -> Iterator[GaugeMetricFamily]:
+        try:
+            counted = self._queue()
+        except Exception:  # whatever a database driver raises: the other metrics are wanted all the more
+            log.exception("the unfinished jobs could not be counted")
+            return
+        family = _family()
+        for status, jobs in counted.items():
+            family.add_metric([status], jobs)
+        yield family
+
+
+def _family() -> GaugeMetricFamily:
+    return GaugeMetricFamily("mechsynth_jobs_unfinished", "Unfinished jobs in the store.", labels=["status"])
