@@ -26,11 +26,26 @@ SPAN_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
 
 
+FINEST_PARTS = 8
+"""Parts that a step is divided in at once, at most."""
+
+STEPS_OF_MOVE = 12
+"""Steps of the profile within a segment that moves, at least."""
+
+
 def profile_angles(cam: Cam, count: int) -> Real:
-    """Cam angles of a profile: equal steps and the joints of the segments, as close as a small roller asks for."""
+    """Cam angles of a profile: equal steps and the joints of the segments, as close as short segments ask for.
+
+    A small roller asks for close points too.
+    """
     program = cam.program
+    short = [
+        np.linspace(start, end, STEPS_OF_MOVE + 1)[:-1]
+        for start, end, segment in zip(program.joints[:-1], program.joints[1:], program.segments, strict=True)
+        if segment.pieces.polynomial.shape[1] > 1 and end - start < STEPS_OF_MOVE * TURN / count
+    ]
     while True:
-        angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1]]))
+        angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1], *short]))
         angle = angle[np.append(True, np.diff(angle) > APART)]
         chord = np.abs(np.diff(cam.profile(np.append(angle, TURN)))).max()
         if chord * SPAN_OF_ROLLER <= cam.roller_radius or cam.roller_radius <= 0.0 or count >= MOST:
@@ -39,13 +54,18 @@ def profile_angles(cam: Cam, count: int) -> Real:
 
 
 def refined(angle: Real, off: Real, allowed: float) -> Real:
-    """Three more cam angles on both sides of each one where a deviation is more than half of what is allowed."""
+    """Steps divided where a deviation is more than half of what is allowed, and beside such a step.
+
+    The deviation falls with the fourth power of the step where the curvature is smooth; where it bends, with less, and
+    the next round divides again.
+    """
     closed = np.append(angle, TURN + angle[0])
-    bad = off > 0.5 * allowed
-    near = bad | np.roll(bad, -1)
-    low, step = closed[:-1][near], np.diff(closed)[near]
-    parts = [low + step * share for share in (0.25, 0.5, 0.75)]
-    return np.unique(np.mod(np.concatenate([angle, *parts]), TURN))
+    parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, FINEST_PARTS).astype(np.int64)
+    parts = np.maximum(parts, np.minimum(np.roll(parts, -1), 2))
+    parts = np.maximum(parts, np.minimum(np.roll(parts, 1), 2))
+    low, step = np.repeat(closed[:-1], parts), np.repeat(np.diff(closed) / parts, parts)
+    within = np.arange(len(low)) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.unique(np.mod(low + step * within, TURN))
 
 
 def cam_mechanism(cam: Cam, angle: Real) -> CamMechanism:

@@ -357,8 +357,9 @@ def _none(runs: Sequence[Run], lift: float) -> NoMotion:
 
 
 def _order(run: Run) -> int:
-    """Order of the control: one above what must be continuous, and that of the highest limit at least."""
-    return max([run.continuity + 1, 2] + [limit.order for limit in run.limits])
+    """Order of the control: one above what must be continuous or is stated, and that of the highest limit at least."""
+    stated = max((order for condition in run.conditions for _, order, _ in condition.terms), default=0)
+    return max([run.continuity + 1, stated + 1, 2] + [limit.order for limit in run.limits])
 
 
 def _block(run: Run, lift: float, size: int, steps: int) -> Block:

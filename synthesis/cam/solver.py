@@ -386,6 +386,8 @@ def _result(problem: CamProblem, composed: Composition, design: CamDesign, size:
         summary = (
             f"The smallest cam found, of {name} radius {radius:.6g} {problem.length_unit}, fails: {', '.join(failed)}."
         )
+        if "meets_accelerations" in failed and problem.limits.jerk is None:
+            summary += " Without a limit on jerk an acceleration may be met for an instant only; state one."
     stated = getattr(problem.follower, "prime_radius", None) or getattr(problem.follower, "base_radius", None)
     given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
     # With the laws given and the smallest cam proven, a limit on size is broken by every cam.

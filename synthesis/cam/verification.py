@@ -3,7 +3,8 @@
 Nothing that a solver computed is taken over but the answer itself. The points of the profile alone give
 displacement, pressure angle and radius of curvature at cam angles four times as close as the design's; the
 displacement is compared with the program's table, its quintic between, and the program's table with what the problem
-states: laws by the analysis core, rests, heights, conditions, bands, and limits on the motion.
+states: laws and rests by the analysis core. What is stated of automatic and optimal motions (ends, conditions, bands,
+limits on velocity, acceleration and jerk) is measured on the profile too (:mod:`synthesis.cam.measured_rates`).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from kinematics.cam.program import TURN
 from kinematics.cam.segments import Condition as PolynomialCondition
 from kinematics.cam.segments import dwell, law_segment, polynomial_segment
 from kinematics.errors import DimensionError, ShapeError
+from synthesis.cam.measured_rates import rate_checks
 from synthesis.cam.mechanism import core_follower, profile_points, table_angles
 from synthesis.designs import Check, Verification
 from synthesis.designs.cam import CamMechanism, ProgramTable
@@ -40,7 +42,7 @@ STATED = 1e-7
 """Deviation of the program from the statement, as a share of the lift."""
 
 LIMIT_SLACK = 1e-6
-"""Relative slack of limits on the motion, which are kept exactly, and are read from a table."""
+"""Relative slack of limits on the motion where the program's table has it, which keeps them exactly."""
 
 MEASURED_SLACK = 2e-3
 """Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points: where
@@ -119,6 +121,12 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         off,
     )
     if touches:
+
+        def measure(angle: Real) -> tuple[Real, Real]:
+            found = contour.follow(follower, angle, mechanism.rotation)
+            return found.s, found.v
+
+        checks += rate_checks(problem, measure, lift, allowed)
         checks += _limit_checks(problem, mechanism, measured, roller)
     return Verification(passed=all(check.passed for check in checks), checks=checks), measured
 
@@ -225,7 +233,6 @@ def _program_checks(problem: CamProblem, mechanism: CamMechanism, table: Real, l
             conditions = [PolynomialCondition(*c) for c in problem.polynomial_conditions(segment)]
             known = polynomial_segment(span, conditions)
         elif isinstance(segment, Move) and segment.law in ("auto", "optimal"):
-            off = max(off, _open_deviation(problem, segment, at, s, low, high))
             start += span
             continue
         else:
@@ -235,13 +242,12 @@ def _program_checks(problem: CamProblem, mechanism: CamMechanism, table: Real, l
             off = max(off, float(np.abs(known.pieces.motion(at).s - s).max()))
         start += span
     checks = [Check(name="keeps_the_statement", passed=off / lift <= STATED, value=off / lift, limit=STATED)]
-    open_ = any(isinstance(s, Move) and s.law in ("auto", "optimal") for s in problem.segments)
-    if open_:
-        where = _open_angles(problem, angle)
+    where = _open_angles(problem, angle)
+    if where.any():
         for name, values in (("velocity", v), ("acceleration", a), ("jerk", j)):
             limit = getattr(problem.limits, name)
             if limit is not None:
-                checks.append(_at_most(f"peak_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
+                checks.append(_at_most(f"table_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
     return checks
 
 
@@ -255,27 +261,6 @@ def _open_angles(problem: CamProblem, angle: Real) -> NDArray[np.bool_]:
             where |= (angle > start + 1e-12) & (angle < end - 1e-12)
         start = end
     return where
-
-
-def _open_deviation(problem: CamProblem, segment: Move, at: Real, s: Real, low: float, high: float) -> float:
-    """How far an automatic or optimal motion is from its ends, conditions and bands, where its table has them."""
-    if not len(at):
-        return 0.0
-    span, unit = math.radians(segment.angle), problem.displacement_unit
-    off = 0.0
-    stated = [(0.0, low), (span, high)]
-    stated += [(t, x) for t, order, x in problem.polynomial_conditions(segment) if order == 0]
-    for t, x in stated:
-        nearest = int(np.abs(at - t).argmin())
-        if abs(at[nearest] - t) <= 1e-9:
-            off = max(off, abs(float(s[nearest]) - x))
-    for band in segment.bands:
-        within = s[(at >= math.radians(band.start)) & (at <= math.radians(band.end))]
-        if len(within):
-            above = float(within.max()) - band.upper * unit if band.upper is not None else 0.0
-            below = band.lower * unit - float(within.min()) if band.lower is not None else 0.0
-            off = max(off, above, below)
-    return off
 
 
 def _at_least(name: str, value: float, limit: float, slack: float) -> Check:

@@ -1,0 +1,172 @@
+"""Limits and conditions of optimal motions, measured on the finished profile: found where broken, despite the table."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from synthesis.cam.composition import compose
+from synthesis.cam.measured_rates import PEAK_SLACK
+from synthesis.cam.mechanism import cam_mechanism, profile_angles
+from synthesis.cam.solver import _sized
+from synthesis.cam.verification import verify
+from synthesis.dispatch import solve
+from synthesis.kinds import parse_problem
+
+BASE = {
+    "kind": "cam",
+    "segments": [
+        {"motion": "dwell", "angle": 90.0},
+        {"motion": "rise", "angle": 90.0, "lift": 25.0, "law": "optimal"},
+        {"motion": "dwell", "angle": 90.0},
+        {"motion": "return", "angle": 90.0, "law": "optimal"},
+    ],
+    "follower": {"type": "translating_roller", "roller_radius": 10.0},
+    "limits": {"pressure_angle": 30.0, "jerk": 700.0},
+}
+
+
+def problem(limits=None, conditions=(), bands=(), **changes):
+    statement = copy.deepcopy(BASE) | changes
+    statement["limits"] |= limits or {}
+    statement["segments"][1] |= {"conditions": list(conditions), "bands": list(bands)}
+    return parse_problem(statement)
+
+
+def made(stated):
+    """The finished cam, and its exact program."""
+    program = compose(stated).program
+    cam, _ = _sized(stated, program)
+    return cam_mechanism(cam, profile_angles(cam, 1440)), program
+
+
+def failed(stated, mechanism):
+    verdict, _ = verify(stated, mechanism)
+    return {check.name for check in verdict.checks if not check.passed}
+
+
+def values(stated, mechanism):
+    verdict, _ = verify(stated, mechanism)
+    return {check.name: check.value for check in verdict.checks}
+
+
+@pytest.mark.parametrize(
+    ("minimize", "limits"),
+    [
+        ("peak_acceleration", {}),
+        ("peak_jerk", {"velocity": 40.0}),
+        ("rms_jerk", {"jerk": 900.0}),
+        ("peak_velocity", {"acceleration": 60.0}),
+    ],
+)
+@pytest.mark.parametrize("continuity", ["acceleration", "jerk"])
+def test_measured_peaks_are_the_exact_ones(minimize, limits, continuity):
+    """Means over windows: never above the exact peak but by the slack, and those of the program's own derivatives."""
+    stated = problem({"velocity": 45.0, "acceleration": 75.0} | limits, minimize=minimize, continuity=continuity)
+    mechanism, program = made(stated)
+    found = values(stated, mechanism)
+    for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
+        exact = program.peaks[order].largest
+        assert found[f"peak_{name}"] <= exact * (1.0 + PEAK_SLACK)
+        assert found[f"peak_{name}"] == pytest.approx(window_peak(program, order), rel=5e-3)
+    assert failed(stated, mechanism) == set()
+
+
+def window_peak(program, order):
+    """Greatest mean of the exact derivative under a B-spline of 1/80 (acceleration) or 1/40 (jerk) of the segment."""
+    fine = 3200
+    peaks = []
+    for start in (0.5 * math.pi, 1.5 * math.pi):
+        at = start + 0.5 * math.pi * (np.arange(fine) + 0.5) / fine
+        curve = program.motion(at)[order]
+        width = {1: 1, 2: fine // 80, 3: fine // 40}[order]
+        for _ in range(order if order > 1 else 0):
+            curve = np.convolve(curve, np.full(width, 1.0 / width), mode="valid")
+        peaks.append(float(np.abs(curve).max()))
+    return max(peaks)
+
+
+def zeroed(mechanism):
+    """The same profile beside a table that claims no rates at all."""
+    none = [0.0] * len(mechanism.program.angle)
+    return mechanism.model_copy(update={"program": mechanism.program.model_copy(update={"a": none, "j": none})})
+
+
+@pytest.mark.parametrize(("name", "share"), [("velocity", 0.99), ("acceleration", 0.99), ("jerk", 0.99)])
+def test_a_broken_limit_is_found_on_the_profile_alone(name, share):
+    stated = problem({"velocity": 45.0, "acceleration": 75.0})
+    mechanism, program = made(stated)
+    peak = program.peaks[("velocity", "acceleration", "jerk").index(name) + 1].largest
+    stricter = problem({"velocity": 45.0, "acceleration": 75.0} | {name: share * peak})
+    assert f"peak_{name}" in failed(stricter, zeroed(mechanism))
+
+
+CONDITIONS = [{"angle": 40.0, "s": 10.0, "v": 24.0}, {"angle": 60.3, "a": -20.0}]
+
+
+def test_conditions_are_measured_at_their_own_angles():
+    """None of them is an angle of the table, 60.3 least of all."""
+    stated = problem(conditions=CONDITIONS)
+    mechanism, _ = made(stated)
+    assert failed(stated, mechanism) == set()
+    found = values(stated, mechanism)
+    assert found["meets_velocities"] <= 1e-3
+    assert found["meets_accelerations"] <= 1e-2
+
+
+@pytest.mark.parametrize(
+    ("which", "name", "off", "check"),
+    [
+        (0, "s", 1e-4, "meets_positions"),
+        (0, "v", 0.1, "meets_velocities"),
+        (1, "a", 1.5, "meets_accelerations"),
+    ],
+)
+def test_a_condition_that_is_not_met_is_found(which, name, off, check):
+    mechanism, _ = made(problem(conditions=CONDITIONS))
+    others = copy.deepcopy(CONDITIONS)
+    others[which][name] += off
+    assert failed(problem(conditions=others), mechanism) == {check}
+
+
+def test_a_band_that_is_left_is_found():
+    band = {"start": 40.1, "end": 44.9, "lower": 10.0, "upper": 16.0}
+    stated = problem(bands=[band])
+    mechanism, program = made(stated)
+    assert failed(stated, mechanism) == set()
+    top = float(program.motion(math.radians(90.0 + 44.9)).s)
+    tight = problem(bands=[band | {"upper": top - 1e-3}])
+    assert failed(tight, mechanism) == {"meets_positions"}
+
+
+@pytest.mark.parametrize("continuity", ["acceleration", "jerk"])
+def test_a_stated_jerk_is_a_condition_like_others(continuity):
+    stated = problem(conditions=[{"angle": 40.0, "j": 3.0}], continuity=continuity)
+    composed = compose(stated)
+    assert float(composed.program.motion(math.radians(130.0)).j) == pytest.approx(3.0, abs=1e-6)
+
+
+def test_an_acceleration_of_an_instant_is_not_called_met():
+    """Without a limit on jerk the cheapest motion meets it in a spike that no profile shows."""
+    statement = copy.deepcopy(BASE) | {"limits": {"pressure_angle": 30.0}, "minimize": "peak_velocity"}
+    statement["segments"][1] |= {"conditions": [{"angle": 40.0, "a": 3.0}, {"angle": 45.0, "s": 12.0, "v": 20.0}]}
+    result = solve(parse_problem(statement), lambda fraction, message: None)
+    assert result.designs == []
+    assert not result.search.complete
+    assert "state one" in result.summary
+
+
+@pytest.mark.parametrize("lift", [0.05, 5.0])
+def test_two_hundred_short_segments(lift):
+    """1.8° each: points are put where they are needed, and the profile reproduces them all."""
+    moves = [
+        {"motion": "rise" if k % 2 == 0 else "fall", "angle": 1.8, "lift": lift, "law": "modified_sine"}
+        for k in range(200)
+    ]
+    result = solve(parse_problem(copy.deepcopy(BASE) | {"segments": moves}), lambda fraction, message: None)
+    (design,) = result.designs
+    assert design.verification.passed
+    assert len(design.segments) == 200
