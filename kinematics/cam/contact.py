@@ -190,10 +190,8 @@ class Contour:
         shares: Real = np.empty(theta.size)
         pieces = np.empty(theta.size, dtype=np.int64)
         flat = np.ascontiguousarray(theta.reshape(-1))
-        if roller and sizes[2] == 0.0:
-            _edge(np.ascontiguousarray(curves), flat, kind, sizes, flipped, values, pieces, shares)
-        else:
-            _lay(np.ascontiguousarray(curves), flat, kind, sizes, flipped, values, pieces, shares)
+        edge = roller and sizes[2] == 0.0
+        _lay(np.ascontiguousarray(curves), flat, kind, sizes, flipped, edge, values, pieces, shares)
         values = values.reshape(theta.shape)
         local, share = curves[pieces.reshape(theta.shape)], shares.reshape(theta.shape)
         point = _value(local, share)
@@ -318,50 +316,39 @@ def _along(
 
 
 @njit(cache=True, nogil=True)
-def _lay(
-    curves: Complex,
-    angles: Real,
-    kind: int,
-    sizes: tuple[float, float, float],
-    flipped: bool,
-    values: Real,
-    pieces: NDArray[np.int64],
-    shares: Real,
-) -> None:
+def _touched(
+    curves: Complex, asked: Real, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
+) -> tuple[float, int, float]:
     """Greatest coordinate over the profile: every local maximum over the points is closed in by golden section."""
     n = curves.shape[0]
-    asked = np.empty(n)
-    for i in range(angles.size):
-        turn = complex(math.cos(angles[i]), -math.sin(angles[i]))
-        for k in range(n):
-            z = curves[k, 0] * turn
-            asked[k] = _stand(z.real, -z.imag if flipped else z.imag, kind, sizes)
-        best, where, share = -math.inf, 0, 0.0
-        for k in range(n):
-            here = asked[k]
-            if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
-                continue
-            low, high = -1.0, 1.0
-            left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-            at_left = _along(curves, k, left, turn, flipped, kind, sizes)
-            at_right = _along(curves, k, right, turn, flipped, kind, sizes)
-            for _ in range(NARROWINGS):
-                if at_left < at_right:
-                    low, left, at_left = left, right, at_right
-                    right = low + GOLDEN * (high - low)
-                    at_right = _along(curves, k, right, turn, flipped, kind, sizes)
-                else:
-                    high, right, at_right = right, left, at_left
-                    left = high - GOLDEN * (high - low)
-                    at_left = _along(curves, k, left, turn, flipped, kind, sizes)
-            found, t = (at_left, left) if at_left > at_right else (at_right, right)
-            if here > found:
-                found, t = here, 0.0
-            if found > best:
-                best = found
-                where, share = (k, t) if t >= 0.0 else ((k - 1) % n, t + 1.0)
-        values[i] = best if best > -math.inf else math.nan
-        pieces[i], shares[i] = where, share
+    for k in range(n):
+        z = curves[k, 0] * turn
+        asked[k] = _stand(z.real, -z.imag if flipped else z.imag, kind, sizes)
+    best, where, share = -math.inf, 0, 0.0
+    for k in range(n):
+        here = asked[k]
+        if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
+            continue
+        low, high = -1.0, 1.0
+        left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        at_left = _along(curves, k, left, turn, flipped, kind, sizes)
+        at_right = _along(curves, k, right, turn, flipped, kind, sizes)
+        for _ in range(NARROWINGS):
+            if at_left < at_right:
+                low, left, at_left = left, right, at_right
+                right = low + GOLDEN * (high - low)
+                at_right = _along(curves, k, right, turn, flipped, kind, sizes)
+            else:
+                high, right, at_right = right, left, at_left
+                left = high - GOLDEN * (high - low)
+                at_left = _along(curves, k, left, turn, flipped, kind, sizes)
+        found, t = (at_left, left) if at_left > at_right else (at_right, right)
+        if here > found:
+            found, t = here, 0.0
+        if found > best:
+            best = found
+            where, share = (k, t) if t >= 0.0 else ((k - 1) % n, t + 1.0)
+    return best, where, share
 
 
 @njit(cache=True, nogil=True)
@@ -374,37 +361,50 @@ def _off(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> tu
 
 
 @njit(cache=True, nogil=True)
-def _edge(
+def _crossed(
+    curves: Complex, turn: complex, flipped: bool, kind: int, sizes: tuple[float, float, float]
+) -> tuple[float, int, float]:
+    """A knife edge: the farthest crossing of its path with the profile."""
+    best, where, share = -math.inf, 0, 0.0
+    for k in range(curves.shape[0]):
+        a, _ = _off(*_at(curves, k, 0.0, turn, flipped), kind, sizes)
+        b, _ = _off(*_at(curves, k, 1.0, turn, flipped), kind, sizes)
+        if (a > 0.0) == (b > 0.0):
+            continue
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            m, _ = _off(*_at(curves, k, middle, turn, flipped), kind, sizes)
+            if (m > 0.0) == (a > 0.0):
+                low = middle
+            else:
+                high = middle
+        _, found = _off(*_at(curves, k, low, turn, flipped), kind, sizes)
+        if found > best:
+            best, where, share = found, k, low
+    return best, where, share
+
+
+@njit(cache=True, nogil=True)
+def _lay(
     curves: Complex,
     angles: Real,
     kind: int,
     sizes: tuple[float, float, float],
     flipped: bool,
+    edge: bool,
     values: Real,
     pieces: NDArray[np.int64],
     shares: Real,
 ) -> None:
-    """A knife edge: the farthest crossing of its path with the profile."""
-    n = curves.shape[0]
+    """Where the follower stands at each cam angle, and the piece and the share of it where it touches."""
+    asked = np.empty(curves.shape[0])
     for i in range(angles.size):
         turn = complex(math.cos(angles[i]), -math.sin(angles[i]))
-        best, where, share = -math.inf, 0, 0.0
-        for k in range(n):
-            a, _ = _off(*_at(curves, k, 0.0, turn, flipped), kind, sizes)
-            b, _ = _off(*_at(curves, k, 1.0, turn, flipped), kind, sizes)
-            if (a > 0.0) == (b > 0.0):
-                continue
-            low, high = 0.0, 1.0
-            for _ in range(60):
-                middle = 0.5 * (low + high)
-                m, _ = _off(*_at(curves, k, middle, turn, flipped), kind, sizes)
-                if (m > 0.0) == (a > 0.0):
-                    low = middle
-                else:
-                    high = middle
-            _, found = _off(*_at(curves, k, low, turn, flipped), kind, sizes)
-            if found > best:
-                best, where, share = found, k, low
+        if edge:
+            best, where, share = _crossed(curves, turn, flipped, kind, sizes)
+        else:
+            best, where, share = _touched(curves, asked, turn, flipped, kind, sizes)
         values[i] = best if best > -math.inf else math.nan
         pieces[i], shares[i] = where, share
 

@@ -185,8 +185,7 @@ class RunningCam:
             return self._jump_speed_without_damping(floor)
         speed = 0.0
         for _ in range(STEPS):
-            held = extremes(lambda angle, w=speed: load.force(self.program.motion(angle), w), self.program.breaks).least  # type: ignore[misc]
-            spare = held - floor
+            spare = self._least_force(speed) - floor
             if spare <= 0.0:
                 return speed
             # push δ² + (drag + 2 push ω) δ = spare
@@ -196,6 +195,9 @@ class RunningCam:
             if step <= CONVERGED * speed:
                 return speed
         return speed
+
+    def _least_force(self, speed: float) -> float:
+        return extremes(lambda angle: self.load.force(self.program.motion(angle), speed), self.program.breaks).least
 
     def _jump_speed_without_damping(self, floor: float) -> float:
         """m ω² (−a) = k s + F0 − floor where that asks for the least ω: 1/ω² is the greatest of m (−a)/(k s + ...)."""

@@ -65,7 +65,7 @@ class Law:
         """
         v, a = self.pieces.derivative(), self.pieces.derivative().derivative()
         jerk = a.derivative()
-        found = [extremes(lambda u, f=f: f.motion(u).s, self.pieces.start) for f in (v, a, jerk)]  # type: ignore[misc]
+        found = [_extremes(f, self.pieces.start) for f in (v, a, jerk)]
         inner = self.pieces.start[1:-1]
         jump = self.pieces.motion(inner).a - self.pieces.motion(inner, before=True).a
         if np.any(np.abs(jump) > JUMP * found[1].largest):
@@ -83,6 +83,11 @@ class Law:
 
 JUMP = 1e-9
 """Share of the greatest acceleration above which a step of it inside a law is a jump and not rounding."""
+
+
+def _extremes(function: Pieces, breaks: np.ndarray) -> Extremes:
+    """Of the values of a function in pieces."""
+    return extremes(lambda u: function.motion(u).s, breaks)
 
 
 def sine_constant_cosine(name: str, p1: float, p2: float, p3: float) -> Law:

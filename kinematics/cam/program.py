@@ -109,11 +109,10 @@ class Program:
     @cached_property
     def peaks(self) -> tuple[Extremes, Extremes, Extremes, Extremes]:
         """Exact extremes of s, v, a, j with their angles, both sides of every joint included."""
-        found = [
-            extremes(lambda angle, order=order: self.pieces.motion(angle)[order], self.breaks)  # type: ignore[misc]
-            for order in range(DERIVATIVES)
-        ]
-        return found[0], found[1], found[2], found[3]
+        return self._peak(0), self._peak(1), self._peak(2), self._peak(3)
+
+    def _peak(self, order: int) -> Extremes:
+        return extremes(lambda angle: self.pieces.motion(angle)[order], self.breaks)
 
     @property
     def lift(self) -> float:

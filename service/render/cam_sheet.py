@@ -13,7 +13,7 @@ from service.render.cam_view import STYLES, panel
 from service.render.diagrams import Diagram
 from service.render.numbers import NONE, angle, length, small
 from service.render.sheet import COLUMN, EDGE, GUTTER, TOP, UNITS, WIDTH
-from service.render.svg import Box, Element, circle, clean, element, line, shortened, text, text_width
+from service.render.svg import Box, Element, circle, clean, document, element, line, shortened, text, text_width
 from service.render.symbols import COUPLER, CURVE, DEMANDED, GREY, INK, INPUT, OUTPUT
 from synthesis.designs import Check
 from synthesis.designs.cam import CamDesign, CamSegment
@@ -62,21 +62,7 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
         x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * (DIAGRAM_HEIGHT + 8.0)
         parts.append(diagram.draw(Box(x, low, x + wide, low + DIAGRAM_HEIGHT), joints))
     bottom = math.ceil(top + math.ceil(len(shown) / 2) * (DIAGRAM_HEIGHT + 8.0) + EDGE - 8.0)
-    sheet = element(
-        "svg",
-        element("title", heading),
-        element("desc", _description(design, unit)),
-        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(bottom), fill="#fff"),
-        *_title(design, heading, unit),
-        *parts,
-        xmlns="http://www.w3.org/2000/svg",
-        role="img",
-        width=WIDTH,
-        height=float(bottom),
-        viewBox=f"0 0 {WIDTH:g} {bottom}",
-        font_family="sans-serif",
-    )
-    return sheet.write() + "\n"
+    return document(heading, _description(design, unit), (WIDTH, float(bottom)), *_title(design, heading, unit), *parts)
 
 
 def _title(design: CamDesign, heading: str, unit: str) -> list[Element]:

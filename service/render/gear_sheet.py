@@ -9,7 +9,20 @@ import numpy as np
 from service.render import blocks
 from service.render.gear_layout import PlacedGear, box_around, placed_gears
 from service.render.numbers import length, small
-from service.render.svg import Box, Element, Viewport, circle, clean, element, line, path, shortened, text, text_width
+from service.render.svg import (
+    Box,
+    Element,
+    Viewport,
+    circle,
+    clean,
+    document,
+    element,
+    line,
+    path,
+    shortened,
+    text,
+    text_width,
+)
 from service.render.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, PALE, arrow, scale_bar
 from synthesis.designs.base import Check
 from synthesis.designs.gear_train import GearTrainDesign
@@ -45,22 +58,14 @@ def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: 
         drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
         parts.append(drawn)
     bottom = math.ceil(max(view.panel.high, y) + EDGE - 8.0)
-    sheet = element(
-        "svg",
-        element("title", heading),
-        element("desc", _description(design, problem)),
-        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(bottom), fill="#fff"),
+    return document(
+        heading,
+        _description(design, problem),
+        (WIDTH, float(bottom)),
         text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
         text(EDGE, 55.0, _words(design, problem), 12.5, fill=GREY),
         *parts,
-        xmlns="http://www.w3.org/2000/svg",
-        role="img",
-        width=WIDTH,
-        height=float(bottom),
-        viewBox=f"0 0 {WIDTH:g} {bottom}",
-        font_family="sans-serif",
     )
-    return sheet.write() + "\n"
 
 
 def _words(design: GearTrainDesign, problem: GearTrainProblem) -> str:

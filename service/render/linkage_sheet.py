@@ -25,6 +25,7 @@ from service.render.svg import (
     Viewport,
     circle,
     clean,
+    document,
     element,
     line,
     path,
@@ -98,22 +99,14 @@ def linkage_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> 
     failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]
     verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
     words = f"{NAMES[design.mechanism.type]}; lengths in {problem.length_unit}; {verdict}"
-    sheet = element(
-        "svg",
-        element("title", heading),
-        element("desc", f"Drawing of a linkage at {len(shown.inputs)} targets. {words}."),
-        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(bottom), fill="#fff"),
+    return document(
+        heading,
+        f"Drawing of a linkage at {len(shown.inputs)} targets. {words}.",
+        (WIDTH, float(bottom)),
         text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
         text(EDGE, 55.0, words, 12.5, fill=GREY),
         *parts,
-        xmlns="http://www.w3.org/2000/svg",
-        role="img",
-        width=WIDTH,
-        height=float(bottom),
-        viewBox=f"0 0 {WIDTH:g} {bottom}",
-        font_family="sans-serif",
     )
-    return sheet.write() + "\n"
 
 
 class _Scene:

@@ -9,7 +9,19 @@ from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render import blocks
 from service.render.numbers import length, small
 from service.render.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
-from service.render.svg import Box, Element, Viewport, circle, clean, element, line, shortened, text, text_width
+from service.render.svg import (
+    Box,
+    Element,
+    Viewport,
+    circle,
+    clean,
+    document,
+    element,
+    line,
+    shortened,
+    text,
+    text_width,
+)
 from service.render.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, PALE, scale_bar
 from synthesis.designs.base import Check
 from synthesis.designs.planetary_train import PlanetaryDesign
@@ -43,22 +55,14 @@ def planetary_sheet(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
         parts.append(drawn)
     bottom = math.ceil(max(low, y) + EDGE - 8.0)
     listed = ", ".join(f"{gear} {teeth}" for gear, teeth in mechanism.teeth.items())
-    sheet = element(
-        "svg",
-        element("title", heading),
-        element("desc", f"Pitch circles of a planetary train to scale, {mechanism.arrangement}: {listed} teeth."),
-        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(bottom), fill="#fff"),
+    return document(
+        heading,
+        f"Pitch circles of a planetary train to scale, {mechanism.arrangement}: {listed} teeth.",
+        (WIDTH, float(bottom)),
         text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
         text(EDGE, 55.0, _words(design), 12.5, fill=GREY),
         *parts,
-        xmlns="http://www.w3.org/2000/svg",
-        role="img",
-        width=WIDTH,
-        height=float(bottom),
-        viewBox=f"0 0 {WIDTH:g} {bottom}",
-        font_family="sans-serif",
     )
-    return sheet.write() + "\n"
 
 
 def _words(design: PlanetaryDesign) -> str:

@@ -6,7 +6,7 @@ import math
 
 from service.render import tables
 from service.render.fourbar import Scene, details, fourbar_of, scene
-from service.render.svg import Box, Element, Viewport, clean, element, line, shortened, text, text_width
+from service.render.svg import Box, Element, Viewport, clean, document, element, line, shortened, text, text_width
 from service.render.symbols import CURVE, DEMANDED, GREY, INK, INPUT, PALE
 from service.render.view import FOOT, MARGIN, Detail, panel
 from synthesis.designs import LinkageDesign
@@ -63,21 +63,9 @@ def fourbar_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, t
             parts.append(drawn)
         bottom = max(bottom, y)
     height = math.ceil(bottom + EDGE - 8.0)
-    sheet = element(
-        "svg",
-        element("title", heading),
-        element("desc", _description(design, problem, shown)),
-        element("rect", x=0.0, y=0.0, width=WIDTH, height=float(height), fill="#fff"),
-        *_title(design, heading, unit),
-        *parts,
-        xmlns="http://www.w3.org/2000/svg",
-        role="img",
-        width=WIDTH,
-        height=float(height),
-        viewBox=f"0 0 {WIDTH:g} {height}",
-        font_family="sans-serif",
+    return document(
+        heading, _description(design, problem, shown), (WIDTH, float(height)), *_title(design, heading, unit), *parts
     )
-    return sheet.write() + "\n"
 
 
 def _title(design: LinkageDesign, heading: str, unit: str) -> list[Element]:

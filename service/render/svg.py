@@ -331,3 +331,22 @@ def clipped_polygon(corners: list[complex], box: Box) -> list[complex]:
                 kept.append(here + (there - here) * (inside / (inside - beyond)))
         corners = kept
     return corners
+
+
+def document(title: str, description: str, size: tuple[float, float], *parts: Element) -> str:
+    """A whole white sheet of a width and a height as text, with its title and its description."""
+    width, height = size
+    sheet = element(
+        "svg",
+        element("title", title),
+        element("desc", description),
+        element("rect", x=0.0, y=0.0, width=width, height=height, fill="#fff"),
+        *parts,
+        xmlns="http://www.w3.org/2000/svg",
+        role="img",
+        width=width,
+        height=height,
+        viewBox=f"0 0 {width:g} {height:.0f}",
+        font_family="sans-serif",
+    )
+    return sheet.write() + "\n"

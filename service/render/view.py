@@ -337,8 +337,9 @@ class _Panel:
         tip = complex(self._arc(radius, scene.end, scene.end)[0])
         back = complex(self._arc(radius, scene.end - head, scene.end)[0])
         middle = complex(self._arc(radius, scene.start, scene.start + 0.5 * turned)[-1])
-        self._root.add(path([arc], stroke=INK, stroke_width=1.4), arrow(back, tip, 4.0, INK))
-        self._root.children[-1].attributes["data-rotation"] = repr(math.degrees(turned))  # type: ignore[union-attr]
+        head_mark = arrow(back, tip, 4.0, INK)
+        head_mark.attributes["data-rotation"] = repr(math.degrees(turned))
+        self._root.add(path([arc], stroke=INK, stroke_width=1.4), head_mark)
         self._labels.avoid([arc], 2.0)
         self._arc_label = middle
 

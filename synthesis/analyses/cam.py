@@ -76,6 +76,19 @@ class Cutter(Statement):
     )
 
 
+EXAMPLE: dict[str, Any] = {
+    "type": "cam",
+    "follower": {"type": "translating_roller", "roller_radius": 15.0},
+    "prime_radius": 40.0,
+    "rotation": "ccw",
+    "profile": {
+        "x": [round(5.0 + 30.0 * math.cos(math.radians(6 * k)), 9) for k in range(60)],
+        "y": [round(30.0 * math.sin(math.radians(6 * k)), 9) for k in range(60)],
+    },
+}
+"""A circle that turns about a point off its centre."""
+
+
 class CamAnalysisRequest(AnalysisRequest):
     """A cam and how it turns; a full turn in 360 steps by default."""
 
@@ -84,16 +97,7 @@ class CamAnalysisRequest(AnalysisRequest):
         json_schema_extra={
             "examples": [
                 {
-                    "mechanism": {
-                        "type": "cam",
-                        "follower": {"type": "translating_roller", "roller_radius": 15.0},
-                        "prime_radius": 40.0,
-                        "rotation": "ccw",
-                        "profile": {
-                            "x": [round(5.0 + 30.0 * math.cos(math.radians(6 * k)), 9) for k in range(60)],
-                            "y": [round(30.0 * math.sin(math.radians(6 * k)), 9) for k in range(60)],
-                        },
-                    },
+                    "mechanism": EXAMPLE,
                     "motion": {"from": 0.0, "to": 360.0, "steps": 72, "speed_rpm": 60.0},
                     "load": {"mass": 0.5, "spring_rate": 4.0, "preload": 30.0},
                     "cutter": {"radius": 12.0, "chordal_tolerance": 0.05},

@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field
 from kinematics.cam.dynamics import Camshaft, RunningCam
 from kinematics.cam.measured import measured_program
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.cam import CamAnalysisRequest, Load
+from synthesis.analyses.cam import EXAMPLE, Load
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
 from synthesis.mechanisms.cam import GivenCam
@@ -53,7 +53,7 @@ class CamshaftAnalysisRequest(AnalysisRequest):
                         "type": "camshaft",
                         "cams": [
                             {
-                                "cam": CamAnalysisRequest.model_config["json_schema_extra"]["examples"][0]["mechanism"],  # type: ignore[index,call-overload]
+                                "cam": EXAMPLE,
                                 "load": {"mass": 0.5, "spring_rate": 4.0, "preload": 30.0},
                                 "phase": phase,
                             }

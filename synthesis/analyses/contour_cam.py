@@ -51,7 +51,11 @@ class ContourCamAnalysisRequest(AnalysisRequest):
         found = contour.motion(follower, np.radians(at), rotation)
         breaks = contour.breaks(follower, rotation)
         worst = extremes(lambda angle: follower.pressure_angle(contour.motion(follower, angle, rotation)), breaks)
-        peaks = [extremes(lambda x, k=k: contour.motion(follower, x, rotation)[k], breaks).largest for k in (0, 1, 2)]  # type: ignore[misc]
+
+        def peak(order: int) -> float:
+            return extremes(lambda angle: contour.motion(follower, angle, rotation)[order], breaks).largest
+
+        peaks = [peak(order) for order in range(3)]
         return {
             "input_angle": at.tolist(),
             "time": None if time is None else time.tolist(),

@@ -466,12 +466,16 @@ def _smallest(
     rest_rows = []
     for segment in given:
         for k, sign in ((rising, 1), (falling, -1)):
-            room = _range_of(segment, lambda m, k=k, sign=sign: np.asarray(k * m.s - sign * m.v))[0]  # type: ignore[misc]
-            rest_rows.append((k, sign, room))
+            rest_rows.append((k, sign, _range_of(segment, _room(k, sign))[0]))
     lowest = min(min(pair) for pair in problem.heights())
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
     return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids)
+
+
+def _room(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:
+    """s tan φ ∓ v: what a pressure angle leaves."""
+    return lambda motion: np.asarray(tangent * motion.s - sign * motion.v)
 
 
 def _bound(

@@ -130,9 +130,13 @@ def _angle_functions(limits: RollerLimits) -> list[Callable[[Motion], Real]]:
     """±v/k − s for each limit: |v − e|/k − s differs from them by a constant."""
     functions: list[Callable[[Motion], Real]] = [lambda motion: motion.s]
     for _, angle in limits.angles:
-        k = math.tan(angle)
-        functions += [lambda m, k=k: m.v / k - m.s, lambda m, k=k: -m.v / k - m.s]  # type: ignore[misc]
+        functions += [_needed_height(sign / math.tan(angle)) for sign in (1.0, -1.0)]
     return functions
+
+
+def _needed_height(share: float) -> Callable[[Motion], Real]:
+    """share · v − s."""
+    return lambda motion: share * motion.v - motion.s
 
 
 def _least_height(program: Program, offset: float, limits: RollerLimits) -> float:
@@ -178,10 +182,7 @@ def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, l
     low, high = max(0.0, -s.least) + 1e-9, math.pi - max(s.greatest, 0.0) - 1e-9
     functions: list[Callable[[Motion], Real]] = []
     for _, angle in limits.angles:
-        functions += [
-            lambda m, a=angle: _gamma(m.v, a, arm, pivot, sense) - m.s,  # type: ignore[misc]
-            lambda m, a=angle: -_gamma(m.v, a, arm, pivot, sense) - m.s,  # type: ignore[misc]
-        ]
+        functions += [_start_needed(sign, angle, arm, pivot, sense) for sign in (1.0, -1.0)]
     motion = critical_motion(program, *functions, lambda m: m.v)
     for sign, angle in limits.angles:
         on = _on(sign, motion.v)
@@ -215,6 +216,11 @@ def free_pivot(
 ) -> Size | None:
     """The smallest prime radius over the pivot's distance; searched from a grid, so that it is not proven."""
     return _searched(lambda c: oscillating_roller(program, arm, c, sense, limits), *range_of_pivot)
+
+
+def _start_needed(sign: float, angle: float, arm: float, pivot: float, sense: int) -> Callable[[Motion], Real]:
+    """±γ − s: what bounds the start angle but for a constant."""
+    return lambda motion: sign * _gamma(motion.v, angle, arm, pivot, sense) - motion.s
 
 
 def _gamma(v: Real, angle: float, arm: float, pivot: float, sense: int) -> Real:
