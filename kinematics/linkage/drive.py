@@ -16,6 +16,7 @@ from kinematics.linkage.closures import RECENT, decompose
 from kinematics.linkage.fourbar import one_shape, require
 from kinematics.linkage.mechanism import Mechanism, Real
 from kinematics.linkage.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
+from kinematics.linkage.triad_transmission import triad_of, triad_sine
 from kinematics.linkage.triads import STALLED, Loops, Track, loop_equations, rates
 
 Jet = NDArray[np.complex128]
@@ -47,7 +48,8 @@ class MechanismMotion:
         Position of each slide's joint along its line, and its rates relative to the line's link.
     sines : dict of str to float, shape S + (N,)
         For each closure, by the name of its link: the sine that vanishes at its limit. Its magnitude is the sine of the
-        transmission angle there; its sign changes from assembly to assembly.
+        transmission angle there; its sign changes from assembly to assembly. For a class III mechanism with a triad,
+        by the triad's third leg (:mod:`triad_transmission`).
     margins : dict of str to float, shape (2,) + S + (N,), or (1,) + S + (N,) without derivatives
         For each closure: a smooth function that is positive where it exists, zero at its limit and negative beyond, and
         its rate; NaN where the closures before it do not exist. Where two links or a link and a slide close, it is the
@@ -174,14 +176,19 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
         if slide_names.count(name) > 1:
             slide_names[k] = f"{name}_{k}"
     valid, smooth = masks.reshape(2, *shape)
+    joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
+    closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
+    triad = triad_of(mechanism) if program.class_iii else None
+    if triad is not None:
+        closing[triad.third.link] = triad_sine(triad, {name: jet[0] for name, jet in joints.items()})
     return MechanismMotion(
         valid,
         smooth,
         inputs,
         dict(zip(program.links[1:], angles[1:].reshape(-1, length, *shape), strict=True)),
-        dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True)),
+        joints,
         dict(zip(slide_names, travels.reshape(-1, length, *shape), strict=True)),
-        dict(zip(program.closing, sines.reshape(-1, *shape), strict=True)),
+        closing,
         dict(zip(program.closing, margins.reshape(-1, margins.shape[1], *shape), strict=True)),
     )
 

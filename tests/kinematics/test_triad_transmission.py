@@ -1,0 +1,85 @@
+"""The transmission angle of a triad against its definition, moved by hand, and against the toggles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import root
+
+from kinematics.linkage.drive import drive
+from kinematics.linkage.limits import branches, holding_reference
+from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.triad_transmission import Leg, triad_of
+from tests.kinematics.mechanism_sampling import CLASS_THREE, fourbar, take
+
+NAMES = ["stephenson_2 driven by its input", "stephenson_3 driven by its output"]
+MOVED, TURN = 1e-5, 2.0 * np.pi
+
+
+def test_the_third_leg_is_found() -> None:
+    """Stephenson II driven by its output has two ternary links in a loop and no triad; a fourbar has none either."""
+    rng = np.random.default_rng(5)
+    triads = {name: triad_of(take(CLASS_THREE[name](rng, 2), 0)) for name in CLASS_THREE}
+    third = {name: None if triad is None else triad.third.link for name, triad in triads.items()}
+    assert third == {NAMES[0]: "output", "stephenson_2 driven by its output": None, NAMES[1]: "link_5"}
+    assert triad_of(take(fourbar(rng, 2), 0)) is None
+
+
+def carried(legs: tuple[Leg, Leg], pins: dict[str, complex], third: str, turn: float) -> complex:
+    """Where the third pin goes when the carried link turns by a little on the two other legs, their outer pins held."""
+    lengths = [abs(pins[leg.inner] - pins[leg.outer]) for leg in legs]
+
+    def gaps(shift: np.ndarray) -> list[float]:
+        moved = [complex(*shift) + pins[third] + (pins[leg.inner] - pins[third]) * np.exp(1j * turn) for leg in legs]
+        return [abs(z - pins[leg.outer]) - r for z, leg, r in zip(moved, legs, lengths, strict=True)]
+
+    found = root(gaps, [0.0, 0.0], tol=1e-15)
+    return complex(*found.x)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_sine_is_that_of_the_leg_and_the_normal_of_the_path(name: str) -> None:
+    designs = CLASS_THREE[name](np.random.default_rng(11), 40)
+    compared = 0
+    for n in range(40):
+        mechanism = take(designs, n)
+        triad = triad_of(mechanism)
+        assert triad is not None
+        motion = drive(mechanism, mechanism.reference_input + np.array([0.0, 0.05]), order=0)
+        if not motion.valid.all():
+            continue
+        pins = {joint: complex(jet[0, 1]) for joint, jet in motion.joints.items()}
+        there, back = (carried(triad.guides, pins, triad.third.inner, turn) for turn in (MOVED, -MOVED))
+        path = there - back
+        if not 0.05 * MOVED < abs(path) < 1e3 * MOVED:
+            continue
+        leg = pins[triad.third.inner] - pins[triad.third.outer]
+        expected = abs(np.cos(np.angle(leg / path)))
+        assert abs(motion.sines[triad.third.link][1]) == pytest.approx(expected, abs=1e-5)
+        compared += 1
+    assert compared >= 15
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_angle_vanishes_at_toggles_and_only_there(name: str) -> None:
+    designs = CLASS_THREE[name](np.random.default_rng(23), 12)
+    met = 0
+    for n in range(12):
+        mechanism: Mechanism = take(designs, n)
+        triad = triad_of(mechanism)
+        assert triad is not None
+        branch = holding_reference(mechanism, branches(mechanism))
+        if branch is None:
+            continue
+        at = float(mechanism.reference_input)
+        around = TURN * np.round((at - 0.5 * (branch.low + branch.high)) / TURN)
+        low, high = (at, at + TURN) if branch.full else (branch.low + around, branch.high + around)
+        inside = np.linspace(low, high, 400)
+        if not branch.full:
+            inside = np.concatenate([inside[1:-1], [low + 1e-8, high - 1e-8]])
+        sines = drive(mechanism, inside, order=0).sines[triad.third.link]
+        assert np.all(sines > 0.0) or np.all(sines < 0.0)
+        if not branch.full:
+            assert np.all(np.abs(sines[-2:]) < 0.05)
+            met += 1
+    assert met >= 3
