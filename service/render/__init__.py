@@ -19,6 +19,7 @@ EXPORTS: dict[str, dict[Form, str]] = {
     "slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
     "inverted_slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
     "watt_2": {"svg": "service.render.linkage_sheet:linkage_sheet"},
+    "stephenson_3": {"svg": "service.render.linkage_sheet:linkage_sheet"},
     "gear_train": {
         "svg": "service.render.gear_sheet:gear_train_sheet",
         "dxf": "service.render.gear_dxf:gear_train_drawing",

@@ -73,6 +73,7 @@ NAMES = {
     "slider_crank": "Slider-crank",
     "inverted_slider_crank": "Inverted slider-crank",
     "watt_2": "Fourbar with a driver dyad (Watt's sixbar)",
+    "stephenson_3": "Fourbar with a driver dyad on its coupler (Stephenson's sixbar)",
 }
 """What the types are called on a sheet."""
 

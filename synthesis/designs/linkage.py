@@ -162,15 +162,16 @@ class InvertedSliderCrankMechanism(Answer):
 class SixbarMechanism(Answer):
     """A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link.
 
-    Watt's sixbar of the second kind: two fourbars in series, with the driven link in both. ``links`` are lengths by
-    name; the skeleton says all.
+    Watt's sixbar of the second kind, two fourbars in series, where input or output is driven; Stephenson's of the third
+    kind where the coupler is. ``links`` are lengths by name; the skeleton says all.
     """
 
-    type: Literal["watt_2"] = "watt_2"
+    type: Literal["watt_2", "stephenson_3"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6.")
     links: dict[str, float] = Field(
         description="ground, input, coupler and output of the fourbar; crank and driver_coupler of the driver; "
-        "driver_ground, its fixed pivot's distance from the driven link's; driver_arm, C's distance from that pivot."
+        "driver_ground, its fixed pivot's distance from the driven link's (from O2 where the coupler is driven); "
+        "driver_arm, C's distance from that pivot (from A where the coupler is driven)."
     )
     reference_body_angle: float | None = Field(
         default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."

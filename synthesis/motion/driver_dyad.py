@@ -9,7 +9,7 @@ the crank and the link lying in one line at both ends. So O6 is free in the plan
 puts it on the chord, with a ratio of times of 1. The stage's shape, in units of r, depends on O6 alone: shapes are
 ranked by the least transmission angle, which stands where the crank lies on the line O O6, and by their size. Where C
 is on the link and how long r is only turns and scales the stage: it is put where the whole is small, or where O6 lies
-in the client's region.
+in the client's region. Where no link of the ground can be driven so, the coupler is (:mod:`coupler_driver`).
 """
 
 from __future__ import annotations
@@ -22,16 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage import positions
-from synthesis.designs import (
-    FourbarMechanism,
-    Link,
-    LinkageDesign,
-    MotionResult,
-    SixbarMechanism,
-    Skeleton,
-)
+from synthesis.designs import FourbarMechanism, LinkageDesign, MotionResult, SixbarMechanism
 from synthesis.kinds import Progress
-from synthesis.linkages import driven_fourbar, to_complex, to_point
+from synthesis.linkages import driven_fourbar, to_complex
+from synthesis.motion.coupler_driver import coupler_drivers
+from synthesis.motion.driver_joints import ROOM, diagonal, rocker_driven
 from synthesis.problems import DriverDyad, MotionProblem
 from synthesis.ranking import BULKY, UNEVEN, ranked
 from synthesis.verification import verify
@@ -57,9 +52,6 @@ ARMS = np.array([0.4, 0.55, 0.75, 1.0, 1.35, 1.8])
 
 PLACES = np.linspace(-np.pi, np.pi, 49)[:-1]
 """Directions of C on the driven link, from the line of its pins."""
-
-ROOM = 2.0
-"""A whole this many times as large as the linkage alone halves the score of a place."""
 
 USABLE = 20.0
 """Degrees; where the client sets no limit, sixbars with a smaller transmission angle are offered only if there are no
@@ -149,16 +141,26 @@ def _driven(problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad) -
     """A fourbar with the best driver that passes, or the best one that does not; None where no driver fits."""
     assert isinstance(design.mechanism, FourbarMechanism)
     best = None
-    for link in ("input", "output"):
-        if wanted.link not in ("any", link):
+    for link in ("input", "output", "coupler"):
+        if wanted.link not in ("any", link) or (link == "coupler" and _sound(problem, best) and wanted.link == "any"):
             continue
-        for _, mechanism in sorted(_drivers(design, design.mechanism, link, wanted), key=lambda c: -c[0])[:TRIED]:
+        if link == "coupler":
+            drivers = coupler_drivers(design, design.mechanism, wanted, TRIED)
+        else:
+            drivers = sorted(_drivers(design, design.mechanism, link, wanted), key=lambda c: -c[0])[:TRIED]
+        for _, mechanism in drivers:
             found = verify(problem, mechanism)
             if found is not None and (best is None or _worth(found) > _worth(best)):
                 best = found
             if found is not None and found.verification.passed:
                 break
     return best
+
+
+def _sound(problem: MotionProblem, design: LinkageDesign | None) -> bool:
+    """Whether a link of the ground is driven well enough that the coupler need not be."""
+    least = USABLE if problem.constraints.min_transmission_angle is None else 0.0
+    return design is not None and design.verification.passed and design.metrics.min_transmission_angle >= least
 
 
 def _worth(design: LinkageDesign) -> tuple[bool, float]:
@@ -185,7 +187,7 @@ def _drivers(
     stage = _stages(abs(swing))
     joints = np.concatenate([at.a, at.b, at.p, [to_complex(p) for p in (mechanism.fixed_pivots.input,
                                                                          mechanism.fixed_pivots.output)]])  # fmt: skip
-    alone = _diagonal(joints)
+    alone = diagonal(joints)
     length = float(abs(arms[0]))
     middle = arms[0] / length * cmath.exp(0.5j * swing)
     found = []
@@ -195,14 +197,14 @@ def _drivers(
         o6 = pivot + stage.pivot[n] * turn
         c = pivot + turn[..., None] * np.exp(np.array([-0.5j, 0.5j]) * swing)
         around = np.stack([o6, c[..., 0], c[..., 1]], axis=-1)
-        whole = _diagonal(np.concatenate([around, np.broadcast_to(joints, (*around.shape[:2], len(joints)))], axis=-1))
+        whole = diagonal(np.concatenate([around, np.broadcast_to(joints, (*around.shape[:2], len(joints)))], axis=-1))
         score = stage.score[n] / (1.0 + ((whole / alone - 1.0) / ROOM) ** 2)
         if wanted.pivot_region is not None:
             score = np.where(np.vectorize(wanted.pivot_region.contains)(o6), score, 0.0)
         k, m = np.unravel_index(int(np.argmax(score)), score.shape)
         if score[k, m] > 0.0:
             place = complex(c[k, m, 0])
-            found.append((float(score[k, m]), _sixbar(mechanism, link, pivot, place, complex(o6[k, m]), swing)))
+            found.append((float(score[k, m]), rocker_driven(mechanism, link, place, complex(o6[k, m]), swing)))
     return found
 
 
@@ -231,42 +233,3 @@ def _stages(swing: float) -> _Stage:
         if all(abs(pivot[k] - pivot[m]) > 0.25 for m in kept):
             kept.append(int(k))
     return _Stage(pivot[kept], crank[kept], link[kept], score[kept])
-
-
-def _diagonal(points: Complex) -> Real:
-    """Diagonal of the box around points along the last axis."""
-    return np.asarray(np.hypot(np.ptp(points.real, axis=-1), np.ptp(points.imag, axis=-1)))
-
-
-def _sixbar(
-    mechanism: FourbarMechanism, link: str, pivot: complex, c: complex, o6: complex, swing: float
-) -> SixbarMechanism:
-    """The sixbar with the driven link's pin C and the crank's pivot as given, in the first position."""
-    last = pivot + (c - pivot) * cmath.exp(1j * swing)
-    first, other = abs(c - o6), abs(last - o6)
-    # Where C₁ is the nearer end, crank and link overlap there.
-    d = o6 + 0.5 * (first - other) * (c - o6) / first
-    bar = mechanism.skeleton
-    joints = {**bar.joints, "O6": to_point(o6), "C": to_point(c), "D": to_point(d)}
-    links = [
-        Link(name="ground", joints=["O2", "O4", "O6"]),
-        *(
-            Link(name=old.name, joints=[*old.joints, "C"]) if old.name == link else old
-            for old in bar.links
-            if old.name != "ground"
-        ),
-        Link(name="driver_coupler", joints=["C", "D"]),
-        Link(name="crank", joints=["O6", "D"]),
-    ]
-    return SixbarMechanism(
-        fixed_pivots={name: joints[name] for name in ("O2", "O4", "O6")},
-        links={
-            **mechanism.links.model_dump(),
-            "crank": abs(d - o6),
-            "driver_coupler": abs(d - c),
-            "driver_ground": abs(o6 - pivot),
-            "driver_arm": abs(c - pivot),
-        },
-        reference_body_angle=mechanism.reference_body_angle,
-        skeleton=Skeleton(joints=joints, links=links, input_link="crank"),
-    )

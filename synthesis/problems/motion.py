@@ -146,7 +146,10 @@ class DyadChoices(Statement):
 class DriverDyad(Statement):
     """A crank and a link that are added to drive the linkage between its end positions."""
 
-    link: Literal["any", "input", "output"] = Field(default="any", description="The link that is driven.")
+    link: Literal["any", "input", "output", "coupler"] = Field(
+        default="any",
+        description="The link that is driven; any: input or output, and the coupler where neither can be driven well.",
+    )
     pivot_region: Region | None = Field(default=None, description="Where the crank's fixed pivot may lie.")
 
 
@@ -247,6 +250,15 @@ class MotionProblem(LinkageProblem):
                         {"x": 30.0, "y": 20.0, "angle": 45.0},
                     ],
                     "driver_dyad": {"link": "input", "pivot_region": {"x": [-150.0, 150.0], "y": [-150.0, 0.0]}},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 30.0, "y": 20.0, "angle": 45.0},
+                    ],
+                    "driver_dyad": {"link": "coupler"},
                     "max_designs": 3,
                 },
             ]

@@ -269,12 +269,14 @@ def _driver_checks(
     problem: MotionProblem, design: SixbarMechanism, mechanism: Mechanism, here: Branch, way: _Way
 ) -> list[Check]:
     """A driver's crank turns through, and the link that it drives has its limits at the first and the last target."""
-    driven = next(name for name, listed in mechanism.links.items() if "C" in listed and name != "driver_coupler")
-    turned = drive(mechanism, np.array([way.inputs[0], way.inputs[-1]]), order=0).angles[driven][0]
-    ends = np.unwrap(turned)
+    held = next(name for name, listed in mechanism.links.items() if "C" in listed and name != "driver_coupler")
+    # The coupler may turn back on its way; the input, which took the fourbar through its targets, does not.
+    driven = "input" if held == "coupler" else held
+    run = np.linspace(way.inputs[0], way.inputs[-1], RANGE_GRID)
+    turned = np.unwrap(drive(mechanism, run, order=0).angles[driven][0])
     (span,), _ = limit_positions(mechanism, here, [driven], [])
     # From end to end and no farther: the swing alone tells, as each end lies within it.
-    beyond = math.inf if span is None else (span[1] - span[0]) - abs(float(ends[1] - ends[0]))
+    beyond = math.inf if span is None else (span[1] - span[0]) - abs(float(turned[-1] - turned[0]))
     checks = [
         Check(name="crank_turns", passed=here.full),
         Check(name="limits", passed=beyond <= AT_LIMIT, value=beyond, limit=AT_LIMIT),

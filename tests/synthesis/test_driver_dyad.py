@@ -122,6 +122,63 @@ def test_the_driven_link_can_be_chosen(link: str) -> None:
         assert_drives_through(design, problem)
 
 
+def input_swing(design: LinkageDesign) -> tuple[float, float]:
+    """Swing of the input link over a turn of the crank, and from the first target to the last, by constraints alone."""
+    constraints = constraints_of(design)
+    trace = constraints.follow(constraints.start(), 1.0, limit=2.0 * math.pi)[0]
+    joints = constraints.take(np.zeros(len(trace.points), int)).joints(trace.points)
+    turned = np.unwrap(np.angle(joints["A"] - joints["O2"]))
+    last = math.radians(design.targets[-1].input_angle - design.targets[0].input_angle) % math.tau
+    ((_, met),) = trace.at(last, 1e9)
+    end = constraints.joints(met[None])
+    near = int(np.abs(trace.points - met).sum(axis=1).argmin())
+    aside = np.angle((end["A"][0] - end["O2"][0]) / (joints["A"][near] - joints["O2"][near]))
+    return float(np.ptp(turned)), float(abs(turned[near] + aside - turned[0]))
+
+
+WIDE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 30.0, "y": 40.0, "angle": 150.0},
+        {"x": 10.0, "y": 70.0, "angle": -110.0}]  # fmt: skip
+
+
+@pytest.mark.parametrize("positions", [TWO, THREE, WIDE], ids=["two", "three", "wide"])
+def test_the_coupler_can_be_driven(positions: list[dict[str, float]]) -> None:
+    problem, result = solved(positions, driver_dyad={"link": "coupler"})
+    assert result.designs
+    for design in result.designs:
+        assert design.mechanism.type == "stephenson_3"
+        assert "C" in next(bar.joints for bar in design.mechanism.skeleton.links if bar.name == "coupler")
+        assert {check.name for check in design.verification.checks} >= {"crank_turns", "limits"}
+        assert_drives_through(design, problem)
+        assert turns_through(design)
+        swing, between = input_swing(design)
+        assert swing == pytest.approx(between, abs=5e-3)
+        assert set(design.metrics.transmission_angles) == {"driver_coupler"}
+        assert design.metrics.min_transmission_angle > 5.0
+
+
+def test_the_coupler_is_driven_where_no_link_of_the_ground_can_be() -> None:
+    """All fourbars found for this task turn their links by more than a rocker's driver can."""
+    problem, result = solved(WIDE, driver_dyad={"link": "any"})
+    assert {design.mechanism.type for design in result.designs} == {"stephenson_3"}
+    for link in ("input", "output"):
+        _, none = solved(WIDE, driver_dyad={"link": link})
+        assert none.designs == []
+        assert not none.search.complete
+    for design in result.designs:
+        assert_drives_through(design, problem)
+
+
+def test_damage_to_a_driver_of_the_coupler_is_found() -> None:
+    problem, result = solved(THREE, max_designs=1, driver_dyad={"link": "coupler"})
+    mechanism = sixbar(result.designs[0])
+    for joint in ("C", "D", "O6", "A", "B"):
+        data = mechanism.model_dump()
+        x, y = data["skeleton"]["joints"][joint]
+        data["skeleton"]["joints"][joint] = (x + 0.05, y)
+        damaged = verify(problem, SixbarMechanism.model_validate(data))
+        assert damaged is None or not damaged.verification.passed, joint
+
+
 def test_damage_is_found() -> None:
     problem, result = solved(THREE, max_designs=1)
     mechanism = sixbar(result.designs[0])
