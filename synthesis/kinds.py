@@ -18,6 +18,7 @@ from synthesis.designs import (
     MotionResult,
     PathResult,
     PlanetaryResult,
+    QuickReturnResult,
     Result,
 )
 from synthesis.problems import (
@@ -28,6 +29,7 @@ from synthesis.problems import (
     MotionProblem,
     PathProblem,
     PlanetaryProblem,
+    QuickReturnProblem,
     StatedProblem,
 )
 
@@ -46,6 +48,7 @@ class Kind(NamedTuple):
 KINDS: dict[str, Kind] = {
     "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
     "path": Kind(PathProblem, PathResult, "synthesis.path.solver:solve_path"),
+    "quick_return": Kind(QuickReturnProblem, QuickReturnResult, "synthesis.quick_return.solver:solve_quick_return"),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

@@ -45,6 +45,12 @@ EXPORTS: dict[str, dict[Form, str]] = {
 imported when it is needed, so that a server that starts does not wait for a drawing library."""
 
 
+EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
+    "quick_return": {"svg": "service.render.stroke_sheet:stroke_sheet"},
+}
+"""The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""
+
+
 class NoSuchExport(LookupError):
     """This type of mechanism has no file of this form."""
 
@@ -74,7 +80,7 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str:
     NoSuchExport
         Where there is no such file of this type of mechanism.
     """
-    forms = EXPORTS.get(design.mechanism.type, {})
+    forms = {**EXPORTS.get(design.mechanism.type, {}), **EXPORTS_OF_KIND.get(problem.kind, {})}
     if form not in forms:
         raise NoSuchExport(design.mechanism.type, form)
     module, function = forms[form].split(":")

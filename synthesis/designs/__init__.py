@@ -58,6 +58,16 @@ from synthesis.designs.planetary_train import (
     PlanetaryResult,
     PlanetPlaces,
 )
+from synthesis.designs.quick_return import (
+    DragLinkMechanism,
+    LimitPosition,
+    QuickReturnDesign,
+    QuickReturnLinks,
+    QuickReturnMechanism,
+    QuickReturnMetrics,
+    QuickReturnResult,
+    RatioRange,
+)
 
 __all__ = [
     "Answer",
@@ -68,6 +78,7 @@ __all__ = [
     "Check",
     "CognateTriples",
     "CouplerPoint",
+    "DragLinkMechanism",
     "FixedPivots",
     "FourbarLinks",
     "FourbarMechanism",
@@ -86,6 +97,7 @@ __all__ = [
     "LayshaftDesign",
     "LayshaftMechanism",
     "LayshaftResult",
+    "LimitPosition",
     "Line",
     "Link",
     "LinkageDesign",
@@ -105,7 +117,13 @@ __all__ = [
     "PlanetaryMetrics",
     "PlanetaryResult",
     "Point",
+    "QuickReturnDesign",
+    "QuickReturnLinks",
+    "QuickReturnMechanism",
+    "QuickReturnMetrics",
+    "QuickReturnResult",
     "Ratio",
+    "RatioRange",
     "Result",
     "Search",
     "SixbarMechanism",

@@ -43,6 +43,7 @@ from synthesis.problems.planetary_train import (
     PlanetaryTeeth,
     ToothRange,
 )
+from synthesis.problems.quick_return import QuickReturnProblem
 
 __all__ = [
     "CamProblem",
@@ -74,6 +75,7 @@ __all__ = [
     "Point",
     "Position",
     "PositiveNumber",
+    "QuickReturnProblem",
     "Region",
     "StatedProblem",
     "Statement",

@@ -1,0 +1,46 @@
+"""Quick return over swings and time ratios: ``python -m benchmarks.quick_return``. CPU seconds of one process.
+
+Each row: the best transmission angle, how far measured ratio and swing are off, and the time of the whole job with its
+verification.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from synthesis.dispatch import solve
+from synthesis.kinds import examples, parse_problem
+
+SWINGS = (20.0, 40.0, 60.0, 80.0, 100.0, 120.0)
+RATIOS = (1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)
+
+
+def answer(stated: dict[str, Any]) -> tuple[Any, float]:
+    """The answer to a problem and its CPU time."""
+    problem = parse_problem({"kind": "quick_return", **stated})
+    start = time.process_time()
+    return solve(problem, lambda fraction, message: None), time.process_time() - start
+
+
+def main() -> None:
+    for stated in examples("quick_return"):
+        answer(stated)
+    print(f"{'crank-rocker':<20}{'transmission':>13}{'links':>8}{'ratio off':>11}{'swing off':>11}{'CPU s':>8}")
+    slowest = 0.0
+    for swing in SWINGS:
+        for ratio in RATIOS:
+            result, spent = answer({"time_ratio": ratio, "swing": swing, "mechanism": "fourbar"})
+            slowest = max(slowest, spent)
+            best = result.designs[0].metrics
+            off = max(abs(design.metrics.time_ratio - ratio) for design in result.designs)
+            swing_off = max(abs(design.metrics.swing - swing) for design in result.designs)
+            print(
+                f"{f'{swing:g}°, ratio {ratio:g}':<20}{best.min_transmission_angle:>12.3f}°{best.link_ratio:>8.2f}"
+                f"{off:>11.1e}{swing_off:>11.1e}{spent:>8.3f}"
+            )
+    print(f"slowest: {slowest:.3f} s")
+
+
+if __name__ == "__main__":
+    main()

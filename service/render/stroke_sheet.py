@@ -1,0 +1,147 @@
+"""The sheet of a mechanism whose output goes to and fro: both limit positions, tables, and the output over the turn."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from kinematics.linkage.drive import drive
+from kinematics.linkage.mechanism import GROUND, Mechanism
+from service.render import blocks
+from service.render.diagrams import Diagram
+from service.render.linkage_drawing import Scene, drawing
+from service.render.numbers import angle, length, small
+from service.render.svg import Box, Viewport, clean, document, shortened, text
+from service.render.symbols import CURVE, GREY, INK, OUTPUT
+from synthesis.designs import Check, QuickReturnDesign
+from synthesis.mechanisms import GivenMechanism
+from synthesis.problems import QuickReturnProblem
+from synthesis.quick_return.verification import OUTPUTS
+
+WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
+"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
+
+HEIGHTS = (400.0, 700.0)
+"""Least and greatest height of the drawing, pixels."""
+
+DIAGRAM = 170.0
+"""Height of a diagram, pixels."""
+
+SAMPLES = 721
+"""Points of a diagram's curve."""
+
+NAMES = {
+    "fourbar": "Crank-rocker",
+    "slider_crank": "Offset slider-crank",
+    "crank_shaper": "Crank-shaper",
+    "whitworth": "Whitworth quick return",
+    "drag_link_rocker": "Drag-link sixbar with a rocker",
+    "drag_link_slider": "Drag-link sixbar with a slider",
+}
+"""What the types are called on a sheet."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+def stroke_sheet(design: QuickReturnDesign, problem: QuickReturnProblem, title: str) -> str:
+    """The drawing of a quick-return design as a complete SVG document."""
+    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    traced = [joint for joint in mechanism.joints if joint not in mechanism.links[GROUND] and joint != "P"]
+    shown = Scene(mechanism, np.radians([target.input_angle for target in design.targets]), traced)
+    name = NAMES[design.mechanism.type]
+    heading = clean(title) or name
+    width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
+    box = shown.box()
+    wanted = (width - 100.0) / max(box.width, 1e-300) * box.height + 130.0
+    height = math.floor(min(max(wanted, HEIGHTS[0]), HEIGHTS[1]))
+    view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), 50.0, 26.0)
+    parts = [drawing(shown, view, problem.length_unit)]
+    bottom = view.panel.high
+    for diagram in _diagrams(design, mechanism, problem.length_unit):
+        parts.append(diagram.draw(Box(EDGE, bottom + 8.0, EDGE + width, bottom + 8.0 + DIAGRAM), []))
+        bottom += 8.0 + DIAGRAM
+    y = TOP - 6.0
+    for block in _tables(design, problem, box.diagonal):
+        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
+        parts.append(drawn)
+    full = float(math.ceil(max(bottom, y) + EDGE - 8.0))
+    failed = [c for c in design.verification.checks if not c.passed]
+    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
+    words = (
+        f"{name} with a time ratio of {length(design.metrics.time_ratio)}; lengths in {problem.length_unit}; {verdict}"
+    )
+    return document(
+        heading,
+        f"Drawing of a mechanism at both limit positions of its output. {words}.",
+        (WIDTH, full),
+        text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
+        text(EDGE, 55.0, words, 12.5, fill=GREY),
+        *parts,
+    )
+
+
+def _diagrams(design: QuickReturnDesign, mechanism: Mechanism, unit: str) -> list[Diagram]:
+    """The output and its rate over a turn of the crank from the beginning of the slow stroke."""
+    start = math.radians(design.targets[0].input_angle)
+    turned = np.linspace(0.0, 360.0, SAMPLES)
+    motion = drive(mechanism, start + np.radians(turned), order=1)
+    output = OUTPUTS[design.mechanism.type]
+    if output in mechanism.links:
+        place, rate = motion.angles[output]
+        turned_by = np.unwrap(place)
+        value, what, by = np.degrees(turned_by - turned_by[0]), "swing (°)", "output speed over crank speed"
+    else:
+        place, rate = motion.slides[output]
+        value, what, by = place - place[0], f"stroke ({unit})", f"slider speed ({unit} per radian of the crank)"
+    over = "over the crank's rotation from the first limit position"
+    return [
+        Diagram(f"{what} {over}", "output", turned, value, CURVE),
+        Diagram(by, "rate", turned, rate, OUTPUT),
+    ]
+
+
+def _tables(design: QuickReturnDesign, problem: QuickReturnProblem, size: float) -> list[blocks.Block]:
+    unit, metrics = problem.length_unit, design.metrics
+    links = design.mechanism.links
+    lengths = links if isinstance(links, dict) else links.model_dump()
+    rows = [(name.replace("_", " "), length(value)) for name, value in lengths.items()]
+    for name, (x, y) in design.mechanism.skeleton.joints.items():
+        rows.append((f"{name} at the first limit", f"({length(x, size)}, {length(y, size)})"))
+    for slide in design.mechanism.skeleton.slides:
+        rows.append((f"slide of {slide.joint} on {slide.link}", angle(slide.angle)))
+    swings = metrics.swing is not None
+    limits = [
+        (
+            f"limit {target.index + 1}: crank {angle(target.input_angle, 3)}",
+            angle(target.output, 3) if swings else f"{length(target.output, size)} {unit}",
+        )
+        for target in design.targets
+    ]
+    measured = [
+        ("time ratio", length(metrics.time_ratio, digits=9)),
+        ("crank rotation, slow and fast", f"{angle(metrics.slow_rotation)}, {angle(metrics.fast_rotation)}"),
+        ("swing", angle(metrics.swing, 6)) if metrics.swing is not None else ("stroke", _stroke(metrics.stroke, unit)),
+        *(
+            (f"transmission at {link.replace('_', ' ')}", angle(value, 2))
+            for link, value in metrics.transmission_angles.items()
+        ),
+        ("longest : shortest link", length(metrics.link_ratio, digits=4)),
+        ("size", f"{length(metrics.size, digits=4)} {unit}"),
+        ("quality", length(metrics.quality, digits=3)),
+    ]
+    return [
+        blocks.rows(f"Dimensions ({unit})", rows),
+        blocks.rows("Limits", limits),
+        blocks.checks(design.verification, _written),
+        blocks.rows("Metrics", measured),
+    ]
+
+
+def _stroke(value: float | None, unit: str) -> str:
+    return f"{length(value or 0.0, digits=9)} {unit}"
+
+
+def _written(check: Check, value: float) -> str:
+    return angle(value, 2) if check.name == "transmission_angle" else small(value)

@@ -1,0 +1,1 @@
+"""Quick return: mechanisms with a given time ratio."""
