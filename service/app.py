@@ -11,6 +11,8 @@ import structlog
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
+from service.access.gate import Gate
+from service.access.keys import KeyStore
 from service.analyst import Analyst
 from service.api import analyses, docs, errors, events, health, jobs, metrics, problems
 from service.jobs.changes import Changes
@@ -54,6 +56,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
             if unfinished:
                 log.info("unfinished jobs taken up again", jobs=len(unfinished))
             app.state.desk = JobDesk(store, executor, changes, measured)
+            app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
             feed = app.state.feed = Feed(store, changes)
             measured.watch(lambda: feed.listeners, executor.ready, store.unfinished)
             following = asyncio.create_task(feed.run())

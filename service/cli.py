@@ -10,6 +10,10 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from service.settings import Settings
 
 EXIT_FAILURE = 1
 EXIT_USAGE = 2
@@ -31,6 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
         return 0
+    if command.name == "keys":
+        return _keys(command)
     from service import analyst
     from synthesis import dispatch
 
@@ -40,13 +46,39 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _serve() -> int:
+def _settings() -> Settings | None:
+    """The settings; None, and the reason is printed, where they cannot be used."""
     from service.settings import SettingsError, read_settings
 
     try:
-        settings = read_settings()
+        return read_settings()
     except SettingsError as error:
         print(f"mechsynth: {error}", file=sys.stderr)
+        return None
+
+
+def _keys(command: argparse.Namespace) -> int:
+    settings = _settings()
+    if settings is None:
+        return EXIT_USAGE
+    from service.access import command as keys
+
+    try:
+        if command.act == "create":
+            keys.create(settings, command.tenant, further=command.further)
+        elif command.act == "list":
+            keys.show(settings)
+        else:
+            keys.revoke(settings, command.id)
+    except keys.KeysFailure as failure:
+        print(f"mechsynth keys: {failure}", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
+def _serve() -> int:
+    settings = _settings()
+    if settings is None:
         return EXIT_USAGE
     from service.server import ServeError, serve
 
@@ -64,6 +96,14 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
     demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
     demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
+    keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(
+        dest="act", required=True, metavar="act"
+    )
+    create = keys.add_parser("create", help="make a key for a new tenant, and print it")
+    create.add_argument("tenant", help="the name of the tenant, who sees only its own jobs")
+    create.add_argument("--further", action="store_true", help="one more key for a tenant that there is")
+    keys.add_parser("list", help="show all keys by their ids; not the keys themselves")
+    keys.add_parser("revoke", help="make a key useless").add_argument("id", help="the id of the key")
     commands.add_parser("warm", help="compile the numeric kernels, so that the first start need not")
     return parser
 

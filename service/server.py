@@ -7,16 +7,21 @@ import signal
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
+from ipaddress import ip_address
 from types import FrameType
 from typing import IO
 
+import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service import logs
-from service.jobs.database import sqlite_file
+from service.access.keys import KeyStore
+from service.jobs.database import connect, sqlite_file
 from service.jobs.local import LocalExecutor
 from service.metrics import Metrics
 from service.settings import Settings
+
+log = structlog.get_logger(__name__)
 
 
 class ServeError(Exception):
@@ -34,7 +39,7 @@ def serve(settings: Settings) -> None:
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)
     logs.configure(settings.log_level, settings.log_format)
-    with _data_folder(settings), _store(settings), _listener(settings) as listener:
+    with _data_folder(settings), _store(settings), _listener(settings, _open(settings)) as listener:
         metrics = Metrics()
         executor = _executor(settings, metrics)
         try:
@@ -74,14 +79,36 @@ def _no_database(error: Exception) -> ServeError:
     return ServeError(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL")
 
 
+def _open(settings: Settings) -> bool:
+    """Whether the service is open because it has no keys; then it is for this machine only."""
+    try:
+        engine = connect(settings.store_url, durable=False)
+        try:
+            return not KeyStore(engine).any()
+        finally:
+            engine.dispose()
+    except (SQLAlchemyError, ImportError, OSError) as error:
+        raise _no_database(error) from None
+
+
 @contextmanager
-def _listener(settings: Settings) -> Iterator[socket.socket]:
+def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
     except OSError:
         raise ServeError(f"there is no address for the host {settings.host!r}; set MECHSYNTH_HOST") from None
+    if only_here:
+        if not ip_address(str(address[0]).partition("%")[0]).is_loopback:
+            log.warning(
+                "there are no API keys, so the service listens on 127.0.0.1 and not where it was told to; "
+                "`mechsynth keys create NAME` makes a key",
+                told=settings.host,
+            )
+            family, address = socket.AF_INET, ("127.0.0.1", settings.port)
+        else:
+            log.info("there are no API keys: the service is open, to this machine only")
     with socket.socket(family, kind, protocol) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

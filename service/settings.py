@@ -6,14 +6,18 @@ import os
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BeforeValidator, Field, ValidationError
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 PREFIX = "MECHSYNTH_"
 
 
 class SettingsError(ValueError):
     """A setting has a value that cannot be used; the message is one line that names the variable."""
+
+
+def _listed(text: object) -> object:
+    return tuple(part for given in text.split(",") if (part := given.strip())) if isinstance(text, str) else text
 
 
 class Settings(BaseSettings):
@@ -38,8 +42,26 @@ class Settings(BaseSettings):
     max_wait_s: Annotated[
         int, Field(ge=0, le=30, description="Longest wait that Prefer: wait is granted, seconds.")
     ] = 30
+    rate_limit: Annotated[
+        str,
+        Field(
+            pattern=r"^(off|[1-9][0-9]{0,8}/(second|minute|hour|day))$",
+            description="How often a key may ask: 600/minute, 20/second, ... or off.",
+        ),
+    ] = "1200/minute"
+    cors_origins: Annotated[
+        tuple[str, ...],
+        NoDecode,
+        BeforeValidator(_listed),
+        Field(description="Web origins that browsers may use the service from, separated by commas; * for any."),
+    ] = ()
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     log_format: Literal["text", "json"] = "text"
+
+    @property
+    def rate_limit_rule(self) -> str | None:
+        """The rate limit in force."""
+        return None if self.rate_limit == "off" else self.rate_limit
 
     @property
     def store_url(self) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -29,6 +29,7 @@ log = structlog.get_logger(__name__)
 @dataclass(slots=True)
 class _Record:
     spans: dict[str, float] = field(default_factory=dict)
+    headers: dict[str, str] = field(default_factory=dict)
     refused: str | None = None
     status: int = 0
 
@@ -55,6 +56,13 @@ def refused(type_: str) -> None:
         record.refused = type_
 
 
+def answer_with(headers: Mapping[str, str]) -> None:
+    """Add headers to the answer to the present request, whatever that will be."""
+    record = _record.get()
+    if record is not None:
+        record.headers.update(headers)
+
+
 class Telemetry:
     """Watches every request from outside of the application."""
 
@@ -78,6 +86,7 @@ class Telemetry:
             if message["type"] == "http.response.start":
                 record.status = message["status"]
                 headers = MutableHeaders(raw=message["headers"])
+                headers.update(record.headers)
                 headers["X-Request-ID"] = request_id
                 headers["Server-Timing"] = _server_timing(record.spans, time.perf_counter() - began)
             await send(message)

@@ -5,8 +5,11 @@ from __future__ import annotations
 import asyncio
 import gc
 import socket
+from collections.abc import Sequence
 
 import uvicorn
+from starlette.middleware.cors import CORSMiddleware
+from starlette.types import ASGIApp
 
 from service.api.head import HeadAsGet
 from service.app import create_app
@@ -30,7 +33,7 @@ class WebServer(uvicorn.Server):
         self._announcement: asyncio.Task[None] | None = None
         super().__init__(
             uvicorn.Config(
-                HeadAsGet(Telemetry(self._app, metrics)),
+                HeadAsGet(Telemetry(_with_cors(self._app, settings.cors_origins), metrics)),
                 log_config=None,
                 access_log=False,
                 server_header=False,
@@ -61,3 +64,21 @@ class WebServer(uvicorn.Server):
         host, port = listener.getsockname()[:2]
         shown = f"[{host}]" if ":" in host else host
         print(f"mechsynth is ready on http://{shown}:{port}", flush=True)  # noqa: T201 (for whoever started it)
+
+
+def _with_cors(app: ASGIApp, origins: Sequence[str]) -> ASGIApp:
+    """The application for web pages of other origins too; around all of it, so that they can read its errors."""
+    if not origins:
+        return app
+    return CORSMiddleware(
+        app,
+        allow_origins=origins,
+        allow_methods=("GET", "HEAD", "POST", "DELETE"),
+        allow_headers=(
+            "Authorization", "Idempotency-Key", "If-None-Match", "Last-Event-ID", "Prefer", "X-Request-ID",
+        ),
+        expose_headers=(
+            "ETag", "Location", "Preference-Applied", "RateLimit", "RateLimit-Policy", "Retry-After", "Server-Timing",
+            "WWW-Authenticate", "X-Request-ID",
+        ),
+    )  # fmt: skip

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
 from typing import Any
 
 from fastapi import Request, Response
-from fastapi.routing import APIRoute
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect
 
 from service.api.errors import Refusal, malformed_json
+from service.api.guard import GuardedRoute, Handler
 
 MAX_VALUES = 20_000
 """Most values (numbers, strings, lists, objects) in a body. The largest honest problem has a few thousand; a body of a
@@ -68,12 +67,12 @@ class JsonRequest(Request):
         return bytes(body)
 
 
-class JsonRoute(APIRoute):
-    """A route that reads its body through :class:`JsonRequest`."""
+class JsonRoute(GuardedRoute):
+    """A route that lets in by API key and then reads its body through :class:`JsonRequest`."""
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+    def handler_inside(self) -> Handler:
         """The framework's handler, on a request that is read and parsed already."""
-        handle = super().get_route_handler()
+        handle = super().handler_inside()
         if self.body_field is None:
             return handle
 

@@ -11,8 +11,9 @@ from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse, RedirectResponse
 from starlette.staticfiles import StaticFiles
 
-from service.api import analyses
+from service.api import analyses, errors
 from service.api.errors import ProblemDetails
+from service.api.guard import SCHEME
 
 _ASSETS = "/docs/assets"
 
@@ -58,6 +59,21 @@ def _complete(document: dict[str, Any]) -> None:
     problem = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas.update(problem.pop("$defs", {}), ProblemDetails=problem)
     analyses.complete(document)
+    document["components"]["securitySchemes"] = {
+        SCHEME: {
+            "type": "http",
+            "scheme": "bearer",
+            "description": "An API key, where the service has keys; without any it is open to its own machine.",
+        }
+    }
+    refused = errors.responses(
+        e401="A key is needed, and there is none or none in force.", e429="The key has asked too often."
+    )
+    for path, methods in document["paths"].items():
+        for operation in methods.values():
+            if path.startswith("/v1/"):
+                operation["security"] = [{SCHEME: []}]
+                operation["responses"].update({str(status): response for status, response in refused.items()})
     # The framework assumes that every parameter can be refused with its own kind of 422, which does not exist here.
     for methods in document["paths"].values():
         for operation in methods.values():

@@ -16,6 +16,7 @@ from pydantic_core import to_json
 
 from service.api import errors
 from service.api.errors import Refusal, not_found
+from service.api.guard import GuardedRoute, Tenant
 from service.api.head import asked_for_head
 from service.api.jobs import NO_JOB, TAG, ULID
 from service.api.schemas import list_item, progress
@@ -45,7 +46,7 @@ def _feed(request: Request) -> Feed:
 
 News = Annotated[Feed, Depends(_feed)]
 
-router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]])
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
 
 @router.get(
@@ -67,6 +68,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]])
 async def follow_job(
     request: Request,
     feed: News,
+    tenant: Tenant,
     job_id: str,
     last_event_id: Annotated[
         str | None,
@@ -83,7 +85,7 @@ async def follow_job(
             headers={"Retry-After": "5"},
         )  # fmt: skip
     job = await _present(feed, job_id) if ULID.fullmatch(job_id) else None
-    if job is None:
+    if job is None or job.tenant != tenant:
         raise not_found(NO_JOB)
     seen = _seen(last_event_id)
     if job.status.finished and seen == (job.revision, job.status):

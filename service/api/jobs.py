@@ -15,6 +15,7 @@ from service.api import errors, etag
 from service.api.analyses import ANALYSIS, Core, answered
 from service.api.body import JsonRoute
 from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
+from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
@@ -114,6 +115,7 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited fo
 async def create_job(
     request: Request,
     desk: Desk,
+    tenant: Tenant,
     body: Annotated[JobRequest, _BODY],
     prefer: Annotated[
         str | None,
@@ -139,6 +141,7 @@ async def create_job(
     wait_s = wait_seconds(request.headers.getlist("prefer"), request.app.state.settings.max_wait_s)
     try:
         job = await desk.accept(
+            tenant=tenant,
             kind=body.problem.kind,
             label=body.label,
             problem=body.problem.model_dump_json(),
@@ -160,9 +163,10 @@ async def create_job(
     response_class=Response,
     responses={200: {"model": JobList}, **errors.responses(e422="A parameter is not valid; `errors` says which.")},
 )
-async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Response:
+async def list_jobs(desk: Desk, tenant: Tenant, filter_: Annotated[JobFilter, Query()]) -> Response:
     """The jobs, newest first, a page at a time, without their problems and results."""
     page = await desk.page(
+        tenant=tenant,
         limit=filter_.limit + 1,
         status=None if filter_.status is None else Status(filter_.status),
         kind=filter_.kind,
@@ -188,13 +192,14 @@ async def list_jobs(desk: Desk, filter_: Annotated[JobFilter, Query()]) -> Respo
 async def get_job(
     request: Request,
     desk: Desk,
+    tenant: Tenant,
     job_id: str,
     if_none_match: Annotated[
         str | None, Header(description="The `ETag` of the state that the client has.", examples=['"3"'])
     ] = None,
 ) -> Response:
     """The job as it stands."""
-    job = await _job(desk, job_id)
+    job = await _job(desk, tenant, job_id)
     current = etag.tag(job.revision)
     if etag.matches(request.headers.getlist("if-none-match"), current):
         return Response(status_code=304, headers={"ETag": current})
@@ -216,9 +221,9 @@ async def get_job(
         **errors.responses(e404=NO_JOB),
     },
 )
-async def delete_job(desk: Desk, job_id: str) -> Response:
+async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     """Cancel a queued or running job; remove a finished one."""
-    job = await desk.cancel_or_delete(job_id) if ULID.fullmatch(job_id) else None
+    job = await desk.cancel_or_delete(tenant, job_id) if ULID.fullmatch(job_id) else None
     if job is None:
         raise not_found(NO_JOB)
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
@@ -244,9 +249,9 @@ def _exported(form: str) -> dict[int | str, dict[str, Any]]:
     response_class=Response,
     responses=_exported("svg"),
 )
-async def draw_design(desk: Desk, job_id: str, number: str) -> Response:
+async def draw_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
     """A labelled drawing of design ``number`` of the job's result, counted from 0."""
-    return await _file(desk, job_id, number, "svg")
+    return await _file(desk, tenant, job_id, number, "svg")
 
 
 @router.get(
@@ -256,9 +261,9 @@ async def draw_design(desk: Desk, job_id: str, number: str) -> Response:
     response_class=Response,
     responses=_exported("dxf"),
 )
-async def export_design_dxf(desk: Desk, job_id: str, number: str) -> Response:
+async def export_design_dxf(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
     """A DXF file of design ``number`` of the job's result, in true dimensions and with units."""
-    return await _file(desk, job_id, number, "dxf")
+    return await _file(desk, tenant, job_id, number, "dxf")
 
 
 @router.get(
@@ -268,13 +273,13 @@ async def export_design_dxf(desk: Desk, job_id: str, number: str) -> Response:
     response_class=Response,
     responses=_exported("csv"),
 )
-async def export_design_csv(desk: Desk, job_id: str, number: str) -> Response:
+async def export_design_csv(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
     """A table of design ``number`` of the job's result, with units in its header."""
-    return await _file(desk, job_id, number, "csv")
+    return await _file(desk, tenant, job_id, number, "csv")
 
 
-async def _file(desk: JobDesk, job_id: str, number: str, form: Literal["svg", "dxf", "csv"]) -> Response:
-    job, result = await _solved(desk, job_id)
+async def _file(desk: JobDesk, tenant: str, job_id: str, number: str, form: Literal["svg", "dxf", "csv"]) -> Response:
+    job, result = await _solved(desk, tenant, job_id)
     with span("drawing"):
         drawn = await run_in_threadpool(_rendered, job, result, number, form)
     return Response(drawn, media_type=_MEDIA_TYPES[form])
@@ -319,7 +324,7 @@ class MotionSteps(BaseModel):
     },
 )
 async def move_design(
-    desk: Desk, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
+    desk: Desk, tenant: Tenant, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
 ) -> Response:
     """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
 
@@ -327,7 +332,7 @@ async def move_design(
     back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
     `POST /v1/analyses`.
     """
-    _, result = await _solved(desk, job_id)
+    _, result = await _solved(desk, tenant, job_id)
     return await answered(analyst, _motion, result, number, query.steps)
 
 
@@ -340,8 +345,8 @@ def _motion(result: str, number: str, steps: int) -> bytes:
     return to_json(answer, inf_nan_mode="null")
 
 
-async def _solved(desk: JobDesk, job_id: str) -> tuple[JobRow, str]:
-    job = await _job(desk, job_id)
+async def _solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
+    job = await _job(desk, tenant, job_id)
     if job.result is None:
         what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
         raise Refusal(409, "no-result", "No result", f"The job {what}.")
@@ -354,8 +359,8 @@ def _design_index(number: str, designs: int) -> int:
     return int(number)
 
 
-async def _job(desk: JobDesk, job_id: str) -> JobRow:
-    job = await desk.get(job_id) if ULID.fullmatch(job_id) else None
+async def _job(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
+    job = await desk.get(tenant, job_id) if ULID.fullmatch(job_id) else None
     if job is None:
         raise not_found(NO_JOB)
     return job

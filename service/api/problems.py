@@ -7,12 +7,13 @@ from functools import cache
 
 from fastapi import APIRouter
 
+from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
 from synthesis.kinds import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
 
-router = APIRouter(prefix="/v1/problems", tags=["problems"])
+router = APIRouter(prefix="/v1/problems", tags=["problems"], route_class=GuardedRoute)
 
 
 @router.get("", operation_id="list_problems", summary="List the kinds of problems")

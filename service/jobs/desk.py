@@ -30,7 +30,14 @@ class JobDesk:
     metrics: Metrics
 
     async def accept(
-        self, *, kind: str, label: str | None, problem: str, wait_s: float, repeatable: Repeatable | None
+        self,
+        *,
+        tenant: str,
+        kind: str,
+        label: str | None,
+        problem: str,
+        wait_s: float,
+        repeatable: Repeatable | None,
     ) -> JobRow:
         """Store a job, have it run, and wait up to ``wait_s`` seconds for its end. Returns the job as it then is.
 
@@ -42,7 +49,7 @@ class JobDesk:
             When the key came with another request before.
         """
         with span("store"):
-            job, new = await run_in_threadpool(self._stored, kind, label, problem, repeatable)
+            job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, repeatable)
         if new:
             log.info("job accepted", job=job.id, kind=kind)
             self.metrics.accepted(kind)
@@ -50,16 +57,18 @@ class JobDesk:
             if new:
                 self.executor.submit(job.id)
             elif wait_s > 0:
-                job = await self.get(job.id) or job  # it may have ended before it was watched
+                job = await self.get(job.tenant, job.id) or job  # it may have ended before it was watched
             if wait_s <= 0:
                 return job
             with span("job"):
                 return await self._ended(job, changed, wait_s)
 
-    def _stored(self, kind: str, label: str | None, problem: str, repeatable: Repeatable | None) -> tuple[JobRow, bool]:
+    def _stored(
+        self, tenant: str, kind: str, label: str | None, problem: str, repeatable: Repeatable | None
+    ) -> tuple[JobRow, bool]:
         if repeatable is None:
-            return self.store.create(kind=kind, label=label, problem=problem), True
-        return self.store.create_once(kind=kind, label=label, problem=problem, repeatable=repeatable)
+            return self.store.create(tenant=tenant, kind=kind, label=label, problem=problem), True
+        return self.store.create_once(tenant=tenant, kind=kind, label=label, problem=problem, repeatable=repeatable)
 
     async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:
@@ -67,28 +76,31 @@ class JobDesk:
                 while not job.status.finished and not self.changes.closed:
                     await changed.wait()
                     changed.clear()
-                    job = await self.get(job.id) or job
+                    job = await self.get(job.tenant, job.id) or job
         except TimeoutError:
-            return await self.get(job.id) or job
+            return await self.get(job.tenant, job.id) or job
         return job
 
-    async def get(self, job_id: str) -> JobRow | None:
-        """The job, or None where there is none."""
-        return await run_in_threadpool(self.store.get, job_id)
+    async def get(self, tenant: str, job_id: str) -> JobRow | None:
+        """The job, or None where the tenant has none such. Another tenant's job is none."""
+        job = await run_in_threadpool(self.store.get, job_id)
+        return job if job is not None and job.tenant == tenant else None
 
     async def page(
-        self, *, limit: int, status: Status | None, kind: str | None, before: str | None
+        self, *, tenant: str, limit: int, status: Status | None, kind: str | None, before: str | None
     ) -> list[JobSummary]:
-        """At most ``limit`` jobs, newest first."""
-        return await run_in_threadpool(self.store.page, limit=limit, status=status, kind=kind, before=before)
+        """At most ``limit`` jobs of the tenant, newest first."""
+        return await run_in_threadpool(
+            self.store.page, tenant=tenant, limit=limit, status=status, kind=kind, before=before
+        )
 
-    async def cancel_or_delete(self, job_id: str) -> JobRow | Literal["deleted"] | None:
-        """Cancel the job when it is unfinished (returns it), else remove it; None where there is none.
+    async def cancel_or_delete(self, tenant: str, job_id: str) -> JobRow | Literal["deleted"] | None:
+        """Cancel the job when it is unfinished (returns it), else remove it; None where the tenant has none such.
 
         A job that ends by itself while it is being cancelled is returned and not removed: the client asked when
         it was unfinished, and must not lose a result that it has never seen.
         """
-        job = await self.get(job_id)
+        job = await self.get(tenant, job_id)
         if job is None:
             return None
         if job.status.finished:
@@ -97,7 +109,7 @@ class JobDesk:
             log.info("job cancelled", job=job_id, was=job.status)
             self.executor.cancel(job_id)
             self.changes.publish(job_id)
-        return await self.get(job_id)
+        return await self.get(tenant, job_id)
 
     async def ready(self) -> str | None:
         """None when jobs can be taken and run; else what is missing, in a sentence."""

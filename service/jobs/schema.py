@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 from sqlalchemy import Column, Float, Index, Integer, MetaData, String, Table, Text
 
 from service.jobs.states import Status
 
 metadata = MetaData()
+
+TENANT_LENGTH = 100
+"""Longest name of a tenant."""
 
 # Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are,
 # and what the API shows. Problem, result and error are JSON as text, because nothing ever looks inside them here.
@@ -32,9 +36,12 @@ jobs = Table(
     Column("revision", Integer, nullable=False),
     Column("idempotency_key", String(200)),
     Column("request_hash", String(64)),
+    Column("tenant", String(TENANT_LENGTH), nullable=False, server_default=""),
     Index("jobs_by_status", "status", "id"),
-    Index("jobs_by_kind", "kind", "id"),
-    Index("jobs_by_idempotency_key", "idempotency_key", unique=True),
+    Index("jobs_by_tenant", "tenant", "id"),
+    Index("jobs_by_tenant_and_status", "tenant", "status", "id"),
+    Index("jobs_by_tenant_and_kind", "tenant", "kind", "id"),
+    Index("jobs_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
 
 
@@ -43,6 +50,7 @@ class JobSummary:
     """A job without its problem and its answer."""
 
     id: str
+    tenant: str
     kind: str
     label: str | None
     status: Status
@@ -63,3 +71,8 @@ class JobRow(JobSummary):
     problem: str
     result: str | None
     error: str | None
+
+
+def now() -> str:
+    """The time as it is stored."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Engine, RowMapping, case, delete, func, insert, select, text, update
@@ -17,7 +16,7 @@ from sqlalchemy.exc import IntegrityError
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import JobRow, JobSummary, jobs
+from service.jobs.schema import JobRow, JobSummary, jobs, now
 from service.jobs.states import FINISHED, MOVES, UNFINISHED, Status
 
 MAX_CRASHES = 3
@@ -66,11 +65,13 @@ class JobStore:
         with self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
 
-    def create(self, *, kind: str, label: str | None, problem: str) -> JobRow:
+    def create(self, *, tenant: str, kind: str, label: str | None, problem: str) -> JobRow:
         """Store a new job in the queue. When this returns, the job is on the disk."""
-        return self._insert(_new_row(kind, label, problem))
+        return self._insert(_new_row(tenant, kind, label, problem))
 
-    def create_once(self, *, kind: str, label: str | None, problem: str, repeatable: Repeatable) -> tuple[JobRow, bool]:
+    def create_once(
+        self, *, tenant: str, kind: str, label: str | None, problem: str, repeatable: Repeatable
+    ) -> tuple[JobRow, bool]:
         """Like :meth:`create`, or find the job that the same request has made already.
 
         Returns
@@ -81,10 +82,10 @@ class JobStore:
         Raises
         ------
         KeyReused
-            When another request has made a job under this key.
+            When another request of the tenant has made a job under this key.
         """
         row = {
-            **_new_row(kind, label, problem),
+            **_new_row(tenant, kind, label, problem),
             "idempotency_key": repeatable.key,
             "request_hash": repeatable.request_hash,
         }
@@ -92,7 +93,7 @@ class JobStore:
             try:
                 return self._insert(row), True
             except IntegrityError:
-                found = self._made_by(repeatable)
+                found = self._made_by(tenant, repeatable)
                 if found is not None:
                     return found, False
                 # The job that held the key has been removed since.
@@ -102,8 +103,10 @@ class JobStore:
             connection.execute(insert(jobs).values(row))
         return JobRow(**{name: row[name] for name in _ROW})
 
-    def _made_by(self, repeatable: Repeatable) -> JobRow | None:
-        query = select(*_WHOLE, jobs.c.request_hash).where(jobs.c.idempotency_key == repeatable.key)
+    def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
+        query = select(*_WHOLE, jobs.c.request_hash).where(
+            jobs.c.tenant == tenant, jobs.c.idempotency_key == repeatable.key
+        )
         with self._engine.connect() as connection:
             row = connection.execute(query).mappings().one_or_none()
         if row is None:
@@ -136,10 +139,16 @@ class JobStore:
         return found
 
     def page(
-        self, *, limit: int, status: Status | None = None, kind: str | None = None, before: str | None = None
+        self,
+        *,
+        tenant: str,
+        limit: int,
+        status: Status | None = None,
+        kind: str | None = None,
+        before: str | None = None,
     ) -> list[JobSummary]:
-        """At most ``limit`` jobs, newest first, from those older than the job ``before``."""
-        query = select(*_SUMMARY).order_by(jobs.c.id.desc()).limit(limit)
+        """At most ``limit`` jobs of a tenant, newest first, from those older than the job ``before``."""
+        query = select(*_SUMMARY).where(jobs.c.tenant == tenant).order_by(jobs.c.id.desc()).limit(limit)
         if status is not None:
             query = query.where(jobs.c.status == status)
         if kind is not None:
@@ -151,7 +160,7 @@ class JobStore:
 
     def claim(self, job_id: str) -> Claim | None:
         """Take a queued job; None when it is not there to be taken. Only one of many claimants gets it."""
-        change = self._moved("claim", job_id, progress_message="running", started_at=_now(), attempt=jobs.c.attempt + 1)
+        change = self._moved("claim", job_id, progress_message="running", started_at=now(), attempt=jobs.c.attempt + 1)
         with self._engine.begin() as connection:
             row = connection.execute(change.returning(jobs.c.attempt, jobs.c.kind, jobs.c.problem)).one_or_none()
         return None if row is None else Claim(*row)
@@ -172,22 +181,22 @@ class JobStore:
     def succeed(self, job_id: str, attempt: int, result: str) -> bool:
         """End the attempt with its result (JSON text); False when the attempt is no longer the one that counts."""
         change = self._moved(
-            "succeed", job_id, result=result, progress_fraction=1.0, progress_message="succeeded", finished_at=_now()
+            "succeed", job_id, result=result, progress_fraction=1.0, progress_message="succeeded", finished_at=now()
         )
         return self._changed(change.where(jobs.c.attempt == attempt))
 
     def fail(self, job_id: str, attempt: int, error: str) -> bool:
         """End the attempt with an error (JSON text); False when the attempt is no longer the one that counts."""
-        change = self._moved("fail", job_id, error=error, progress_message="failed", finished_at=_now())
+        change = self._moved("fail", job_id, error=error, progress_message="failed", finished_at=now())
         return self._changed(change.where(jobs.c.attempt == attempt))
 
     def give_up(self, job_id: str, error: str) -> bool:
         """Fail the job from outside, whichever attempt it is at; for the executor that runs it."""
-        return self._changed(self._moved("give_up", job_id, error=error, progress_message="failed", finished_at=_now()))
+        return self._changed(self._moved("give_up", job_id, error=error, progress_message="failed", finished_at=now()))
 
     def cancel(self, job_id: str) -> bool:
         """Cancel an unfinished job; False when there is none. No attempt can write to it afterwards."""
-        return self._changed(self._moved("cancel", job_id, progress_message="cancelled", finished_at=_now()))
+        return self._changed(self._moved("cancel", job_id, progress_message="cancelled", finished_at=now()))
 
     def delete(self, job_id: str) -> bool:
         """Remove a finished job; False when there is none."""
@@ -232,7 +241,7 @@ class JobStore:
                 status=case((worn_out, over.target), else_=again.target),
                 error=case((worn_out, WORKER_DIED.as_json(job_id)), else_=None),
                 started_at=case((worn_out, jobs.c.started_at), else_=None),
-                finished_at=case((worn_out, _now()), else_=None),
+                finished_at=case((worn_out, now()), else_=None),
                 progress_fraction=case((worn_out, jobs.c.progress_fraction), else_=0.0),
                 progress_message=case((worn_out, "failed"), else_="queued"),
                 crashes=jobs.c.crashes + 1,
@@ -261,13 +270,14 @@ class JobStore:
 _BACK_IN_QUEUE: Mapping[str, Any] = {"progress_fraction": 0.0, "progress_message": "queued", "started_at": None}
 
 
-def _new_row(kind: str, label: str | None, problem: str) -> dict[str, Any]:
+def _new_row(tenant: str, kind: str, label: str | None, problem: str) -> dict[str, Any]:
     return {
         "id": str(ULID()),
+        "tenant": tenant,
         "kind": kind,
         "label": label,
         "status": Status.QUEUED,
-        "created_at": _now(),
+        "created_at": now(),
         "started_at": None,
         "finished_at": None,
         "progress_fraction": 0.0,
@@ -283,7 +293,3 @@ def _new_row(kind: str, label: str | None, problem: str) -> dict[str, Any]:
 
 def _values(row: RowMapping) -> dict[str, Any]:
     return {**row, "status": Status(row["status"])}
-
-
-def _now() -> str:
-    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")

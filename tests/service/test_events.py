@@ -243,7 +243,7 @@ async def stream(feed, job, seen=None):
 
 
 def new_job(store):
-    return store.create(kind="motion", label=None, problem="{}")
+    return store.create(tenant="", kind="motion", label=None, problem="{}")
 
 
 def test_the_store_is_read_once_for_all_listeners(store):

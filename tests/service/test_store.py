@@ -1,9 +1,13 @@
 import sqlite3
 import threading
+from importlib.resources import files
 
 import pytest
+from alembic import command
+from alembic.config import Config
 from sqlalchemy import insert, select, update
 
+from service.access.keys import api_keys
 from service.jobs.database import connect, upgrade
 from service.jobs.schema import jobs, metadata
 from service.jobs.states import FINISHED, MOVES, Status
@@ -34,7 +38,7 @@ def store(engine):
 
 @pytest.fixture
 def job(store):
-    return store.create(kind="motion", label=None, problem='{"kind":"motion"}')
+    return store.create(tenant="", kind="motion", label=None, problem='{"kind":"motion"}')
 
 
 def put(engine, job_id, status, attempt=1):
@@ -124,7 +128,7 @@ def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
 
 
 def test_unfinished_jobs_are_queued_again_oldest_first(store):
-    ids = [store.create(kind="motion", label=None, problem="{}").id for _ in range(4)]
+    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     store.claim(ids[0])
     store.claim(ids[2])
     store.succeed(ids[2], 1, "{}")
@@ -142,12 +146,12 @@ def test_progress_is_kept_within_bounds(store, job):
 
 
 def test_pages_are_newest_first_and_filtered(store):
-    ids = [store.create(kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
+    ids = [store.create(tenant="", kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
     store.claim(ids[0])
-    assert [j.id for j in store.page(limit=10)] == ids[::-1]
-    assert [j.id for j in store.page(limit=1, before=ids[2])] == [ids[1]]
-    assert [j.id for j in store.page(limit=10, kind="motion")] == [ids[2], ids[0]]
-    assert [j.id for j in store.page(limit=10, status=Status.RUNNING)] == [ids[0]]
+    assert [j.id for j in store.page(tenant="", limit=10)] == ids[::-1]
+    assert [j.id for j in store.page(tenant="", limit=1, before=ids[2])] == [ids[1]]
+    assert [j.id for j in store.page(tenant="", limit=10, kind="motion")] == [ids[2], ids[0]]
+    assert [j.id for j in store.page(tenant="", limit=10, status=Status.RUNNING)] == [ids[0]]
 
 
 def test_the_server_is_durable_and_the_workers_are_not(tmp_path):
@@ -168,16 +172,19 @@ def test_the_migrations_make_the_tables_of_the_schema(tmp_path):
         make(engine)
         engine.dispose()
         raw = sqlite3.connect(path)
-        columns = raw.execute("SELECT name, type, \"notnull\", pk FROM pragma_table_info('jobs')").fetchall()
+        columns = [
+            raw.execute(f"SELECT name, type, \"notnull\", dflt_value, pk FROM pragma_table_info('{table}')").fetchall()
+            for table in (jobs.name, api_keys.name)
+        ]
         indexes = raw.execute("SELECT name, sql FROM sqlite_master WHERE type='index' AND sql IS NOT NULL").fetchall()
         raw.close()
         made.append((columns, sorted(indexes)))
     assert made[0] == made[1]
-    assert made[0][0]
+    assert all(made[0][0])
 
 
 def test_a_key_makes_one_job_until_that_is_removed(store):
-    ours = {"kind": "motion", "label": None, "problem": "{}"}
+    ours = {"tenant": "", "kind": "motion", "label": None, "problem": "{}"}
     first, new = store.create_once(**ours, repeatable=Repeatable("k", "a"))
     assert new
     assert store.create_once(**ours, repeatable=Repeatable("k", "a")) == (first, False)
@@ -191,10 +198,31 @@ def test_a_key_makes_one_job_until_that_is_removed(store):
     assert second.id != first.id
 
 
+def test_a_downgrade_undoes_the_upgrade(tmp_path):
+    engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
+    upgrade(engine, "0002")
+
+    def shape():
+        with engine.connect() as connection:
+            return sorted(connection.exec_driver_sql("SELECT name, sql FROM sqlite_master WHERE sql IS NOT NULL").all())
+
+    before = shape()
+    upgrade(engine)
+    assert shape() != before
+    config = Config()
+    config.set_main_option("script_location", str(files("service.jobs") / "migrations"))
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.downgrade(config, "0002")
+    assert [name for name, _ in shape()] == [name for name, _ in before]
+    engine.dispose()
+
+
 def test_jobs_of_an_older_store_are_kept(tmp_path):
     engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
     upgrade(engine, "0001")
-    row = {**_new_row("motion", "old", "{}"), "status": "succeeded"}
+    row = {**_new_row("", "motion", "old", "{}"), "status": "succeeded"}
+    del row["tenant"]  # there were none yet
     with engine.begin() as connection:
         connection.execute(insert(jobs).values(row))
     upgrade(engine)

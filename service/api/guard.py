@@ -1,0 +1,76 @@
+"""Who is let in: what every operation under ``/v1`` asks before it does anything, even before it reads a body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Annotated, Any
+
+import structlog
+from fastapi import Depends, Request, Response
+from fastapi.routing import APIRoute
+
+from service import telemetry
+from service.access.gate import Gate, NoKey, TooOften
+from service.api.errors import Refusal
+
+SCHEME = "bearer"
+"""The name of the security scheme in the OpenAPI document."""
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
+
+
+class GuardedRoute(APIRoute):
+    """A route that lets in by API key where there are keys."""
+
+    def get_route_handler(self) -> Handler:
+        """What is behind the gate, and the gate."""
+        handle = self.handler_inside()
+
+        async def admit_first(request: Request) -> Response:
+            request.state.tenant = await _admitted(request)
+            return await handle(request)
+
+        return admit_first
+
+    def handler_inside(self) -> Handler:
+        """The framework's handler."""
+        return super().get_route_handler()
+
+
+async def _admitted(request: Request) -> str:
+    gate = request.app.state.gate
+    assert isinstance(gate, Gate)
+    try:
+        tenant, allowance = await gate.admit(_key(request))
+    except NoKey as refusal:
+        raise Refusal(
+            401, "unauthorized", "Unauthorized",
+            "This key is not in force." if refusal.given else "A key is needed: `Authorization: Bearer mechsynth_...`.",
+            headers={"WWW-Authenticate": 'Bearer error="invalid_token"' if refusal.given else "Bearer"},
+        ) from None  # fmt: skip
+    except TooOften as refusal:
+        allowance = refusal.allowance
+        telemetry.answer_with(allowance.headers())
+        raise Refusal(
+            429, "rate-limited", "Rate limited",
+            f"A key may ask {allowance.limit} times in {allowance.window_s} seconds; this one has.",
+            headers={"Retry-After": str(allowance.reset_s)},
+        ) from None  # fmt: skip
+    if allowance is not None:
+        telemetry.answer_with(allowance.headers())
+        structlog.contextvars.bind_contextvars(tenant=tenant)
+    return tenant
+
+
+def _key(request: Request) -> str | None:
+    scheme, _, key = request.headers.get("authorization", "").partition(" ")
+    return key.strip() if scheme.lower() == "bearer" else None
+
+
+def _tenant(request: Request) -> str:
+    tenant = request.state.tenant
+    assert isinstance(tenant, str)
+    return tenant
+
+
+Tenant = Annotated[str, Depends(_tenant)]
