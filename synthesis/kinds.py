@@ -12,6 +12,7 @@ from pydantic import Discriminator, Tag, TypeAdapter
 
 from synthesis.designs import (
     CamResult,
+    FunctionResult,
     GearboxResult,
     GearTrainResult,
     LayshaftResult,
@@ -23,6 +24,7 @@ from synthesis.designs import (
 )
 from synthesis.problems import (
     CamProblem,
+    FunctionProblem,
     GearboxProblem,
     GearTrainProblem,
     LayshaftProblem,
@@ -57,6 +59,7 @@ KINDS: dict[str, Kind] = {
     "layshaft_gearbox": Kind(
         LayshaftProblem, LayshaftResult, "synthesis.layshaft_gearbox.solver:solve_layshaft_gearbox"
     ),
+    "function": Kind(FunctionProblem, FunctionResult, "synthesis.function.solver:solve_function"),
     "cam": Kind(CamProblem, CamResult, "synthesis.cam.solver:solve_cam"),
 }
 """Every kind of problem by its name."""

@@ -46,6 +46,10 @@ imported when it is needed, so that a server that starts does not wait for a dra
 
 
 EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
+    "function": {
+        "svg": "service.render.function_sheet:function_sheet",
+        "csv": "service.render.function_csv:function_table",
+    },
     "quick_return": {"svg": "service.render.stroke_sheet:stroke_sheet"},
 }
 """The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""

@@ -6,6 +6,7 @@ is the designs and how they were found. One module a kind of problem, and one fo
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
 from synthesis.designs.cam import CamDesign, CamResult
+from synthesis.designs.function import FunctionDesign, FunctionResult
 from synthesis.designs.gear_train import (
     GearTrainDesign,
     GearTrainMechanism,
@@ -82,6 +83,8 @@ __all__ = [
     "FixedPivots",
     "FourbarLinks",
     "FourbarMechanism",
+    "FunctionDesign",
+    "FunctionResult",
     "GearPair",
     "GearTrainDesign",
     "GearTrainMechanism",

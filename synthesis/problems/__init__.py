@@ -21,6 +21,7 @@ from synthesis.problems.base import (
     Statement,
 )
 from synthesis.problems.cam import CamProblem
+from synthesis.problems.function import FunctionProblem
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.gearbox import (
     GearboxProblem,
@@ -56,6 +57,7 @@ __all__ = [
     "DriverDyad",
     "DyadChoices",
     "Flag",
+    "FunctionProblem",
     "GearTrainProblem",
     "GearboxProblem",
     "GroundLine",

@@ -1,0 +1,1 @@
+"""Function generation: precision points, least squares and minimax."""
