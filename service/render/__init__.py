@@ -9,17 +9,23 @@ __all__ = ["NoSuchExport", "exported"]
 
 Form = Literal["svg", "dxf", "csv"]
 
+_LINKAGE: dict[Form, str] = {
+    "svg": "service.render.linkage_sheet:linkage_sheet",
+    "dxf": "service.render.linkage_dxf:linkage_drawing",
+    "csv": "service.render.linkage_csv:linkage_table",
+}
+
 EXPORTS: dict[str, dict[Form, str]] = {
     "cam": {
         "svg": "service.render.cam_sheet:cam_sheet",
         "dxf": "service.render.cam_dxf:cam_drawing",
         "csv": "service.render.cam_csv:cam_table",
     },
-    "fourbar": {"svg": "service.render.sheet:fourbar_sheet"},
-    "slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
-    "inverted_slider_crank": {"svg": "service.render.linkage_sheet:linkage_sheet"},
-    "watt_2": {"svg": "service.render.linkage_sheet:linkage_sheet"},
-    "stephenson_3": {"svg": "service.render.linkage_sheet:linkage_sheet"},
+    "fourbar": {**_LINKAGE, "svg": "service.render.sheet:fourbar_sheet"},
+    "slider_crank": _LINKAGE,
+    "inverted_slider_crank": _LINKAGE,
+    "watt_2": _LINKAGE,
+    "stephenson_3": _LINKAGE,
     "gear_train": {
         "svg": "service.render.gear_sheet:gear_train_sheet",
         "dxf": "service.render.gear_dxf:gear_train_drawing",

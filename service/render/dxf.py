@@ -25,9 +25,9 @@ ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defi
 UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
 
 
-def new_drawing(title: str, unit: str) -> Drawing:
-    """An empty drawing whose lengths are in ``unit``."""
-    document = new("R2010", setup=["linetypes"])
+def new_drawing(title: str, unit: str, *, dimensions: bool = False) -> Drawing:
+    """An empty drawing whose lengths are in ``unit``; with a style for dimensions if some will stand in it."""
+    document = new("R2010", setup=["linetypes", "dimstyles"] if dimensions else ["linetypes"])
     document.units = UNITS[unit]
     document.header.custom_vars.append("Title", title)
     return document

@@ -50,7 +50,8 @@ Style = dict[str, str | float | None]
 class Scene:
     """A linkage at inputs (radians, or lengths along the input slide), and the paths of some joints over its cycle.
 
-    ``used``, where a joint is named, is that joint's path from the first input to the last.
+    ``used``, where a joint is named, is that joint's path from the first input to the last; ``low`` and ``high`` are
+    the ends of the cycle.
     """
 
     def __init__(
@@ -62,16 +63,17 @@ class Scene:
         positions: Sequence[Position] = (),
     ) -> None:
         self.mechanism, self.inputs, self.positions = mechanism, inputs, positions
-        self.at = self._driven(inputs)
-        low, high = cycle_of(mechanism)
-        cycle = self._driven(np.linspace(low, high, SAMPLES))
+        self.at = self.driven(inputs)
+        self.low, self.high = cycle_of(mechanism)
+        cycle = self.driven(np.linspace(self.low, self.high, SAMPLES))
         self.paths: list[Points] = [cycle.joints[joint][0] for joint in traced]
         self.used: Points = np.empty(0, np.complex128)
         if used is not None:
-            self.used = self._driven(np.linspace(inputs[0], inputs[-1], SAMPLES)).joints[used][0]
+            self.used = self.driven(np.linspace(inputs[0], inputs[-1], SAMPLES)).joints[used][0]
 
-    def _driven(self, inputs: NDArray[np.float64]) -> MechanismMotion:
-        return drive(self.mechanism, inputs, order=0)
+    def driven(self, inputs: NDArray[np.float64], order: int = 0) -> MechanismMotion:
+        """The linkage at inputs, with derivatives by the input up to an order."""
+        return drive(self.mechanism, inputs, order=order)
 
     def joints(self, k: int) -> dict[str, complex]:
         """Joints at an input; empty where the linkage cannot be assembled there."""
