@@ -21,6 +21,7 @@ from synthesis.designs import (
     PlanetaryResult,
     QuickReturnResult,
     Result,
+    StraightLineResult,
 )
 from synthesis.problems import (
     CamProblem,
@@ -33,6 +34,7 @@ from synthesis.problems import (
     PlanetaryProblem,
     QuickReturnProblem,
     StatedProblem,
+    StraightLineProblem,
 )
 
 Progress = Callable[[float, str], None]
@@ -51,6 +53,9 @@ KINDS: dict[str, Kind] = {
     "motion": Kind(MotionProblem, MotionResult, "synthesis.motion.solver:solve_motion"),
     "path": Kind(PathProblem, PathResult, "synthesis.path.solver:solve_path"),
     "quick_return": Kind(QuickReturnProblem, QuickReturnResult, "synthesis.quick_return.solver:solve_quick_return"),
+    "straight_line": Kind(
+        StraightLineProblem, StraightLineResult, "synthesis.straight_line.solver:solve_straight_line"
+    ),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

@@ -241,6 +241,105 @@ def peaucellier(o2: complex, o4: complex, crank: float, arm: float, side: float,
     )
 
 
+def hart(
+    o2: complex,
+    o4: complex,
+    crank: float,
+    long: float,
+    short: float,
+    share: float,
+    input_angle: float,
+    side: int = OPEN,
+) -> Mechanism:
+    """Hart's inversor, a sixbar: P runs on a straight line exactly when the crank equals the distance O2 O4.
+
+    Crossed parallelogram B C E D with ``long`` links B C and D E and ``short`` links B D and C E. At the same ``share``
+    of their lengths from B, B, and E stand the fixed pivot O4 on B C, the crank pin A on B D, and P on E C. They are in
+    line, parallel to B E and D C, with O4 A = share · D C and O4 P = (1 − share) · B E on the other side of O4, and by
+    Ptolemy's theorem
+
+        O4 A · O4 P = share (1 − share) (long² − short²)                              (Rao, Sec. 4.2.2).
+
+    ``open``: B lies to the left of the directed line from A to O4.
+
+    Raises
+    ------
+    DimensionError
+        Where the short and the long link do not reach from A and O4 to each other, for a share outside 0 … 1, a short
+        link that is not shorter, and a side other than +1 and −1.
+    """
+    _require_sign("side", side)
+    require("share", "between 0 and 1", np.asarray(share), np.bool_(0.0 < share < 1.0))
+    require("short", "shorter than the long link", np.asarray(short), np.bool_(short < long))
+    pin_a = o2 + crank * np.exp(1j * input_angle)
+    reach = pin_a - o4
+    base = abs(reach) / share
+    if not long - short < base < long + short:
+        raise DimensionError("input_angle", "one at which the links reach each other", input_angle)
+    # A trapezoid with the parallel sides B E and D C; x from A to O4, B and E on the side of positive y.
+    top = (long - short) * (long + short) / base
+    height = side * np.sqrt((short - 0.5 * (base - top)) * (short + 0.5 * (base - top)))
+    corners = {
+        "B": complex(-0.5 * top, height), "E": complex(0.5 * top, height),
+        "D": complex(-0.5 * base, 0.0), "C": complex(0.5 * base, 0.0),
+    }  # fmt: skip
+    pivot = corners["B"] + share * (corners["C"] - corners["B"])
+    unit = -reach / abs(reach)
+    placed = {name: o4 + unit * (corner - pivot) for name, corner in corners.items()}
+    return Mechanism(
+        {"O2": o2, "O4": o4, "A": pin_a, **placed, "P": placed["E"] + share * (placed["C"] - placed["E"])},
+        {
+            "ground": ("O2", "O4"),
+            "input": ("O2", "A"),
+            "long_1": ("B", "O4", "C"),
+            "short_1": ("B", "A", "D"),
+            "short_2": ("E", "P", "C"),
+            "long_2": ("D", "E"),
+        },
+        "input",
+    )
+
+
+def pantograph(
+    o2: complex, o4: complex, crank: float, near: float, far: float, arm: float, input_angle: float, side: int = OPEN
+) -> Mechanism:
+    """The pantograph, its tracing pin P on a crank: Q draws the path of P enlarged by far / near about O4.
+
+    The bar O4 A B has A at ``near`` and B at ``far`` from O4; A B D P is a parallelogram with A P = ``arm``, and Q
+    stands on B D with B Q = arm · far / near, so that O4, P, Q are in line (Rao, Sec. 4.4). ``open``: A lies to the
+    left of the directed line from P to O4.
+
+    Raises
+    ------
+    DimensionError
+        Where the bar and the arm do not reach from O4 to P, for ``far`` not longer than ``near``, and a side other than
+        +1 and −1.
+    """
+    _require_sign("side", side)
+    require("far", "longer than near", np.asarray(far), np.bool_(far > near))
+    pin_p = o2 + crank * np.exp(1j * input_angle)
+    reach = o4 - pin_p
+    f = abs(reach)
+    if not abs(near - arm) < f < near + arm:
+        raise DimensionError("input_angle", "one at which the bar and the arm reach the crank pin", input_angle)
+    along = (f * f + (arm - near) * (arm + near)) / (2.0 * f)
+    pin_a = pin_p + reach / f * (along + 1j * side * np.sqrt((arm - along) * (arm + along)))
+    ratio = far / near
+    pin_b, pin_q = o4 + ratio * (pin_a - o4), o4 + ratio * (pin_p - o4)
+    return Mechanism(
+        {"O2": o2, "O4": o4, "P": pin_p, "A": pin_a, "B": pin_b, "D": pin_b + (pin_p - pin_a), "Q": pin_q},
+        {
+            "ground": ("O2", "O4"),
+            "input": ("O2", "P"),
+            "bar": ("O4", "A", "B"),
+            "arm": ("A", "P"),
+            "follower": ("B", "D", "Q"),
+            "strut": ("P", "D"),
+        },
+        "input",
+    )
+
+
 SIXBAR_LINKS: dict[str, dict[str, tuple[str, ...]]] = {
     "watt_1": {
         "ground": ("O2", "O4"),

@@ -1,4 +1,4 @@
-"""Diagrams of a quantity over the cam angle: frame, ticks of round numbers, curves, marks of segments and limits."""
+"""Diagrams of a quantity over the angle of a cam or crank: frame, ticks of round numbers, curve, marks and limits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ LEFT, FOOT, HEAD = 62.0, 22.0, 20.0
 TICKS = 5
 """Intervals of the vertical axis at most."""
 
-QUARTERS = (0.0, 90.0, 180.0, 270.0, 360.0)
+QUARTERS = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Shares of the horizontal axis that are numbered."""
 
 TEXT = 10.0
 
@@ -32,7 +33,7 @@ FLAT = 1e-9
 
 @dataclass(frozen=True)
 class Diagram:
-    """One quantity over the cam angle.
+    """One quantity over the angle of a cam or crank.
 
     Parameters
     ----------
@@ -41,10 +42,12 @@ class Diagram:
     name : str
         Marks the group as ``data-diagram``.
     angle, values : float, shape (n,)
-        Degrees from 0 to 360, and the quantity; NaN interrupts the curve.
+        Degrees from 0 to ``span``, and the quantity; NaN interrupts the curve.
     colour : str
     limits : sequence of float
         Levels drawn as dashed lines.
+    span : float
+        Degrees that the diagram is wide.
     """
 
     heading: str
@@ -53,6 +56,7 @@ class Diagram:
     values: Real
     colour: str
     limits: Sequence[float] = ()
+    span: float = 360.0
 
     def draw(self, box: Box, joints: Sequence[float]) -> Element:
         """The diagram in a box of the sheet, with the segments' joints as vertical lines."""
@@ -61,19 +65,19 @@ class Diagram:
         low, high = marks[0], marks[-1]
 
         def at(degrees: Real, values: Real) -> NDArray[np.complex128]:
-            x = frame.left + frame.width * degrees / 360.0
+            x = frame.left + frame.width * degrees / self.span
             y = frame.high - frame.height * (values - low) / (high - low)
             return np.asarray(x + 1j * y)
 
         group = element("g", data_diagram=self.name)
         group.add(text(frame.left, box.low + HEAD - 6.0, self.heading, 11.5, font_weight="bold", fill=INK))
-        for degrees in QUARTERS:
-            x = frame.left + frame.width * degrees / 360.0
+        for share in QUARTERS:
+            x = frame.left + frame.width * share
             group.add(line(complex(x, frame.high), complex(x, frame.high + 4.0), stroke=GREY, stroke_width=1.0))
-            words = written_angle(degrees, 1)
+            words = written_angle(share * self.span, 1 if self.span >= TEXT else 3)
             group.add(text(x, frame.high + 15.0, words, TEXT, text_anchor="middle", fill=GREY))
         for joint in joints:
-            x = frame.left + frame.width * joint / 360.0
+            x = frame.left + frame.width * joint / self.span
             group.add(line(complex(x, frame.low), complex(x, frame.high), stroke=PALE, stroke_width=0.7))
         for mark in marks:
             y = float(at(np.array(0.0), np.array(mark)).imag)

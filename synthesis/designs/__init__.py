@@ -69,6 +69,13 @@ from synthesis.designs.quick_return import (
     QuickReturnResult,
     RatioRange,
 )
+from synthesis.designs.straight_line import (
+    ExactLineMechanism,
+    LinePoint,
+    StraightLineDesign,
+    StraightLineMetrics,
+    StraightLineResult,
+)
 
 __all__ = [
     "Answer",
@@ -80,6 +87,7 @@ __all__ = [
     "CognateTriples",
     "CouplerPoint",
     "DragLinkMechanism",
+    "ExactLineMechanism",
     "FixedPivots",
     "FourbarLinks",
     "FourbarMechanism",
@@ -102,6 +110,7 @@ __all__ = [
     "LayshaftResult",
     "LimitPosition",
     "Line",
+    "LinePoint",
     "Link",
     "LinkageDesign",
     "LinkageMechanism",
@@ -135,6 +144,9 @@ __all__ = [
     "SliderCrankLinks",
     "SliderCrankMechanism",
     "Stage",
+    "StraightLineDesign",
+    "StraightLineMetrics",
+    "StraightLineResult",
     "Target",
     "Verification",
 ]

@@ -90,6 +90,9 @@ class GivenSkeleton(Statement):
         "dwell_slider",
         "dwell_slot",
         "peaucellier",
+        "hart",
+        "scott_russell",
+        "pantograph",
     ] = "skeleton"
     skeleton: StatedSkeleton
     links: dict[str, PositiveNumber] = Field(

@@ -45,6 +45,7 @@ from synthesis.problems.planetary_train import (
     ToothRange,
 )
 from synthesis.problems.quick_return import QuickReturnProblem
+from synthesis.problems.straight_line import StraightLineProblem
 
 __all__ = [
     "CamProblem",
@@ -82,6 +83,7 @@ __all__ = [
     "StatedProblem",
     "Statement",
     "StockedGear",
+    "StraightLineProblem",
     "TeethRange",
     "Tolerance",
     "ToothRange",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from synthesis.designs import Check, LinkageMetrics, Target
+from synthesis.designs import Check, Target
 from synthesis.problems import Constraints, DyadChoices, MotionProblem
 from synthesis.verification.demanded import Complex, Demanded, Real
 
@@ -148,12 +148,40 @@ def _turn(vector: complex, degrees: float) -> float:
     return abs(cmath.phase(vector * cmath.exp(-1j * math.radians(degrees))))
 
 
+class Constrained(Protocol):
+    """The measured properties that a client's constraints speak of; metrics of any kind that has them."""
+
+    @property
+    def same_branch(self) -> bool:
+        """Whether no toggle lies on the way."""
+
+    @property
+    def visits_in_order(self) -> bool:
+        """Whether the way is gone through in order."""
+
+    @property
+    def min_transmission_angle(self) -> float:
+        """Over the used range, degrees."""
+
+    @property
+    def grashof(self) -> str | None:
+        """Grashof's class of a fourbar."""
+
+    @property
+    def full_rotation(self) -> bool:
+        """Whether the input turns through."""
+
+    @property
+    def link_ratio(self) -> float:
+        """Longest link over shortest."""
+
+
 def constraint_checks(
     constraints: Constraints,
     lengths: list[float],
     fixed_pivots: list[complex],
     moving_pivots: list[complex],
-    metrics: LinkageMetrics,
+    metrics: Constrained,
 ) -> list[Check]:
     """The client's constraints; link lengths, and pivots at the first target."""
     checks = []

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from kinematics.errors import DimensionError
 from kinematics.linkage import catalogue
 from kinematics.linkage.drive import drive
 from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar
@@ -56,3 +57,70 @@ def test_watts_mean_position(case):
     before, after = points[nearest - 1], points[nearest + 1]
     share = ((given["O2O4"] / 2.0 - before) / (after - before)).real
     case.check(angle=degrees[nearest - 1] + share * (degrees[nearest + 1] - degrees[nearest - 1]))
+
+
+@pytest.mark.parametrize("case", cases("inversor_line", "straight_line"))
+def test_inversors_draw_an_exact_line(case):
+    """Rao's cells, driven: the product of the distances is constant, the three points in line, the locus straight."""
+    given = case.inputs
+    r = given["r"]
+    if given["mech"] == "peaucellier":
+        # Rao's circle of diameter 3 = a − b touches what the cell reaches in one point; a wider one draws as well.
+        with pytest.raises(DimensionError):
+            catalogue.peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
+        r = 2.0 * r
+        mechanism = catalogue.peaucellier(0.0, -r, r, given["a"], given["b"], 0.3)
+        degrees = np.linspace(-60.0, 60.0, 181)
+        constant = given["a"] ** 2 - given["b"] ** 2
+    else:
+        mechanism = catalogue.hart(0.0, -r, r, given["long"], given["short"], given["f"], 2.0)
+        bases = np.linspace(given["x0"], given["x1"], 181)
+        degrees = 2.0 * np.degrees(np.arccos(given["f"] * bases / (2.0 * r)))
+        constant = given["f"] * (1.0 - given["f"]) * (given["long"] ** 2 - given["short"] ** 2)
+    motion = drive(mechanism, np.radians(degrees), order=0)
+    assert motion.valid.all()
+    points = motion.joints["P"][0]
+    assert np.ptp(points.imag) > 0.3
+    pin, point = motion.joints["A"][0] + r, points + r
+    product = np.abs(pin) * np.abs(point)
+    case.check(
+        max_dev=np.abs(across(points).imag).max(),
+        product_spread=np.ptp(product),
+        product=product[0],
+        expected_product=constant,
+        OX=abs(points.real.mean() + r) * r / given["r"],
+        collinear=np.abs((pin * point.conj()).imag).max() / product[0],
+    )
+
+
+@pytest.mark.parametrize("case", cases("pantograph", "straight_line"))
+def test_the_pantograph_enlarges(case):
+    """Q at OQ from the pivot while P is at the ratio of it, all through a turn of the crank that carries P."""
+    given = case.inputs
+    ratio, reach = given["ratio"], given["DQ"]
+    near, far = given["OA"], given["OA"] / ratio
+    # The crank takes P round a circle through the printed place.
+    mechanism = catalogue.pantograph(ratio * reach - 3.0, 0.0, 3.0, near, far, 20.0, 0.0)
+    motion = drive(mechanism, np.linspace(0.0, 2.0 * np.pi, 181), order=0)
+    assert motion.valid.all()
+    p, q, b = (motion.joints[name][0] for name in ("P", "Q", "B"))
+    assert np.abs(q - p / ratio).max() < 1e-12 * reach
+    assert np.ptp(np.abs(p)) > 5.0
+    case.check(OP=abs(p[0]), OB=np.abs(b)[0])
+    assert np.isclose(abs(q[0]), reach)
+
+
+@pytest.mark.parametrize(
+    ("made", "what"),
+    [
+        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 0.1), "input_angle"),
+        (lambda: catalogue.hart(0.0, -1.2, 1.2, 1.5, 4.0, 0.4, 2.0), "short"),
+        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 1.0, 2.0), "share"),
+        (lambda: catalogue.hart(0.0, -1.2, 1.2, 4.0, 1.5, 0.4, 2.0, 0), "side"),
+        (lambda: catalogue.pantograph(5.0, 0.0, 6.0, 10.0, 40.0, 20.0, 1.0), "input_angle"),
+        (lambda: catalogue.pantograph(22.0, 0.0, 3.0, 10.0, 10.0, 20.0, 1.0), "far"),
+    ],
+)
+def test_impossible_dimensions_are_refused(made, what):
+    with pytest.raises(DimensionError, match=what):
+        made()

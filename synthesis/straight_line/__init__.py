@@ -1,0 +1,1 @@
+"""Straight lines: linkages whose coupler point follows one, approximately or exactly."""

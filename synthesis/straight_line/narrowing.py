@@ -1,0 +1,218 @@
+"""The narrowest band: minimax by a sequence of linear programs with a trust region.
+
+A shape x gives values e(x) at samples of a motion. Wanted is the x for which the band from the least to the greatest of
+them is narrowest, where other values h(x) have to stay in a band of stated width, and others, g(x), must not be
+negative:
+
+    minimise t  subject to  |e_i(x) − m| ≤ t,  |h_j(x) − n| ≤ w,  g_k(x) ≥ 0,  low ≤ x ≤ high.
+
+Each step replaces e, h, g by their tangents and bounds the step (Madsen, "An algorithm for minimax solution of
+overdetermined systems of non-linear equations", J. Inst. Math. Appl. 16 (1975) 321, doi:10.1093/imamat/16.3.321). Where
+as many values are at the band's edges as there are unknowns, which is what Chebyshev's theory gives for smooth motions,
+the steps are Newton's and converge quadratically. Constraints are elastic, so that a start need not meet them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+Real = NDArray[np.float64]
+
+PENALTIES = (10.0, 1000.0)
+"""Prices of a violated constraint, in units of the values e. The first lets steps cut corners; the second is for what
+then still breaks a constraint, and above the multipliers of useful designs: a line that must be straight to 1e-4 pays
+some 50 times that in the evenness of its velocity."""
+
+MET = 1e-6
+"""Violation with which a constraint counts as met."""
+
+STEP = 1e-5
+"""Relative step of the central differences: their error, some 1e-10, only slows the last steps."""
+
+FIRST_TRUST, LARGEST_TRUST, LEAST_TRUST = 0.1, 0.5, 1e-10
+"""Bounds of a step, as a share of 1 + |x|: at first, at most, and where the search ends."""
+
+ARRIVED = 1e-6
+"""Relative gain below which the band is the narrowest."""
+
+LEAST_BAND = 1e-15
+"""Bands this narrow are rounding."""
+
+STEPS = 40
+"""Linear programs at most; ten to twenty are usual."""
+
+
+class Values(NamedTuple):
+    """What shapes give; the first axis are the shapes. NaN where there is no such linkage.
+
+    Attributes
+    ----------
+    banded : float, shape (m, k)
+        The values whose band shall be narrow.
+    limited : float, shape (m, j)
+        Values that have to stay in a band of stated half width; j may be 0.
+    positive : float, shape (m, q)
+        Values that must not be negative; q may be 0.
+    """
+
+    banded: Real
+    limited: Real
+    positive: Real
+
+
+class Narrowest(NamedTuple):
+    """A shape, half the width of its band, and by how much it breaks its constraints."""
+
+    shape: Real
+    half_width: float
+    violation: float
+
+
+def narrowest(
+    values: Callable[[Real], Values],
+    start: Real,
+    low: Real,
+    high: Real,
+    *,
+    half_limit: float = np.inf,
+    arrived: float = ARRIVED,
+) -> Narrowest | None:
+    """Descend from one start to a shape with a locally narrowest band.
+
+    Parameters
+    ----------
+    values : callable
+        Takes shapes (m, n) and gives their values.
+    start, low, high : float, shape (n,)
+        Where to begin, and bounds.
+    half_limit : float
+        Half the width of the band in which ``limited`` has to stay.
+    arrived : float
+        Relative gain of a step below which the descent ends.
+
+    Returns
+    -------
+    Narrowest or None
+        None where the start is no linkage.
+    """
+    found: Narrowest | None = None
+    for penalty in PENALTIES:
+        found = _descent(values, start, low, high, half_limit, arrived, penalty)
+        if found is None or found.violation <= MET:
+            break
+        start = found.shape
+    return found
+
+
+def _descent(
+    values: Callable[[Real], Values],
+    start: Real,
+    low: Real,
+    high: Real,
+    half_limit: float,
+    arrived: float,
+    penalty: float,
+) -> Narrowest | None:
+    """The descent at one price of violations."""
+    x = np.clip(start, low, high)
+    here = values(x[None])
+    merit, half_width, violation = _merit(here, half_limit, penalty)
+    if not np.isfinite(merit):
+        return None
+    trust = FIRST_TRUST
+    for _ in range(STEPS):
+        tangents = _tangents(values, x)
+        if tangents is None:
+            break
+        while trust > LEAST_TRUST:
+            reach = trust * (1.0 + np.abs(x))
+            bounds = np.maximum(low - x, -reach), np.minimum(high - x, reach)
+            step, predicted = _step(here, tangents, *bounds, half_limit, penalty)
+            if step is None:
+                return Narrowest(x, half_width, violation)
+            tried = values((x + step)[None])
+            tried_merit = _merit(tried, half_limit, penalty)
+            gain, hoped = merit - tried_merit[0], merit - predicted
+            if np.isfinite(tried_merit[0]) and gain > 0.1 * hoped and hoped > 0.0:
+                break
+            trust = 0.25 * float(np.max(np.abs(step) / (1.0 + np.abs(x)))) if hoped > arrived * merit else 0.0
+        else:
+            break
+        trust = min(LARGEST_TRUST, 2.0 * trust) if gain > 0.75 * hoped else trust
+        x, here = x + step, tried
+        merit, half_width, violation = tried_merit
+        if gain <= arrived * merit:
+            break
+    return Narrowest(x, half_width, violation)
+
+
+def merits(values: Values, half_limit: float = np.inf, penalty: float = PENALTIES[0]) -> Real:
+    """Half width, largest violation and their weighted sum, shape (3, m); infinite where a shape is no linkage."""
+    half_width = 0.5 * np.ptp(values.banded, axis=1)
+    violation = np.maximum(0.0, -values.positive.min(axis=1, initial=0.0))
+    if values.limited.size and np.isfinite(half_limit):
+        violation = np.maximum(violation, 0.5 * np.ptp(values.limited, axis=1) - half_limit)
+    found = np.stack([half_width, violation, half_width + penalty * violation])
+    return np.where(np.isfinite(found).all(axis=0), found, np.inf)
+
+
+def _merit(values: Values, half_limit: float, penalty: float) -> tuple[float, float, float]:
+    half_width, violation, merit = merits(values, half_limit, penalty)[:, 0].tolist()
+    return merit, half_width, violation
+
+
+def _tangents(values: Callable[[Real], Values], x: Real) -> Values | None:
+    """Derivatives by each coordinate, shapes (n, k), (n, j), (n, q); None at the edge of where linkages exist."""
+    h = STEP * (1.0 + np.abs(x))
+    around = values(np.concatenate([x + np.diag(h), x - np.diag(h)]))
+    n = len(x)
+    found = Values(*((part[:n] - part[n:]) / (2.0 * h[:, None]) for part in around))
+    return found if all(np.isfinite(part).all() for part in found) else None
+
+
+def _step(
+    here: Values, tangents: Values, low: Real, high: Real, half_limit: float, penalty: float
+) -> tuple[Real | None, float]:
+    """The step to the best shape of the tangents within bounds, and the merit that they predict there.
+
+    Unknowns of the linear program: the step, the middles of both bands, the half width, the violation.
+    """
+    limited = bool(np.isfinite(half_limit)) and here.limited.size > 0
+    n, k, q = len(low), here.banded.shape[1], here.positive.shape[1]
+    j = here.limited.shape[1] if limited else 0
+    # Steps in units of their bounds and values in units of the present band, from its middle: values of 1e-9 beside
+    # others of 100 are then told apart.
+    unit = max(0.5 * float(np.ptp(here.banded)), LEAST_BAND)
+    reach = np.maximum(high - low, LEAST_BAND)
+    matrix = np.zeros((2 * k + 2 * j + q, n + 4))
+    limit = np.empty(len(matrix))
+    banded = (here.banded[0] - _middle(here.banded)) / unit
+    slopes = tangents.banded.T * (reach / unit)
+    for rows, sign in ((slice(0, k), 1.0), (slice(k, 2 * k), -1.0)):
+        matrix[rows, :n], matrix[rows, n], matrix[rows, n + 2] = sign * slopes, -sign, -1.0
+        limit[rows] = -sign * banded
+    if limited:
+        centred = (here.limited[0] - _middle(here.limited)) / unit
+        slopes = tangents.limited.T * (reach / unit)
+        for rows, sign in ((slice(2 * k, 2 * k + j), 1.0), (slice(2 * k + j, 2 * k + 2 * j), -1.0)):
+            matrix[rows, :n], matrix[rows, n + 1], matrix[rows, n + 3] = sign * slopes, -sign, -1.0
+            limit[rows] = half_limit / unit - sign * centred
+    matrix[2 * k + 2 * j :, :n] = -tangents.positive.T * (reach / unit)
+    matrix[2 * k + 2 * j :, n + 3] = -1.0
+    limit[2 * k + 2 * j :] = here.positive[0] / unit
+    cost = np.zeros(n + 4)
+    cost[n + 2], cost[n + 3] = 1.0, penalty
+    bounds = [*zip(low / reach, high / reach, strict=True), (None, None), (None, None), (0.0, None), (0.0, None)]
+    done = linprog(cost, matrix, limit, bounds=bounds, method="highs")
+    if done.status != 0:
+        return None, np.inf
+    return np.asarray(done.x[:n]) * reach, float(done.fun) * unit
+
+
+def _middle(values: Real) -> float:
+    return 0.5 * float(values.min() + values.max())
