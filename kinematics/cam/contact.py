@@ -48,6 +48,8 @@ CUSP = math.pi / 3.0
 """Turn between neighbouring chords that no sound profile shows: at a cusp the next chord runs back."""
 
 TRANSLATING_ROLLER, OSCILLATING_ROLLER, TRANSLATING_FACE, OSCILLATING_FACE = range(4)
+TRANSLATING_WITHIN, OSCILLATING_WITHIN = 4, 5
+"""Rollers inside the outer wall of a groove; their coordinates are negated, so that the greatest is looked for too."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -110,7 +112,7 @@ class Contour:
     @cached_property
     def tangents(self) -> Complex:
         """Unit tangents of the profile at its points, in the order of the points."""
-        first, _ = _derivatives(self._curves, np.zeros(len(self.points)))
+        first, _ = curve_derivatives(self._curves, np.zeros(len(self.points)))
         return np.asarray(first / np.abs(first))
 
     @cached_property
@@ -118,17 +120,7 @@ class Contour:
         """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
         n = len(self.points)
         index = (np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)) % n
-        along = np.zeros((n, STENCIL))
-        chords = self.chords
-        for k in range(STENCIL):
-            for step in range(2, k) if k > 2 else range(k, 2):
-                sign = 1.0 if k > 2 else -1.0
-                along[:, k] += sign * chords[index[:, step]]
-        along /= chords[:, None]
-        powers = along[:, :, None] ** np.arange(STENCIL)
-        values = self.points[index]
-        solved = np.linalg.solve(powers, np.stack([values.real, values.imag], axis=-1))
-        return np.asarray(solved[..., 0] + 1j * solved[..., 1])
+        return local_curves(self.points[index])
 
     @property
     def turns_ccw(self) -> bool:
@@ -139,7 +131,7 @@ class Contour:
     def curvature(self, per_chord: int = 4) -> Real:
         """Curvature of the profile at equal shares of every chord, positive where convex; shape (n · per_chord,)."""
         share = np.arange(per_chord) / per_chord
-        first, second = _derivatives(self._curves[:, None, :], share)
+        first, second = curve_derivatives(self._curves[:, None, :], share)
         sign = 1.0 if self.turns_ccw else -1.0
         return np.asarray(sign * (np.conj(first) * second).imag / np.abs(first) ** 3).reshape(-1)
 
@@ -194,8 +186,8 @@ class Contour:
         _lay(np.ascontiguousarray(curves), flat, kind, sizes, flipped, edge, values, pieces, shares)
         values = values.reshape(theta.shape)
         local, share = curves[pieces.reshape(theta.shape)], shares.reshape(theta.shape)
-        point = _value(local, share)
-        first, second = _derivatives(local, share)
+        point = curve_value(local, share)
+        first, second = curve_derivatives(local, share)
         valid = np.isfinite(values)
         orientation = 1.0 if self.turns_ccw != mirrored else -1.0
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -208,6 +200,72 @@ class Contour:
             pressure = np.abs(np.angle(turn * normal * np.conj(direction)))
         own = np.conj if mirrored else np.asarray
         return ContactMotion(values - zero, v, a, own(point), own(normal), pressure, radius)
+
+    def within(self, follower: Follower, angle: ArrayLike, rotation: Rotation = "ccw") -> Real:
+        """Lay a roller from within against this curve, the outer wall of a groove.
+
+        The wall's points are taken on the follower's side of the cam. Parameters as for :meth:`follow`.
+
+        Returns
+        -------
+        float
+            The least displacement at which the roller touches, NaN where it touches nothing.
+
+        Raises
+        ------
+        DimensionError
+            A follower without a roller, or one whose roller fits between the points.
+        """
+        theta = np.asarray(angle, dtype=np.float64)
+        kind, sizes, zero = _dimensions(follower)
+        kinds = {TRANSLATING_ROLLER: TRANSLATING_WITHIN, OSCILLATING_ROLLER: OSCILLATING_WITHIN}
+        if kind not in kinds or not sizes[2] >= NARROW * self.chords.max():
+            raise DimensionError("roller radius", f"at least {NARROW * self.chords.max()}", sizes[2])
+        curves = np.ascontiguousarray(np.conj(self._curves) if rotation == "ccw" else self._curves)
+        flat = np.ascontiguousarray(theta.reshape(-1))
+        values: Real = np.empty(flat.size)
+        flipped = getattr(follower, "sense", 1) == -1
+        _lay(
+            curves, flat, kinds[kind], sizes, flipped, False, values, np.empty(flat.size, np.int64), np.empty(flat.size)
+        )
+        return -values.reshape(theta.shape) - zero
+
+
+def local_curves(points: Complex) -> Complex:
+    """Coefficients of curves of the fifth degree through six points each, from the third (τ = 0) to the fourth (τ = 1).
+
+    Parameters
+    ----------
+    points : complex, shape (n, 6)
+        In order along the curve; the parameter is the length of the chords, in units of the middle one.
+
+    Returns
+    -------
+    complex, shape (n, 6)
+        Constant first.
+    """
+    chords = np.abs(np.diff(points, axis=1))
+    along = np.concatenate([np.zeros((len(points), 1)), np.cumsum(chords, axis=1)], axis=1)
+    along = (along - along[:, 2:3]) / chords[:, 2:3]
+    powers = along[:, :, None] ** np.arange(STENCIL)
+    solved = np.linalg.solve(powers, np.stack([points.real, points.imag], axis=-1))
+    return np.asarray(solved[..., 0] + 1j * solved[..., 1])
+
+
+def curve_value(curves: Complex, share: Real) -> Complex:
+    """Points of local curves at τ."""
+    result = curves[..., STENCIL - 1]
+    for k in range(STENCIL - 2, -1, -1):
+        result = result * share + curves[..., k]
+    return result
+
+
+def curve_derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
+    """First and second derivative of the local curves by τ."""
+    powers = np.arange(STENCIL)
+    first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
+    second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
+    return curve_value(first, share), curve_value(second, share)
 
 
 def _rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius: Real) -> tuple[Real, Real]:
@@ -260,26 +318,15 @@ def _direction(follower: Follower, value: Real, contact: Complex) -> Complex:
     return np.asarray(-turn * np.exp(turn * value))
 
 
-def _value(curves: Complex, share: Real) -> Complex:
-    result = curves[..., STENCIL - 1]
-    for k in range(STENCIL - 2, -1, -1):
-        result = result * share + curves[..., k]
-    return result
-
-
-def _derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
-    """First and second derivative of the local curves by τ."""
-    powers = np.arange(STENCIL)
-    first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    return _value(first, share), _value(second, share)
-
-
 @njit(cache=True, nogil=True)
 def _stand(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> float:
     """The follower's coordinate when it touches (x, y), −∞ where it cannot."""
     if kind == TRANSLATING_FACE:
         return x
+    if kind == TRANSLATING_WITHIN:
+        across = y - sizes[0]
+        square = sizes[2] * sizes[2] - across * across
+        return math.sqrt(square) - x if square >= 0.0 and x > 0.0 else -math.inf
     if kind == TRANSLATING_ROLLER:
         across = y - sizes[0]
         square = sizes[2] * sizes[2] - across * across
@@ -291,6 +338,8 @@ def _stand(x: float, y: float, kind: int, sizes: tuple[float, float, float]) -> 
         share = sizes[2] / distance
         return beta + math.asin(share) if abs(share) <= 1.0 else -math.inf
     share = (sizes[0] * sizes[0] + distance * distance - sizes[2] * sizes[2]) / (2.0 * sizes[0] * distance)
+    if kind == OSCILLATING_WITHIN:
+        return math.acos(share) - beta if abs(share) <= 1.0 and beta > 0.0 else -math.inf
     return beta + math.acos(share) if abs(share) <= 1.0 else -math.inf
 
 

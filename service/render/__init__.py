@@ -21,6 +21,11 @@ EXPORTS: dict[str, dict[Form, str]] = {
         "dxf": "service.render.cam_dxf:cam_drawing",
         "csv": "service.render.cam_csv:cam_table",
     },
+    "barrel_cam": {
+        "svg": "service.render.barrel_sheet:barrel_sheet",
+        "dxf": "service.render.barrel_exports:barrel_drawing",
+        "csv": "service.render.barrel_exports:barrel_table",
+    },
     "fourbar": {**_LINKAGE, "svg": "service.render.sheet:fourbar_sheet"},
     "slider_crank": _LINKAGE,
     "inverted_slider_crank": _LINKAGE,

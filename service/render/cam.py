@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from kinematics.cam.contact import ContactMotion, Contour
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from synthesis.cam.mechanism import core_follower, profile_points
+from synthesis.cam.mechanism import core_follower, points_of, profile_points
 from synthesis.designs.cam import CamMechanism
 
 Real = NDArray[np.float64]
@@ -60,6 +60,12 @@ class CamScene:
         """Path of the roller's centre around the cam; the profile under a flat face."""
         curve = self.mechanism.pitch_curve
         return np.array(curve.x) + 1j * np.array(curve.y)
+
+    @cached_property
+    def outer_wall(self) -> Complex | None:
+        """Points of the groove's outer wall; None without a groove."""
+        wall = self.mechanism.outer_wall
+        return None if wall is None else points_of(wall)
 
     @cached_property
     def contour(self) -> Contour:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,14 +47,23 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
             f"roller_centre_radius [{unit}]": np.abs(pitch),
             "roller_centre_polar_angle [deg]": _polar(pitch),
         }
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+    wall = scene.outer_wall
+    if wall is not None and len(wall) == len(scene.angle):
+        columns |= {f"outer_wall_x [{unit}]": wall.real, f"outer_wall_y [{unit}]": wall.imag}
     follower = design.mechanism.follower
     given = {name: value for name, value in follower.model_dump().items() if value is not None and name != "type"}
-    text.write(f"# {clean(title) or 'Cam'}\n")
-    text.write(f"# {follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}\n")
-    text.write(f"# {', '.join(f'{name} {value:.12g}' for name, value in given.items())}\n" if given else "")
-    text.write("# x and y in the cam's own frame, the follower on +x at cam angle 0\n")
+    remarks = [f"{follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}"]
+    remarks += [", ".join(f"{name} {value:.12g}" for name, value in given.items())] if given else []
+    remarks.append("x and y in the cam's own frame, the follower on +x at cam angle 0")
+    return table_text(clean(title) or "Cam", remarks, columns)
+
+
+def table_text(title: str, remarks: Sequence[str], columns: Mapping[str, object]) -> str:
+    """Columns of numbers below lines that begin with ``#``."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for line in (title, *remarks):
+        text.write(f"# {line}\n")
     writer.writerow(columns)
     for row in zip(*(np.asarray(values, dtype=np.float64).tolist() for values in columns.values()), strict=True):
         writer.writerow([_number(value) for value in row])

@@ -5,6 +5,7 @@ layer              what is on it
 =================  ==================================================================
 PROFILE            closed cubic spline through the profile's points, tangents kept
 PROFILE_ARCS       the same as a closed polyline of tangent arcs (biarcs); frozen
+OUTER_WALL         spline through the points of a groove's outer wall, of form-closed cams
 PITCH_CURVE        spline of the roller's centres
 PRIME_CIRCLE       prime circle of a roller's cam
 BASE_CIRCLE        base circle
@@ -37,6 +38,7 @@ Complex = NDArray[np.complex128]
 LAYERS = {
     "PROFILE": (5, "CONTINUOUS"),
     "PROFILE_ARCS": (4, "CONTINUOUS"),
+    "OUTER_WALL": (5, "CONTINUOUS"),
     "PITCH_CURVE": (6, "DASHED"),
     "PRIME_CIRCLE": (8, "DOT"),
     "BASE_CIRCLE": (8, "DASHDOT"),
@@ -63,7 +65,7 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
         document.layers.add(name, color=colour, linetype=linetype)
     document.layers.get("PROFILE_ARCS").freeze()
     space = document.modelspace()
-    _spline(space, scene.contour, "PROFILE")
+    _closed(space, scene.contour, "PROFILE")
     space.add_lwpolyline(
         _biarcs(scene.contour, ARC_TOLERANCE * scene.base_radius),
         format="xyb",
@@ -71,8 +73,10 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
         dxfattribs={"layer": "PROFILE_ARCS"},
     )
     space.add_circle((0.0, 0.0), scene.base_radius, dxfattribs={"layer": "BASE_CIRCLE"})
+    if scene.outer_wall is not None:
+        _closed(space, Contour(scene.outer_wall), "OUTER_WALL")
     if scene.roller:
-        _spline(space, Contour(scene.pitch_curve), "PITCH_CURVE")
+        _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
         space.add_circle((0.0, 0.0), scene.roller.prime_radius, dxfattribs={"layer": "PRIME_CIRCLE"})
     _follower(space, scene)
     arm = 0.08 * scene.base_radius
@@ -80,21 +84,6 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
         dxf.add_line(space, -end, end, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
     return dxf.written(document)
-
-
-def _spline(space: Modelspace, contour: Contour, layer: str) -> None:
-    """Cubic pieces between the points with common tangents there, as one spline with double knots."""
-    points, tangents, chords = contour.points, contour.tangents, contour.chords
-    ahead = points + tangents * chords / 3.0
-    behind = np.roll(points, -1) - np.roll(tangents, -1) * chords / 3.0
-    inner = np.stack([ahead, behind], axis=1).reshape(-1)
-    control = np.concatenate([points[:1], inner, points[:1]])
-    along = np.concatenate([[0.0], np.cumsum(chords)])
-    knots = np.concatenate([[0.0] * 4, np.repeat(along[1:-1], 2), [along[-1]] * 4])
-    spline = space.add_spline(degree=3, dxfattribs={"layer": layer})
-    spline.control_points = [(z.real, z.imag, 0.0) for z in control]
-    spline.knots = knots.tolist()
-    spline.closed = True
 
 
 def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
@@ -153,6 +142,12 @@ def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> fl
     chord = pair[1][1] - pair[0][0]
     first = ((points - middle) * chord.conjugate()).real < 0.0
     return float(np.where(first, *off).max())
+
+
+def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
+    """A closed curve with its own tangents at its points."""
+    around = np.append(contour.points, contour.points[0])
+    dxf.add_spline(space, around, np.append(contour.tangents, contour.tangents[0]), layer)
 
 
 def _follower(space: Modelspace, scene: CamScene) -> None:

@@ -16,7 +16,7 @@ from service.render.sheet import COLUMN, EDGE, GUTTER, TOP, UNITS, WIDTH
 from service.render.svg import Box, Element, circle, clean, document, element, line, shortened, text, text_width
 from service.render.symbols import COUPLER, CURVE, DEMANDED, GREY, INK, INPUT, OUTPUT
 from synthesis.designs import Check
-from synthesis.designs.cam import CamDesign, CamSegment
+from synthesis.designs.cam import BarrelCamDesign, CamDesign, CamSegment, ProgramTable
 from synthesis.problems.cam import CamProblem
 
 DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0
@@ -44,10 +44,10 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
     y = TOP - 6.0
     for block in (
         _dimensions(design, scene, unit),
-        _segments(design),
-        blocks.checks(design.verification, _written),
+        segments_block(design),
+        blocks.checks(design.verification, written_check),
         _metrics(design, unit),
-        *([_forces(design)] if design.metrics.forces else []),
+        *([forces_block(design)] if design.metrics.forces else []),
     ):
         drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
         parts.append(drawn)
@@ -56,12 +56,8 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
     parts.append(_key(scene, TOP + height + 18.0))
     top = max(TOP + height + KEY_HEIGHT, y)
     joints = [segment.start for segment in design.segments]
-    wide = 0.5 * (WIDTH - 2.0 * EDGE - GUTTER)
-    shown = _diagrams(design, problem, scene)
-    for k, diagram in enumerate(shown):
-        x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * (DIAGRAM_HEIGHT + 8.0)
-        parts.append(diagram.draw(Box(x, low, x + wide, low + DIAGRAM_HEIGHT), joints))
-    bottom = math.ceil(top + math.ceil(len(shown) / 2) * (DIAGRAM_HEIGHT + 8.0) + EDGE - 8.0)
+    drawn_diagrams, bottom = in_two_columns(_diagrams(design, problem, scene), top, joints)
+    parts += drawn_diagrams
     return document(heading, _description(design, unit), (WIDTH, float(bottom)), *_title(design, heading, unit), *parts)
 
 
@@ -117,7 +113,7 @@ def _dimensions(design: CamDesign, scene: CamScene, unit: str) -> Block:
     return blocks.rows(f"Dimensions ({unit})", entries)
 
 
-def _segments(design: CamDesign) -> Block:
+def segments_block(design: CamDesign | BarrelCamDesign) -> Block:
     """Every segment with its law, its place and its peaks."""
     shares = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
 
@@ -172,7 +168,8 @@ def _metrics(design: CamDesign, unit: str) -> Block:
     return blocks.rows("Metrics", entries)
 
 
-def _forces(design: CamDesign) -> Block:
+def forces_block(design: CamDesign | BarrelCamDesign) -> Block:
+    """Forces and torque of a design whose problem has a load."""
     found = design.metrics.forces
     assert found is not None, "only drawn where the problem has a load"
     entries = [
@@ -188,10 +185,38 @@ def _forces(design: CamDesign) -> Block:
     return blocks.rows("Forces", entries)
 
 
-def _written(check: Check, value: float) -> str:
+def written_check(check: Check, value: float) -> str:
+    """A measured value of a check."""
     if check.name in DEGREES:
         return angle(value, 2)
     return small(value) if abs(value) < 1e-3 else length(value, digits=5)
+
+
+def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tuple[list[Element], int]:
+    """Diagrams side by side below each other; also the lower end of the sheet."""
+    wide = 0.5 * (WIDTH - 2.0 * EDGE - GUTTER)
+    parts = []
+    for k, diagram in enumerate(shown):
+        x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * (DIAGRAM_HEIGHT + 8.0)
+        parts.append(diagram.draw(Box(x, low, x + wide, low + DIAGRAM_HEIGHT), joints))
+    return parts, math.ceil(top + math.ceil(len(shown) / 2) * (DIAGRAM_HEIGHT + 8.0) + EDGE - 8.0)
+
+
+def closed(values: object) -> np.ndarray:
+    """Values over a turn with the first again at its end."""
+    found = np.asarray(values, dtype=np.float64)
+    return np.append(found, found[0])
+
+
+def motion_diagrams(table: ProgramTable, lift: str, rate: str) -> list[Diagram]:
+    """Displacement and its derivatives, as the program's table has them."""
+    degrees = np.append(np.asarray(table.angle), 360.0)
+    return [
+        Diagram(f"displacement s ({lift})", "s", degrees, closed(table.s), INPUT),
+        Diagram(f"velocity v ({rate}/rad)", "v", degrees, closed(table.v), OUTPUT),
+        Diagram(f"acceleration a ({rate}/rad²)", "a", degrees, closed(table.a), COUPLER),
+        Diagram(f"jerk j ({rate}/rad³)", "j", degrees, closed(table.j), CURVE),
+    ]
 
 
 def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[Diagram]:
@@ -199,17 +224,7 @@ def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[D
     table, unit = design.mechanism.program, problem.length_unit
     lift, rate = ("degrees", "rad") if scene.oscillating else (unit, unit)
     degrees = np.append(scene.angle, 360.0)
-
-    def closed(values: object) -> np.ndarray:
-        found = np.asarray(values, dtype=np.float64)
-        return np.append(found, found[0])
-
-    shown = [
-        Diagram(f"displacement s ({lift})", "s", degrees, closed(table.s), INPUT),
-        Diagram(f"velocity v ({rate}/rad)", "v", degrees, closed(table.v), OUTPUT),
-        Diagram(f"acceleration a ({rate}/rad²)", "a", degrees, closed(table.a), COUPLER),
-        Diagram(f"jerk j ({rate}/rad³)", "j", degrees, closed(table.j), CURVE),
-    ]
+    shown = motion_diagrams(table, lift, rate)
     contact = scene.contact
     pressure = np.degrees(contact.pressure_angle)
     if scene.roller or design.mechanism.follower.face_offset:
@@ -228,6 +243,9 @@ def _key(scene: CamScene, y: float) -> Element:
     group, x = element("g", data_key="true"), EDGE
     for name, style in STYLES.items():
         if scene.roller is None and name in ("pitch curve", "prime circle"):
+            continue
+        if name == "outer wall":
+            # Its line is the profile's.
             continue
         group.add(line(complex(x, y - 4.0), complex(x + 20.0, y - 4.0), **style))
         group.add(text(x + 24.0, y, name, 10.0, fill=GREY))

@@ -38,6 +38,7 @@ ROTATION = 0.45
 
 STYLES: dict[str, dict[str, str | float]] = {
     "profile": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
+    "outer wall": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
     "pitch curve": {"stroke": CURVE, "stroke_width": 1.1, "stroke_dasharray": "7 4"},
     "prime circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "2 3"},
     "base circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "11 3 2 3"},
@@ -76,6 +77,8 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
         group.add(circle(centre, radius, data_part="prime circle", **STYLES["prime circle"]))
         group.add(_closed(scene.pitch_curve, viewport, "pitch curve"))
     group.add(_closed(scene.profile, viewport, "profile"))
+    if scene.outer_wall is not None:
+        group.add(_closed(scene.outer_wall, viewport, "outer wall"))
     group.add(_stations(scene, viewport, labels))
     group.add(_follower(scene, viewport))
     symbol, _ = bearing(centre, 0.8)

@@ -9,11 +9,13 @@ from __future__ import annotations
 import io
 
 import ezdxf
+import numpy as np
 from ezdxf import units
 from ezdxf.document import Drawing
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 from ezdxf.layouts.layout import Modelspace
+from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.gear.profile import outline
@@ -76,3 +78,17 @@ def add_words(space: Modelspace, at: complex, words: str, height: float, layer: 
     """A line of text about a point."""
     entity = space.add_text(words, height=height, dxfattribs={"layer": layer})
     entity.set_placement((at.real, at.imag), align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+def add_spline(space: Modelspace, points: NDArray[np.complex128], tangents: NDArray[np.complex128], layer: str) -> None:
+    """Cubic pieces between points with given unit tangents, as one spline with double knots."""
+    chords = np.abs(np.diff(points))
+    ahead = points[:-1] + tangents[:-1] * chords / 3.0
+    behind = points[1:] - tangents[1:] * chords / 3.0
+    control = np.concatenate([points[:1], np.stack([ahead, behind], axis=1).reshape(-1), points[-1:]])
+    along = np.concatenate([[0.0], np.cumsum(chords)])
+    knots = np.concatenate([[0.0] * 4, np.repeat(along[1:-1], 2), [along[-1]] * 4])
+    spline = space.add_spline(degree=3, dxfattribs={"layer": layer})
+    spline.control_points = [(z.real, z.imag, 0.0) for z in control]
+    spline.knots = knots.tolist()
+    spline.closed = bool(points[0] == points[-1])

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from synthesis.analyses import (
+    barrel_cam,
     cam,
     camshaft,
     contour_cam,
@@ -21,6 +22,7 @@ from synthesis.analyses import (
 from synthesis.analyses.base import AnalysisRequest, Family
 
 FAMILIES: dict[str, Family] = {
+    "barrel_cam": barrel_cam.FAMILY,
     "cam": cam.FAMILY,
     "camshaft": camshaft.FAMILY,
     "contour_cam": contour_cam.FAMILY,

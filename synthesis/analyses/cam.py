@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
-from kinematics.cam.contact import ContactMotion, Contour
+from kinematics.cam.contact import Contour
 from kinematics.cam.dynamics import FollowerLoad
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller
 from kinematics.cam.measured import measured_program
 from kinematics.cam.profile import even_angles
 from kinematics.cam.response import FollowerTrain, Response
+from kinematics.errors import DimensionError
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import Run, StatedMotion, Sweep
 from synthesis.designs import Answer
@@ -148,9 +149,12 @@ class CamAnalysisRequest(AnalysisRequest):
                 "acceleration": acceleration.tolist(),
             },
             "contact": {"x": found.point.real.tolist(), "y": found.point.imag.tolist()},
+            "play": self._play(follower, at, found.s, unit),
             "pressure_angle": np.degrees(found.pressure_angle).tolist(),
             "radius_of_curvature": found.radius.tolist(),
-            "forces": None if self.load is None else _forces(self.load, found, velocity, acceleration),
+            "forces": None
+            if self.load is None
+            else force_series(self.load, found.s, found.v, found.pressure_angle, velocity, acceleration),
             "response": None if self.train is None else self._response(contour, follower, at),
             "cutter_path": None if self.cutter is None else self._cutter_path(contour, follower, at),
             "profile": {
@@ -161,6 +165,17 @@ class CamAnalysisRequest(AnalysisRequest):
                 "crossings": [[float(z.real), float(z.imag)] for z in contour.crossings[:16]],
             },
         }
+
+    def _play(self, follower: Follower, at: Real, s: Real, unit: float) -> list[float] | None:
+        """How far the roller can move between the walls of its groove."""
+        wall = self.mechanism.wall()
+        if wall is None:
+            return None
+        try:
+            outer = wall.within(follower, np.radians(at), self.mechanism.rotation)
+        except DimensionError as error:
+            raise MechanismError("/outer_wall", str(error)) from None
+        return [float(gap) for gap in (outer - s) * unit]
 
     def _response(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
         """The steady vibration at the motion's cam angles."""
@@ -223,14 +238,16 @@ class CamAnalysisRequest(AnalysisRequest):
         return cls(mechanism=GivenCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
 
 
-def _forces(load: Load, found: ContactMotion, velocity: Real, acceleration: Real) -> dict[str, list[float]]:
+def force_series(
+    load: Load, s: Real, v: Real, pressure_angle: Real, velocity: Real, acceleration: Real
+) -> dict[str, list[float]]:
     """Along the follower's motion, between the surfaces, and the torque on the camshaft."""
     inertia = load.mass * acceleration + load.damping * velocity
-    force = inertia + load.spring_rate * found.s + load.preload
+    force = inertia + load.spring_rate * s + load.preload
     return {
         "along": force.tolist(),
-        "normal": (force / np.cos(found.pressure_angle)).tolist(),
-        "torque": (force * found.v).tolist(),
+        "normal": (force / np.cos(pressure_angle)).tolist(),
+        "torque": (force * v).tolist(),
     }
 
 
@@ -307,6 +324,9 @@ class CamAnalysis(Answer):
     valid: list[bool]
     follower: FollowerSeries
     contact: CurvePoints
+    play: list[float | None] | None = Field(
+        description="In a groove, from the inner wall to the outer; negative where the roller does not fit."
+    )
     pressure_angle: list[float | None] = Field(description="Degrees, without sign.")
     radius_of_curvature: list[float | None] = Field(description="Of the profile at the contact, convex positive.")
     forces: ForceSeries | None

@@ -34,7 +34,16 @@ from synthesis.cam.optimal import (
     best_roller_size,
     best_torque,
 )
-from synthesis.problems.cam import CamProblem, Dwell, LengthRange, Move, Polynomial, TranslatingFlat, TranslatingRoller
+from synthesis.problems.cam import (
+    BarrelRoller,
+    CamProblem,
+    Dwell,
+    LengthRange,
+    Move,
+    Polynomial,
+    TranslatingFlat,
+    TranslatingRoller,
+)
 from synthesis.problems.cam_joints import END_RATES, State, law_ends
 
 ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
@@ -299,7 +308,8 @@ def _need(problem: CamProblem, motion: Motion) -> float:
     if isinstance(problem.follower, TranslatingFlat):
         return float(np.max(-motion.s - motion.a))
     tangent = math.tan(math.radians(problem.limits.pressure_angle))
-    return float(np.max(np.abs(motion.v) / tangent - motion.s))
+    barrel = isinstance(problem.follower, BarrelRoller)
+    return float(np.max(np.abs(motion.v) / tangent - (0.0 if barrel else motion.s)))
 
 
 def _segment_ends(segment: Segment) -> tuple[State, State]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam import follower as core
+from kinematics.cam.barrel import BarrelCam
 from kinematics.cam.profile import Cam, even_angles
-from kinematics.cam.program import TURN
-from synthesis.designs.cam import CamCurve, CamFollower, CamMechanism, ProgramTable
+from kinematics.cam.program import TURN, Program
+from synthesis.designs.cam import BarrelCamMechanism, BarrelFollower, CamCurve, CamFollower, CamMechanism, ProgramTable
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -33,12 +35,11 @@ STEPS_OF_MOVE = 12
 """Steps of the profile within a segment that moves, at least."""
 
 
-def profile_angles(cam: Cam, count: int) -> Real:
+def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
     """Cam angles of a profile: equal steps and the joints of the segments, as close as short segments ask for.
 
-    A small roller asks for close points too.
+    A small roller asks for close points too: its radius spans five chords of the curve that it touches.
     """
-    program = cam.program
     short = [
         np.linspace(start, end, STEPS_OF_MOVE + 1)[:-1]
         for start, end, segment in zip(program.joints[:-1], program.joints[1:], program.segments, strict=True)
@@ -47,8 +48,8 @@ def profile_angles(cam: Cam, count: int) -> Real:
     while True:
         angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1], *short]))
         angle = angle[np.append(True, np.diff(angle) > APART)]
-        chord = np.abs(np.diff(cam.profile(np.append(angle, TURN)))).max()
-        if chord * SPAN_OF_ROLLER <= cam.roller_radius or cam.roller_radius <= 0.0 or count >= MOST:
+        chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
+        if chord * SPAN_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MOST:
             return angle
         count *= 2
 
@@ -68,8 +69,8 @@ def refined(angle: Real, off: Real, allowed: float) -> Real:
     return np.unique(np.mod(low + step * within, TURN))
 
 
-def cam_mechanism(cam: Cam, angle: Real) -> CamMechanism:
-    """A cam as the answer has it, at given cam angles."""
+def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
+    """A cam as the answer has it, at given cam angles; with both walls of its groove, or one profile."""
     motion = cam.program.motion(angle)
     oscillating = isinstance(cam.follower, core.OscillatingRoller | core.OscillatingFlat)
     unit = 180.0 / math.pi if oscillating else 1.0
@@ -81,6 +82,7 @@ def cam_mechanism(cam: Cam, angle: Real) -> CamMechanism:
         base_radius=None if roller else cam.size,
         rotation=cam.rotation,
         profile=_curve(degrees, cam.profile(angle)),
+        outer_wall=_curve(degrees, cam.outer_wall(angle)) if groove else None,
         pitch_curve=_curve(degrees, cam.pitch_curve(angle)),
         program=ProgramTable(
             angle=degrees,
@@ -88,6 +90,22 @@ def cam_mechanism(cam: Cam, angle: Real) -> CamMechanism:
             v=motion.v.tolist(),
             a=motion.a.tolist(),
             j=motion.j.tolist(),
+        ),
+    )
+
+
+def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: Real) -> BarrelCamMechanism:
+    """A barrel cam as the answer has it, at given cam angles."""
+    motion, degrees = barrel.program.motion(angle), np.degrees(angle).tolist()
+    return BarrelCamMechanism(
+        follower=BarrelFollower(roller_radius=barrel.roller_radius),
+        cylinder_radius=barrel.radius,
+        rotation=rotation,
+        lower_wall=_curve(degrees, barrel.wall(angle, -1)),
+        upper_wall=_curve(degrees, barrel.wall(angle, 1)),
+        pitch_curve=_curve(degrees, barrel.pitch_curve(angle)),
+        program=ProgramTable(
+            angle=degrees, s=motion.s.tolist(), v=motion.v.tolist(), a=motion.a.tolist(), j=motion.j.tolist()
         ),
     )
 
@@ -147,11 +165,16 @@ def _sense(sense: int) -> Literal[1, -1]:
     return 1 if sense == 1 else -1
 
 
+def points_of(curve: CamCurve) -> Complex:
+    """A curve as complex numbers."""
+    return np.array(curve.x) + 1j * np.array(curve.y)
+
+
 def profile_points(mechanism: CamMechanism) -> Complex:
     """The profile as complex numbers."""
-    return np.array(mechanism.profile.x) + 1j * np.array(mechanism.profile.y)
+    return points_of(mechanism.profile)
 
 
-def table_angles(mechanism: CamMechanism) -> Real:
-    """Cam angles of the program's table, radians, within a turn."""
-    return np.mod(np.radians(mechanism.program.angle), TURN)
+def table_angles(program: ProgramTable) -> Real:
+    """Cam angles of a program's table, radians, within a turn."""
+    return np.mod(np.radians(program.angle), TURN)

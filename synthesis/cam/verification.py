@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
+from kinematics.cam.follower import Follower
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.program import TURN
 from kinematics.cam.segments import Condition as PolynomialCondition
 from kinematics.cam.segments import dwell, law_segment, polynomial_segment
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.cam.measured_rates import rate_checks
-from synthesis.cam.mechanism import core_follower, profile_points, table_angles
+from synthesis.cam.mechanism import core_follower, points_of, profile_points, table_angles
 from synthesis.designs import Check, Verification
 from synthesis.designs.cam import CamMechanism, ProgramTable
 from synthesis.problems.cam import CamProblem, Dwell, Move, OscillatingRoller, Polynomial, TranslatingRoller
@@ -86,15 +87,15 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     try:
         contour = Contour(profile_points(mechanism))
         follower = core_follower(mechanism)
-        angle = _finer(table_angles(mechanism))
+        angle = finer(table_angles(mechanism.program))
         contact = contour.follow(follower, angle, mechanism.rotation)
     except (DimensionError, ShapeError):
         return Verification(passed=False, checks=[Check(name="follower_can_be_laid_on", passed=False)]), None
     table = np.array(mechanism.program.s) * problem.displacement_unit
     lift = float(np.ptp(table)) or 1.0
-    checks = _program_checks(problem, mechanism, table, lift)
+    checks = program_checks(problem, mechanism.program, lift)
     touches = bool(contact.valid.all())
-    program = _between(table_angles(mechanism), table, mechanism.program)
+    program = between(table_angles(mechanism.program), table, mechanism.program)
     off = np.abs(contact.s - program).reshape(-1, FINER).max(axis=1) / lift
     gap = float(off.max()) if touches else math.inf
     allowed = REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED
@@ -104,6 +105,10 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         Check(name="no_cusp", passed=not contour.cusped),
         Check(name="does_not_cross_itself", passed=len(contour.crossings) == 0),
     ]
+    if problem.closure == "form":
+        found, gaps = _groove_checks(mechanism, follower, angle, program, lift, allowed)
+        checks += found
+        off = np.maximum(off, gaps.reshape(-1, FINER).max(axis=1))
     curvature = _curvature(contour)
     rising = np.repeat(np.array(mechanism.program.v), FINER) >= 0.0
     roller = isinstance(problem.follower, TranslatingRoller | OscillatingRoller)
@@ -131,13 +136,34 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     return Verification(passed=all(check.passed for check in checks), checks=checks), measured
 
 
-def _finer(angle: Real) -> Real:
+def _groove_checks(
+    mechanism: CamMechanism, follower: Follower, angle: Real, program: Real, lift: float, allowed: float
+) -> tuple[list[Check], Real]:
+    """The roller against the outer wall, from within: the same program comes back. Also how far it is off."""
+    none = [Check(name="outer_wall_reproduces_program", passed=False)], np.zeros_like(angle)
+    if mechanism.outer_wall is None:
+        return none
+    try:
+        wall = Contour(points_of(mechanism.outer_wall))
+        found = wall.within(follower, angle, mechanism.rotation)
+    except (DimensionError, ShapeError):
+        return none
+    gaps = np.abs(found - program) / lift
+    gap = float(gaps.max()) if np.isfinite(found).all() else math.inf
+    sound = not wall.cusped and len(wall.crossings) == 0
+    return [
+        Check(name="outer_wall_reproduces_program", passed=gap <= allowed, value=min(gap, 1e9), limit=allowed),
+        Check(name="outer_wall_is_sound", passed=sound),
+    ], gaps
+
+
+def finer(angle: Real) -> Real:
     """Each interval of a closed series of angles in equal parts."""
     step = np.diff(np.append(angle, TURN + angle[0]))
     return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
 
 
-def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
+def between(angle: Real, s: Real, program: ProgramTable) -> Real:
     """Displacement at the finer angles, from the table's s, v, a at both ends of each interval: its quintic.
 
     The profile's points are the contacts at the table's angles, so that between them alone it can go astray.
@@ -188,28 +214,26 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
         for name, where in (("pressure_angle", measured.rising), ("pressure_angle_fall", ~measured.rising)):
             steepest[name] = math.degrees(float(measured.pressure_angle[where].max())) if where.any() else 0.0
         fall = limits.pressure_angle_fall or limits.pressure_angle
-        checks.append(_at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK))
-        checks.append(_at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK))
+        checks.append(at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK))
+        checks.append(at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK))
         radius = mechanism.follower.roller_radius or 0.0
         ratio = pitch_radius(measured, radius) / radius
-        checks.append(_at_least("curvature_ratio", ratio, limits.curvature_ratio, MEASURED_SLACK))
+        checks.append(at_least("curvature_ratio", ratio, limits.curvature_ratio, MEASURED_SLACK))
         base = (mechanism.prime_radius or 0.0) - radius
     else:
-        checks.append(_at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK))
+        checks.append(at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK))
         checks.append(Check(name="convex", passed=math.isinf(measured.concave_radius)))
         if limits.face_width is not None:
-            checks.append(_at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK))
+            checks.append(at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK))
         base = mechanism.base_radius or 0.0
     pivot = mechanism.follower.pivot_distance
     if pivot is not None:
         # The cam turns all around, so that its greatest radius comes to where the arm is borne.
         checks.append(Check(name="clears_pivot", passed=measured.radius < pivot, value=measured.radius, limit=pivot))
     if limits.hub_radius > 0.0:
-        checks.append(_at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK))
+        checks.append(at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK))
     if limits.size is not None:
-        checks.append(
-            _at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK)
-        )
+        checks.append(at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK))
     return checks
 
 
@@ -218,10 +242,10 @@ def pitch_radius(measured: Measured, roller_radius: float) -> float:
     return min(measured.convex_radius + roller_radius, measured.concave_radius - roller_radius)
 
 
-def _program_checks(problem: CamProblem, mechanism: CamMechanism, table: Real, lift: float) -> list[Check]:
+def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> list[Check]:
     """The program's table against the statement, segment by segment."""
-    angle = table_angles(mechanism)
-    v, a, j = (np.array(values) for values in (mechanism.program.v, mechanism.program.a, mechanism.program.j))
+    angle, table = table_angles(program), np.array(program.s) * problem.displacement_unit
+    v, a, j = (np.array(values) for values in (program.v, program.a, program.j))
     off, start = 0.0, 0.0
     for segment, (low, high) in zip(problem.segments, problem.heights(), strict=True):
         span = math.radians(segment.angle)
@@ -247,7 +271,7 @@ def _program_checks(problem: CamProblem, mechanism: CamMechanism, table: Real, l
         for name, values in (("velocity", v), ("acceleration", a), ("jerk", j)):
             limit = getattr(problem.limits, name)
             if limit is not None:
-                checks.append(_at_most(f"table_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
+                checks.append(at_most(f"table_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
     return checks
 
 
@@ -263,9 +287,11 @@ def _open_angles(problem: CamProblem, angle: Real) -> NDArray[np.bool_]:
     return where
 
 
-def _at_least(name: str, value: float, limit: float, slack: float) -> Check:
+def at_least(name: str, value: float, limit: float, slack: float) -> Check:
+    """A measured value that may not fall below a limit."""
     return Check(name=name, passed=value >= limit * (1.0 - slack), value=min(value, 1e9), limit=limit)
 
 
-def _at_most(name: str, value: float, limit: float, slack: float) -> Check:
+def at_most(name: str, value: float, limit: float, slack: float) -> Check:
+    """A measured value that may not exceed a limit."""
     return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit)

@@ -56,7 +56,36 @@ class CamMechanism(Answer):
     base_radius: float | None = Field(default=None, exclude_if=_blank, description="Of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"]
     profile: CamCurve
+    outer_wall: CamCurve | None = Field(
+        default=None,
+        exclude_if=_blank,
+        description="Of a groove; the profile is its inner wall.",
+    )
     pitch_curve: CamCurve = Field(description="Path of the roller's centre; the profile itself under a flat face.")
+    program: ProgramTable
+
+
+class BarrelFollower(Answer):
+    """A roller that moves along the barrel's axis."""
+
+    type: Literal["barrel_roller"] = "barrel_roller"
+    roller_radius: float
+
+
+class BarrelCamMechanism(Answer):
+    """A barrel (cylindrical) cam with its groove unrolled.
+
+    x runs along the circumference of the cylinder on which the roller's middle runs, as the cam passes under the
+    follower, from 0 at cam angle 0 to 2π times the radius; y along the axis, as the follower's displacement.
+    """
+
+    type: Literal["barrel_cam"] = "barrel_cam"
+    follower: BarrelFollower
+    cylinder_radius: float
+    rotation: Literal["ccw", "cw"] = Field(description="Seen against the y axis.")
+    lower_wall: CamCurve
+    upper_wall: CamCurve
+    pitch_curve: CamCurve = Field(description="Path of the roller's centre.")
     program: ProgramTable
 
 
@@ -104,6 +133,9 @@ class CamForces(Answer):
     max_contact_force: float
     min_torque: float
     max_torque: float
+    wall_changes: list[float] | None = Field(
+        default=None, exclude_if=_blank, description="Cam angles at which a roller in a groove changes walls."
+    )
     natural_frequency: float = Field(description="Of mass and spring, rad/s.")
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     warning: str | None = Field(default=None, exclude_if=_blank)
@@ -139,13 +171,42 @@ class CamDesign(Answer):
     metrics: CamMetrics
 
 
+class BarrelMetrics(Answer):
+    """Measured on the finished groove."""
+
+    lift: float
+    groove_width: float
+    length: float = Field(description="Along the axis, from the lowest to the highest point of the groove.")
+    max_pressure_angle_rise: float = Field(description="Degrees.")
+    max_pressure_angle_fall: float = Field(description="Degrees.")
+    min_radius: float = Field(description="Least radius of curvature of the unrolled pitch curve.")
+    curvature_ratio: float = Field(description="That over the roller's radius.")
+    peak_velocity: float
+    peak_acceleration: float
+    peak_jerk: float
+    rms_acceleration: float
+    peak_inertia_torque: float = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
+    forces: CamForces | None = Field(default=None, exclude_if=_blank)
+
+
+class BarrelCamDesign(Answer):
+    """A barrel cam with the proof of what it does."""
+
+    mechanism: BarrelCamMechanism
+    segments: list[CamSegment]
+    joints: list[CamJoint]
+    optimality: Optimality
+    verification: Verification
+    metrics: BarrelMetrics
+
+
 class CamSearch(Search):
     """How the cam was found. ``sizing_proven``: no smaller cam carries this program within the limits."""
 
     sizing_proven: bool
 
 
-class CamResult(Result[CamDesign]):
+class CamResult(Result[CamDesign | BarrelCamDesign]):
     """The smallest sound cam for the best motion program."""
 
     search: CamSearch

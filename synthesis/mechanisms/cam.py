@@ -73,6 +73,20 @@ class GivenCurve(Statement):
     y: Coordinates
     angle: list[Number] | None = Field(default=None, max_length=MOST_POINTS)
 
+    def points(self, path: str) -> NDArray[np.complex128]:
+        """As complex numbers; faults are told under its path."""
+        if len(self.x) != len(self.y):
+            raise MechanismError(f"{path}/y", "as many as x are needed")
+        return np.array(self.x) + 1j * np.array(self.y)
+
+    def contour(self, path: str) -> Contour:
+        """The curve of the analysis core; its faults are told under its path."""
+        points = self.points(path)
+        try:
+            return Contour(points)
+        except DimensionError:
+            raise MechanismError(path, "neighbouring points must be different") from None
+
 
 class GivenCam(Statement):
     """A finished cam: its profile and its follower. Pitch curve and program of a design are taken and not looked at."""
@@ -83,6 +97,7 @@ class GivenCam(Statement):
     base_radius: PositiveNumber | None = Field(default=None, description="Of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"] = "ccw"
     profile: GivenCurve
+    outer_wall: GivenCurve | None = Field(default=None, description="Of a groove; the profile is its inner wall.")
     pitch_curve: Any = None
     program: Any = None
 
@@ -92,13 +107,33 @@ class GivenCam(Statement):
 
     def contour(self) -> Contour:
         """The profile of the analysis core."""
-        if len(self.profile.x) != len(self.profile.y):
-            raise MechanismError("/profile/y", "as many as x are needed")
-        try:
-            points: NDArray[np.complex128] = np.array(self.profile.x) + 1j * np.array(self.profile.y)
-            return Contour(points)
-        except DimensionError:
-            raise MechanismError("/profile", "neighbouring points must be different") from None
+        return self.profile.contour("/profile")
+
+    def wall(self) -> Contour | None:
+        """The outer wall of a groove."""
+        if self.outer_wall is not None and not self.follower.type.endswith("roller"):
+            raise MechanismError("/outer_wall", "only a roller runs in a groove")
+        return None if self.outer_wall is None else self.outer_wall.contour("/outer_wall")
+
+
+class GivenBarrelFollower(Statement):
+    """A roller that moves along a barrel's axis."""
+
+    type: Literal["barrel_roller"]
+    roller_radius: PositiveNumber
+
+
+class GivenBarrelCam(Statement):
+    """A finished barrel cam: both walls of its groove, unrolled. Pitch curve and program are not looked at."""
+
+    type: Literal["barrel_cam"]
+    follower: GivenBarrelFollower
+    cylinder_radius: PositiveNumber = Field(description="Of the cylinder on which the roller's middle runs.")
+    rotation: Literal["ccw", "cw"] = "ccw"
+    lower_wall: GivenCurve
+    upper_wall: GivenCurve
+    pitch_curve: Any = None
+    program: Any = None
 
 
 class EccentricContour(Statement):

@@ -176,7 +176,19 @@ class OscillatingFlat(Statement):
     base_radius: PositiveNumber | None = None
 
 
-Follower = Annotated[TranslatingRoller | OscillatingRoller | TranslatingFlat | OscillatingFlat, Discriminator("type")]
+class BarrelRoller(Statement):
+    """A roller in the groove of a barrel (cylindrical) cam, moving along its axis; the groove's two walls guide it."""
+
+    type: Literal["barrel_roller"]
+    roller_radius: PositiveNumber
+    cylinder_radius: PositiveNumber | None = Field(
+        default=None, description="Of the cylinder on which the roller's middle runs; null: the smallest sound one."
+    )
+
+
+Follower = Annotated[
+    TranslatingRoller | OscillatingRoller | TranslatingFlat | OscillatingFlat | BarrelRoller, Discriminator("type")
+]
 
 LimitAngle = Annotated[float, Field(strict=True, gt=0.0, le=85.0)]
 
@@ -295,6 +307,18 @@ class CamProblem(StatedProblem):
                     "minimize": "peak_contact_force",
                     "speed_rpm": 3000.0,
                 },
+                {
+                    "kind": "cam",
+                    "segments": [
+                        {"motion": "rise", "angle": 150.0, "lift": 40.0, "law": "modified_sine"},
+                        {"motion": "dwell", "angle": 30.0},
+                        {"motion": "return", "angle": 150.0, "law": "modified_sine"},
+                        {"motion": "dwell", "angle": 30.0},
+                    ],
+                    "follower": {"type": "barrel_roller", "roller_radius": 8.0},
+                    "limits": {"pressure_angle": 35.0, "curvature_ratio": 1.5},
+                    "speed_rpm": 120.0,
+                },
             ]
         },
     )
@@ -308,6 +332,10 @@ class CamProblem(StatedProblem):
     minimize: Criterion = Field(
         default="peak_acceleration",
         description="What automatic and optimal motions make least; the cam is as small as then can be.",
+    )
+    closure: Literal["force", "form"] = Field(
+        default="force",
+        description="What holds the follower to the cam: a force, or a groove whose two walls guide the roller.",
     )
     dynamics: FollowerDynamics | None = None
     continuity: Literal["acceleration", "jerk"] = Field(
@@ -486,6 +514,8 @@ class CamProblem(StatedProblem):
                 arm, pivot = follower.arm, follower.pivot_distance
                 if not abs(pivot - arm) < follower.prime_radius < pivot + arm:
                     found.append(Contradiction("/follower/prime_radius", "arm and pivot distance do not reach it"))
+        if self.closure == "form" and not isinstance(follower, TranslatingRoller | OscillatingRoller | BarrelRoller):
+            found.append(Contradiction("/closure", "only a roller runs in a groove; take another follower or force"))
         if isinstance(follower, OscillatingFlat):
             reach = (follower.base_radius or 0.0) + follower.face_offset
             if reach >= follower.pivot_distance:
@@ -498,11 +528,16 @@ class CamProblem(StatedProblem):
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
             found.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
+        if force and (self.closure == "form" or isinstance(self.follower, BarrelRoller)):
+            found.append(Contradiction("/minimize", "in a groove no force holds the follower; choose otherwise"))
         if self.dynamics is not None and self.speed_rpm is None:
             found.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
         if optimal and self.minimize == "size" and self.oscillating:
             detail = "optimal motions of least size are found for translating followers; choose another criterion"
+            found.append(Contradiction("/minimize", detail))
+        if optimal and self.minimize == "size" and isinstance(self.follower, BarrelRoller):
+            detail = "by pressure angle a barrel is smallest where the peak velocity is; choose peak_velocity"
             found.append(Contradiction("/minimize", detail))
         return found
 

@@ -9,7 +9,7 @@ import pytest
 from synthesis.kinds import KINDS
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
-NAMES = ("double dwell", "rise-fall-dwell", "critical path", "valve")
+NAMES = ("double dwell", "rise-fall-dwell", "critical path", "valve", "barrel")
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=NAMES)
@@ -38,3 +38,15 @@ def test_a_broken_joint_is_refused_with_its_place(client):
     (first, *_) = answer.json()["errors"]
     assert first["path"] == "/problem/segments/1"
     assert "fundamental law" in first["detail"]
+
+
+def test_a_groove_is_drawn_with_both_walls(client):
+    job = client.post(
+        "/v1/jobs", json={"problem": EXAMPLES[0] | {"closure": "form"}}, headers={"Prefer": "wait=30"}
+    ).json()
+    (design,) = job["result"]["designs"]
+    assert len(design["mechanism"]["outer_wall"]["x"]) == len(design["mechanism"]["profile"]["x"])
+    place = f"/v1/jobs/{job['id']}/designs/0"
+    assert 'data-part="outer wall"' in client.get(f"{place}.svg").text
+    assert "OUTER_WALL" in client.get(f"{place}.dxf").text
+    assert "outer_wall_x [mm]" in client.get(f"{place}.csv").text

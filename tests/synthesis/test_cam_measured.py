@@ -40,7 +40,7 @@ def made(stated):
     """The finished cam, and its exact program."""
     program = compose(stated).program
     cam, _ = _sized(stated, program)
-    return cam_mechanism(cam, profile_angles(cam, 1440)), program
+    return cam_mechanism(cam, profile_angles(program, cam.profile, cam.roller_radius, 1440)), program
 
 
 def failed(stated, mechanism):

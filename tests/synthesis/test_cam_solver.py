@@ -13,7 +13,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds import KINDS, parse_problem
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
-DOUBLE_DWELL, RISE_FALL_DWELL, CRITICAL_PATH, VALVE = EXAMPLES
+DOUBLE_DWELL, RISE_FALL_DWELL, CRITICAL_PATH, VALVE = EXAMPLES[:4]
 
 
 def cam(statement=None, **changes):
@@ -41,7 +41,7 @@ def moves(rise_law, fall_law, lift=25.0, rise=90.0, fall=90.0):
     ]
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=["double dwell", "rise-fall-dwell", "critical path", "valve"])
+@pytest.mark.parametrize("example", EXAMPLES[:4], ids=["double dwell", "rise-fall-dwell", "critical path", "valve"])
 def test_examples_are_solved_and_verified(example):
     result = answered(cam(example))
     design = only(result)

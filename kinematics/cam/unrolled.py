@@ -1,0 +1,182 @@
+"""What the walls of a barrel cam's groove do: the roller is laid against each of them, from their points alone.
+
+The cylinder on which the roller's middle runs is unrolled, x along its circumference and y along its axis, so that a
+wall is a curve that comes back after a turn 2πR farther on. A curve of the fifth degree runs through each six
+neighbouring points. With the roller's centre at x, a point (P_x, P_y) of the lower wall asks for
+
+    y = P_y + √(r² − (P_x − x)²)
+
+at least, a point of the upper wall for P_y − √(…) at most; the roller stands at the greatest, or the least, of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.cam.contact import CUSP, FEWEST, NARROW, NARROWINGS, STENCIL, curve_derivatives, local_curves
+from kinematics.errors import DimensionError, ShapeError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+
+
+class Touch(NamedTuple):
+    """Height of the roller's centre on the axis, NaN where it touches nothing, and the wall's direction there.
+
+    ``tangent`` is a unit vector, ``curvature`` positive where the wall bends toward +y.
+    """
+
+    y: Real
+    tangent: Complex
+    curvature: Real
+
+
+@dataclass(frozen=True, eq=False)
+class UnrolledWall:
+    """A wall of the groove over one turn.
+
+    Parameters
+    ----------
+    points : complex, shape (n,)
+        In the order of the turn; the first is not repeated at the end.
+    period : float
+        Circumference of the cylinder.
+
+    Raises
+    ------
+    ShapeError, DimensionError
+        Fewer than 16 points; a period that is not positive, points that are not finite or equal to their neighbours.
+    """
+
+    points: Complex
+    period: float
+
+    def __post_init__(self) -> None:
+        if self.points.ndim != 1 or len(self.points) < FEWEST:
+            raise ShapeError(points=self.points.shape)
+        if not (math.isfinite(self.period) and self.period > 0.0):
+            raise DimensionError("period", "positive", self.period)
+        if not np.isfinite(self.points).all() or not (np.abs(self.chords) > 0.0).all():
+            raise DimensionError("wall points", "finite and different from their neighbours", self.points)
+
+    @cached_property
+    def chords(self) -> Complex:
+        """From each point to the next, shape (n,)."""
+        return np.asarray(np.diff(np.append(self.points, self.points[0] + self.period)))
+
+    @cached_property
+    def _curves(self) -> Complex:
+        n = len(self.points)
+        index = np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)
+        return local_curves(self.points[index % n] + self.period * (index // n))
+
+    @cached_property
+    def tangents(self) -> Complex:
+        """Unit tangents at the points."""
+        first, _ = curve_derivatives(self._curves, np.zeros(len(self.points)))
+        return np.asarray(first / np.abs(first))
+
+    @property
+    def cusped(self) -> bool:
+        """Whether the wall runs back on itself at a point, as an undercut one does."""
+        turn = np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
+        return bool(np.abs(turn).max() > CUSP)
+
+    @cached_property
+    def curvature(self) -> Real:
+        """Of the circle through each three neighbouring points, positive where the wall bends toward +y; shape (n,)."""
+        ahead, behind = self.chords, np.roll(self.chords, 1)
+        sides = np.abs(ahead) * np.abs(behind) * np.abs(ahead + behind)
+        return np.asarray(2.0 * (np.conj(behind) * ahead).imag / sides)
+
+    def follow(self, x: ArrayLike, roller_radius: float, side: Literal[1, -1]) -> Touch:
+        """Lay a roller on a lower wall (side 1) or under an upper one (side −1).
+
+        Parameters
+        ----------
+        x : array_like
+            Where the roller's centre is along the circumference.
+        roller_radius : float
+            Large enough that points of the wall lie on both sides of its contact.
+        """
+        if not roller_radius >= NARROW * np.abs(self.chords).max():
+            raise DimensionError("roller radius", f"at least {NARROW * np.abs(self.chords).max()}", roller_radius)
+        at = np.asarray(x, dtype=np.float64)
+        flat = np.ascontiguousarray(at.reshape(-1))
+        values, shares = np.empty(flat.size), np.empty(flat.size)
+        pieces = np.empty(flat.size, dtype=np.int64)
+        curves = np.ascontiguousarray(self._curves if side == 1 else np.conj(self._curves))
+        _lay(curves, self.period, flat, roller_radius, values, pieces, shares)
+        first, second = curve_derivatives(self._curves[pieces], shares)
+        touches = np.isfinite(values)
+        tangent = np.where(touches, first / np.abs(first), np.nan)
+        curvature = np.where(touches, (np.conj(first) * second).imag / np.abs(first) ** 3, np.nan)
+        values = np.where(touches, side * values, np.nan)
+        return Touch(values.reshape(at.shape), tangent.reshape(at.shape), curvature.reshape(at.shape))
+
+
+@njit(cache=True, nogil=True)
+def _asked(curves: Complex, base: int, t: float, period: float, x: float, radius: float) -> float:
+    """The height asked for at t chords from the point ``base``, −1 ≤ t ≤ 1; −∞ beyond the roller."""
+    n = curves.shape[0]
+    piece, share = (base, t) if t >= 0.0 else ((base - 1) % n, t + 1.0)
+    z = curves[piece, STENCIL - 1]
+    for k in range(STENCIL - 2, -1, -1):
+        z = z * share + curves[piece, k]
+    across = z.real - x
+    across -= period * round(across / period)
+    square = radius * radius - across * across
+    return z.imag + math.sqrt(square) if square >= 0.0 else -math.inf
+
+
+@njit(cache=True, nogil=True)
+def _lay(
+    curves: Complex,
+    period: float,
+    at: Real,
+    radius: float,
+    values: Real,
+    pieces: NDArray[np.int64],
+    shares: Real,
+) -> None:
+    """Greatest height over the wall: every local maximum over the points is closed in by golden section."""
+    n = curves.shape[0]
+    asked = np.empty(n)
+    for i in range(at.size):
+        for k in range(n):
+            asked[k] = _asked(curves, k, 0.0, period, at[i], radius)
+        best, where, share = -math.inf, 0, 0.0
+        for k in range(n):
+            here = asked[k]
+            if here == -math.inf or here < asked[k - 1] or here < asked[(k + 1) % n]:
+                continue
+            low, high = -1.0, 1.0
+            left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+            at_left = _asked(curves, k, left, period, at[i], radius)
+            at_right = _asked(curves, k, right, period, at[i], radius)
+            for _ in range(NARROWINGS):
+                if at_left < at_right:
+                    low, left, at_left = left, right, at_right
+                    right = low + GOLDEN * (high - low)
+                    at_right = _asked(curves, k, right, period, at[i], radius)
+                else:
+                    high, right, at_right = right, left, at_left
+                    left = high - GOLDEN * (high - low)
+                    at_left = _asked(curves, k, left, period, at[i], radius)
+            found, t = (at_left, left) if at_left > at_right else (at_right, right)
+            if here > found:
+                found, t = here, 0.0
+            if found > best:
+                best = found
+                where, share = (k, t) if t >= 0.0 else ((k - 1) % n, t + 1.0)
+        values[i] = best if best > -math.inf else math.nan
+        pieces[i], shares[i] = where, share

@@ -1,0 +1,125 @@
+"""The analysis of a finished barrel cam: a roller is laid against both walls of its groove.
+
+Displacements are lengths along the axis; forces along it, the torque on the barrel.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.cam.unrolled import UnrolledWall
+from kinematics.errors import DimensionError
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.cam import MOST_EFFORT, FollowerSeries, ForceSeries, Load, force_series
+from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.mechanisms.base import MechanismError
+from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
+
+
+def _wall(mean: float, sign: float) -> dict[str, Any]:
+    """Of a groove that goes up and down once in a turn, about a roller of 8 on a cylinder of 40."""
+    theta = [math.radians(2.0 * k) for k in range(180)]
+    slope = [0.25 * math.sin(t) for t in theta]
+    return {
+        "x": [round(40.0 * t - sign * 8.0 * v / math.hypot(1.0, v), 9) for t, v in zip(theta, slope, strict=True)],
+        "y": [
+            round(mean - 10.0 * math.cos(t) + sign * 8.0 / math.hypot(1.0, v), 9)
+            for t, v in zip(theta, slope, strict=True)
+        ],
+    }
+
+
+class BarrelCamAnalysisRequest(AnalysisRequest):
+    """A barrel cam and how it turns; a full turn in 360 steps by default."""
+
+    model_config = ConfigDict(
+        title="Barrel cam, what its groove does",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {
+                        "type": "barrel_cam",
+                        "follower": {"type": "barrel_roller", "roller_radius": 8.0},
+                        "cylinder_radius": 40.0,
+                        "lower_wall": _wall(10.0, -1.0),
+                        "upper_wall": _wall(10.0, 1.0),
+                    },
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 72, "speed_rpm": 60.0},
+                    "load": {"mass": 0.5},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenBarrelCam
+    motion: StatedMotion = Sweep()
+    load: Load | None = None
+
+    def answer(self) -> dict[str, Any]:
+        """Everything over the motion, in the shape of :class:`BarrelCamAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        given = self.mechanism
+        radius, roller = given.cylinder_radius, given.follower.roller_radius
+        if len(at) * len(given.lower_wall.x) > MOST_EFFORT:
+            raise MechanismError("/lower_wall", "too many points for so many positions; take fewer of one of them")
+        x = radius * np.radians(at)
+        walls = self._wall_of("lower_wall", given.lower_wall), self._wall_of("upper_wall", given.upper_wall)
+        try:
+            lower, upper = walls[0].follow(x, roller, 1), walls[1].follow(x, roller, -1)
+        except DimensionError as error:
+            raise MechanismError("/follower/roller_radius", str(error)) from None
+        pressure = np.angle(lower.tangent)
+        v = radius * np.tan(pressure)
+        # The pitch curve lies a roller's radius inside the wall.
+        bend = lower.curvature / (1.0 - roller * lower.curvature)
+        a = bend * np.hypot(radius, v) ** 3 / radius
+        velocity, acceleration = v * speed, a * speed**2 + v * self.motion.acceleration
+        forces = None
+        if self.load is not None:
+            forces = force_series(self.load, lower.y, v, pressure, velocity, acceleration)
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "valid": np.isfinite(lower.y + upper.y).tolist(),
+            "follower": {
+                "position": lower.y.tolist(),
+                "velocity": velocity.tolist(),
+                "acceleration": acceleration.tolist(),
+            },
+            "play": (upper.y - lower.y).tolist(),
+            "pressure_angle": np.degrees(np.abs(pressure)).tolist(),
+            "forces": forces,
+        }
+
+    def _wall_of(self, name: str, curve: GivenCurve) -> UnrolledWall:
+        try:
+            return UnrolledWall(curve.points(f"/{name}"), math.tau * self.mechanism.cylinder_radius)
+        except DimensionError:
+            raise MechanismError(f"/{name}", "neighbouring points must be different") from None
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same over a full turn."""
+        return cls(mechanism=GivenBarrelCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
+
+
+class BarrelCamAnalysis(Answer):
+    """Everything that the analysis core measures on a barrel cam over the motion; null where nothing is touched."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    valid: list[bool]
+    follower: FollowerSeries
+    play: list[float | None] = Field(
+        description="Between the walls, along the axis; negative where the roller does not fit."
+    )
+    pressure_angle: list[float | None] = Field(description="Degrees, without sign.")
+    forces: ForceSeries | None
+
+
+FAMILY = Family(BarrelCamAnalysisRequest, BarrelCamAnalysis)
