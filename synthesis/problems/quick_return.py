@@ -9,12 +9,14 @@ from pydantic import ConfigDict, Field
 from synthesis.problems.base import ABSURD, Contradiction, Number, Point, PositiveNumber
 from synthesis.problems.linkage import LinkageProblem
 
-QuickReturnType = Literal["fourbar"]
+QuickReturnType = Literal[
+    "fourbar", "drag_link_rocker", "drag_link_slider", "crank_shaper", "whitworth", "offset_slider_crank"
+]
 
-ROCKERS: tuple[QuickReturnType, ...] = ("fourbar",)
+ROCKERS: tuple[QuickReturnType, ...] = ("fourbar", "drag_link_rocker")
 """Types whose output swings."""
 
-SLIDERS: tuple[QuickReturnType, ...] = ()
+SLIDERS: tuple[QuickReturnType, ...] = ("offset_slider_crank", "crank_shaper", "whitworth", "drag_link_slider")
 """Types whose output slides."""
 
 
@@ -31,6 +33,7 @@ class QuickReturnProblem(LinkageProblem):
         json_schema_extra={
             "examples": [
                 {"kind": "quick_return", "time_ratio": 1.25, "swing": 45.0, "mechanism": "fourbar"},
+                {"kind": "quick_return", "time_ratio": 1.4, "stroke": 100.0, "mechanism": "auto"},
             ]
         },
     )
@@ -55,7 +58,7 @@ class QuickReturnProblem(LinkageProblem):
     )
     crank_pivot: Point = Field(default=(0.0, 0.0), description="Where the crank's fixed pivot O2 shall be.")
     ground_angle: Number = Field(
-        default=0.0, description="Angle of the line O2 → O4, or of the slide of a slider-crank, degrees."
+        default=0.0, description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees."
     )
     rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "transmission_angle"
 

@@ -14,7 +14,7 @@ from synthesis.designs import QuickReturnDesign, QuickReturnResult, RatioRange, 
 from synthesis.designs.quick_return import QuickReturnMechanisms
 from synthesis.kinds import Progress
 from synthesis.problems import QuickReturnProblem
-from synthesis.quick_return import crank_rocker
+from synthesis.quick_return import crank_rocker, drag_link, offset_slider, slotted
 from synthesis.quick_return.verification import verify_quick_return
 
 
@@ -28,6 +28,11 @@ class _Type(NamedTuple):
 
 TYPES: dict[str, _Type] = {
     "fourbar": _Type(crank_rocker.reachable, crank_rocker.crank_rockers, proven=True),
+    "drag_link_rocker": _Type(drag_link.rocker_reachable, drag_link.drag_link_rockers, proven=False),
+    "offset_slider_crank": _Type(offset_slider.reachable, offset_slider.offset_slider_cranks, proven=True),
+    "crank_shaper": _Type(slotted.crank_shaper_reachable, slotted.crank_shapers, proven=False),
+    "whitworth": _Type(slotted.whitworth_reachable, slotted.whitworths, proven=False),
+    "drag_link_slider": _Type(drag_link.slider_reachable, drag_link.drag_link_sliders, proven=False),
 }
 """Every type by its name."""
 
@@ -64,7 +69,7 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
                 check = next(check.name for check in design.verification.checks if not check.passed)
                 rejected[_REASONS.get(check, check)] += 1
     progress(1.0, "verified")
-    shown = _ranked(passed, problem.rank_by)
+    shown = _of_each_type(_ranked(passed, problem.rank_by), -(-problem.max_designs // len(names)))
     if problem.include_failed:
         shown += _ranked(failed, problem.rank_by)
     complete = all(not reach.reaches or TYPES[reach.type].proven for reach in ranges) and _as_derived(rejected)
@@ -101,6 +106,17 @@ def _ranked(designs: list[QuickReturnDesign], rank_by: str) -> list[QuickReturnD
     return sorted(designs, key=lambda design: (_KEYS[rank_by](design), -design.metrics.quality))
 
 
+def _of_each_type(designs: list[QuickReturnDesign], count: int) -> list[QuickReturnDesign]:
+    """The first designs of each type, so many at most, in their order."""
+    seen: Counter[str] = Counter()
+    chosen = []
+    for design in designs:
+        seen[design.mechanism.type] += 1
+        if seen[design.mechanism.type] <= count:
+            chosen.append(design)
+    return chosen
+
+
 def _summary(
     problem: QuickReturnProblem,
     ranges: list[RatioRange],
@@ -114,7 +130,10 @@ def _summary(
     for reach in ranges:
         if not reach.reaches:
             lines.append(f"{reach.type} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}.")
-    lines += [f"No {name} has a link ratio within the limit of {problem.link_ratio_limit:g}." for name in short]
+    within = "" if problem.link_ratio_limit is None else f" with a link ratio within {problem.link_ratio_limit:g}"
+    lines += [
+        f"There is no {name}{within}." if TYPES[name].proven else f"No {name}{within} was found." for name in short
+    ]
     if passed:
         best = max(passed, key=lambda design: design.metrics.min_transmission_angle)
         lines.insert(

@@ -247,6 +247,8 @@ def test_what_is_refused(stated: dict[str, Any], path: str) -> None:
         ({"mechanism": "fourbar"}, "/swing"),
         ({"mechanism": "fourbar", "swing": 40.0, "stroke": 3.0}, "/stroke"),
         ({"mechanism": "auto"}, "/swing"),
+        ({"mechanism": "whitworth"}, "/stroke"),
+        ({"mechanism": "crank_shaper", "stroke": 1.0, "swing": 1.0}, "/swing"),
         ({"mechanism": "auto", "swing": 40.0, "stroke": 3.0}, "/swing"),
     ],
 )
