@@ -44,6 +44,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.path
 	$(BIN)/python -m benchmarks.straight_line
 	$(BIN)/python -m benchmarks.quick_return
+	$(BIN)/python -m benchmarks.curve_match
 	$(BIN)/python -m benchmarks.gear_train
 	$(BIN)/python -m benchmarks.planetary
 	$(BIN)/python -m benchmarks.cam_core

@@ -74,7 +74,8 @@ class Scene:
     ``configurations`` are those that can be assembled, by target. ``used`` and ``rest`` are polylines of P, with NaN
     where the linkage does not close: over the input angles that the targets need, and over the whole branch (and the
     other branch, where a target lies on it). ``limits`` are the ends of the input's range, None for a crank; ``start``
-    and ``end`` the input angles at the first and at the last target.
+    and ``end`` the input angles at the first and at the last target. ``target`` is the curve that is matched as a
+    whole, where the problem is that; its first point alone is a target then.
     """
 
     linkage: Fourbar
@@ -85,6 +86,7 @@ class Scene:
     limits: tuple[float, float] | None
     start: float
     end: float
+    target: Points | None = None
 
     @property
     def guides_a_body(self) -> bool:
@@ -104,7 +106,8 @@ class Scene:
     def moving(self) -> list[complex]:
         """A, B and P at all targets, and the demanded points."""
         joints = [joint for c in self.configurations for joint in (c.a, c.b, c.p)]
-        return [*joints, *(demand.point for demand in self.demands)]
+        target = [] if self.target is None else list(self.target)
+        return [*joints, *(demand.point for demand in self.demands), *target]
 
     def swept(self) -> Points:
         """Path of A as far as the input reaches, coarsely."""
@@ -140,6 +143,12 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
         angles = np.array([c.input_angle for c in configurations])
         way = traverse(linkage, angles, np.array([c.assembly for c in configurations]))
         start, end, used = float(way.angles[0]), float(way.angles[-1]), (way.start, way.end)
+    target = _target(problem)
+    if target is not None and configurations:
+        inputs = [math.radians(met.input_angle) for met in design.targets]
+        turned = inputs[0] + math.copysign(math.tau, inputs[-1] - inputs[0])
+        end = turned if _is_closed(problem) else inputs[-1]
+        used = (min(start, end, *inputs), max(start, end, *inputs))
     limits = _limits(linkage, start)
     lower, upper = limits or (start, start + math.tau)
     assemblies = sorted(
@@ -147,13 +156,27 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
     )
     curve = _curve(linkage, *used, driven.assembly)
     rest = [_curve(linkage, lower, upper, sign) for sign in assemblies]
-    return Scene(linkage, configurations, demands, curve, rest, limits, start, end)
+    return Scene(linkage, configurations, demands, curve, rest, limits, start, end, target)
 
 
 def _demands(problem: MotionProblem | PathProblem) -> list[Demand]:
     if isinstance(problem, PathProblem):
+        if problem.matched:
+            return [Demand(0, problem.points[0].point, None)]
         return [Demand(k, p.point, None) for k, p in enumerate(problem.points)]
     return [Demand(k, p.point, math.radians(p.angle)) for k, p in enumerate(problem.positions)]
+
+
+def _target(problem: MotionProblem | PathProblem) -> Points | None:
+    """The curve that is to be drawn as a whole, closed where it is."""
+    if not (isinstance(problem, PathProblem) and problem.matched):
+        return None
+    points = np.array([point.point for point in problem.points])
+    return np.append(points, points[0]) if problem.closed else points
+
+
+def _is_closed(problem: MotionProblem | PathProblem) -> bool:
+    return isinstance(problem, PathProblem) and problem.closed
 
 
 def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:

@@ -95,6 +95,8 @@ def _description(design: LinkageDesign, problem: MotionProblem | PathProblem, sh
         )
     )
     met = f"shown at {len(shown.configurations)} of {len(shown.demands)} demanded positions"
+    if shown.target is not None:
+        met = f"shown at the first of {len(design.targets)} points of the demanded curve"
     failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]
     verdict = f"Failed checks: {', '.join(failed)}." if failed else "All checks passed."
     return f"Drawing of a fourbar linkage, {mechanism.assembly} assembly: {sizes}; {met}. {verdict}"
@@ -129,7 +131,7 @@ def _key(shown: Scene, y: float, width: float) -> Element:
         ("target", "demanded position" if shown.guides_a_body else "demanded point"),
         ("used", "path of P, used"),
         ("rest", "rest of branch"),
-        ("ghost", "other targets"),
+        ("ghost", "other targets") if shown.target is None else ("curve", "demanded curve"),
     ]
     if shown.limits is not None:
         entries.append(("limit", "input limit"))
@@ -149,6 +151,8 @@ def _sample(kind: str, at: complex, width: float) -> list[Element]:
     if kind == "target":
         ring = element("circle", cx=at.real + 5.0, cy=at.imag, r=4.5, fill="none", stroke=DEMANDED, stroke_width=1.5)
         return [line(at + 5.0, end, stroke=DEMANDED, stroke_width=3.5, stroke_opacity=0.35), ring]
+    if kind == "curve":
+        return [line(at, end, stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3)]
     if kind == "limit":
         return [line(middle - 7j, middle + 7j, stroke=INPUT, stroke_width=2.0)]
     stroke, weight = {"used": (CURVE, 2.2), "rest": (CURVE, 0.9), "ghost": (PALE, 2.4)}[kind]

@@ -10,7 +10,7 @@ from service.render.fourbar import Scene, fourbar_of
 from service.render.numbers import NONE, angle, length, small
 from service.render.svg import Element, clean, element, line, text, text_width
 from service.render.symbols import COUPLER, GREY, GROUND, INK, INPUT, OUTPUT
-from synthesis.designs import Check, LinkageDesign
+from synthesis.designs import Check, LinkageDesign, PathMetrics
 
 DEGREES = frozenset({"transmission_angle", "min_transmission_angle"})
 """Checks whose value is an angle."""
@@ -126,6 +126,14 @@ def metrics(design: LinkageDesign, unit: str) -> Block:
         ("size", f"{length(found.size, digits=4)} {unit}"),
         ("quality", length(found.quality, digits=3)),
     ]
+
+    if isinstance(found, PathMetrics):
+        rows += [
+            ("rms distance", f"{length(found.rms_distance, digits=4)} {unit}"),
+            ("largest distance", f"{length(found.max_distance, digits=4)} {unit}"),
+        ]
+        if found.curve_distance is not None:
+            rows.append(("curve to target, at most", f"{length(found.curve_distance, digits=4)} {unit}"))
 
     return blocks.rows("Metrics", rows)
 

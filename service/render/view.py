@@ -219,6 +219,11 @@ class _Panel:
     def _curves(self) -> None:
         pieces = [piece for curve in self._scene.rest for piece in self._pieces(curve)]
         used = self._pieces(self._scene.used)
+        if self._scene.target is not None:
+            target = self._pieces(self._scene.target)
+            self._root.add(
+                path(target, stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3, data_curve="target"),
+            )
         self._root.add(
             path(pieces, stroke=CURVE, stroke_width=0.9, data_curve="branch"),
             path(used, stroke=CURVE, stroke_width=2.2, stroke_linecap="round", data_curve="used"),

@@ -49,7 +49,7 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
-from synthesis.designs.path import CognateTriples, PathDesign, PathMetrics, PathResult
+from synthesis.designs.path import CognateTriples, CurveSweep, PathDesign, PathMetrics, PathResult
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -86,6 +86,7 @@ __all__ = [
     "Check",
     "CognateTriples",
     "CouplerPoint",
+    "CurveSweep",
     "DragLinkMechanism",
     "ExactLineMechanism",
     "FixedPivots",

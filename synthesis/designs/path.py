@@ -30,12 +30,32 @@ class PathMetrics(LinkageMetrics):
     sum_of_squares: float = Field(description="Of the distances of P from the points, length units squared.")
     rms_distance: float = Field(description="Root mean square of these distances, length units.")
     max_distance: float = Field(description="The largest of them, length units.")
+    curve_distance: float | None = Field(
+        default=None,
+        exclude_if=nothing,
+        description="For curves that are matched as a whole: the largest distance of the traced curve from the "
+        "straight lines through the points, length units.",
+    )
+    excursion: float | None = Field(
+        default=None,
+        exclude_if=nothing,
+        description="How much farther the traced curve goes from these lines than max_distance and what a curve may "
+        "bulge between points, a quarter of their distance; length units.",
+    )
 
 
 class PathDesign(LinkageDesign):
     """A linkage that guides a point, with the proof of what it does."""
 
     metrics: PathMetrics
+
+
+class CurveSweep(Answer):
+    """What a match of whole curves has looked at."""
+
+    linkages: int = Field(description="Linkages that were drawn.")
+    curves: int = Field(description="Curves, or parts of curves, whose shape was compared with the target's.")
+    refined: int = Field(description="Linkages that were refined by least squares.")
 
 
 class PathResult(Result[PathDesign]):
@@ -45,4 +65,7 @@ class PathResult(Result[PathDesign]):
         default=None,
         exclude_if=nothing,
         description="For up to nine points of free timing; left out where other methods were used.",
+    )
+    sweep: CurveSweep | None = Field(
+        default=None, exclude_if=nothing, description="For curves that are matched as a whole."
     )

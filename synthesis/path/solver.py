@@ -17,6 +17,7 @@ from synthesis.designs import CognateTriples, PathDesign, PathResult, Search
 from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.continuation import follow, refine
+from synthesis.path import curve_match
 from synthesis.path.nine_point import Triples, all_triples
 from synthesis.path.nine_point_start import start
 from synthesis.path.nine_point_system import (
@@ -60,6 +61,8 @@ _REASONS = {
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation."""
+    if problem.matched:
+        return curve_match.solve_curve_match(problem, progress)
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
@@ -90,6 +93,7 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
 
 def warm_up() -> None:
     """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
+    curve_match.warm_up()
     begun = start()
     y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
     follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))

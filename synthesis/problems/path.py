@@ -24,6 +24,10 @@ MOST_FREE = 9
 MOST_POINTS = 1000
 """Points that are taken; a curve that needs more is oversampled."""
 
+LONGEST_LINK = 5.0
+"""Longest link of a curve match where no limit is stated, in diagonals of the box around the curve: fits without one
+run off to links that are many times longer and bring nothing."""
+
 
 class PathPoint(Statement):
     """A point of the path, in length units."""
@@ -96,7 +100,29 @@ class PathProblem(LinkageProblem):
                     ],
                     "rounds": 1,
                     "max_designs": 5,
-                }
+                },
+                {
+                    "kind": "path",
+                    "method": "curve_match",
+                    "closed": True,
+                    "points": [
+                        {"x": 53.0, "y": 71.0},
+                        {"x": 35.0, "y": 71.0},
+                        {"x": 22.0, "y": 67.0},
+                        {"x": 14.0, "y": 60.0},
+                        {"x": 12.0, "y": 49.0},
+                        {"x": 11.6, "y": 39.0},
+                        {"x": 11.6, "y": 28.0},
+                        {"x": 11.6, "y": 18.0},
+                        {"x": 12.5, "y": 12.0},
+                        {"x": 18.0, "y": 20.0},
+                        {"x": 27.0, "y": 29.0},
+                        {"x": 38.0, "y": 39.0},
+                        {"x": 50.0, "y": 49.0},
+                        {"x": 60.0, "y": 62.0},
+                    ],
+                    "max_designs": 5,
+                },
             ]
         },
     )
@@ -119,10 +145,10 @@ class PathProblem(LinkageProblem):
     closed: Flag = Field(
         default=False, description="The points go all round a closed curve, and the input turns through."
     )
-    method: Literal["auto", "exact", "least_squares"] = Field(
+    method: Literal["auto", "exact", "least_squares", "curve_match"] = Field(
         default="auto",
-        description="How the points are met: exactly, or with the least sum of the squares of the distances. auto: "
-        "exactly where so many points can be.",
+        description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
+        "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be.",
     )
     mechanism: Literal["fourbar"] = "fourbar"
     fixed_pivots: PathPivots = PathPivots()
@@ -153,7 +179,21 @@ class PathProblem(LinkageProblem):
         """Whether the points are met as nearly as can be, and not exactly."""
         if self.method == "auto":
             return len(self.points) > self.most_exact
-        return self.method == "least_squares"
+        return self.method in ("least_squares", "curve_match")
+
+    @property
+    def matched(self) -> bool:
+        """Whether the points are a curve that is drawn as a whole."""
+        return self.method == "curve_match"
+
+    @property
+    def longest_link(self) -> float:
+        """The longest link that a curve match may have, in length units."""
+        limit = self.constraints.link_length
+        if limit is not None and limit.max is not None:
+            return limit.max
+        points = np.array([point.point for point in self.points])
+        return LONGEST_LINK * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
 
     @property
     def crank_turns(self) -> list[float]:
@@ -252,6 +292,10 @@ class PathProblem(LinkageProblem):
         ]
 
     def _method(self) -> list[Contradiction]:
+        if self.matched:
+            if self.prescribed:
+                return [Contradiction("/timing", "a curve that is matched as a whole has no timing; leave it free")]
+            return []
         if self.method == "exact" and len(self.points) > self.most_exact:
             timing = "with prescribed timing" if self.prescribed else "with free timing"
             detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"

@@ -1,0 +1,96 @@
+"""Verification of a linkage that draws a whole curve: it is driven over it, and distances are measured both ways.
+
+From the target to the curve: the input is looked for at which P comes nearest to each point, in order. From the curve
+to the target: P's distance from the polygon through the points, over all of the curve that is used.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage import positions
+from synthesis.designs import FourbarMechanism, PathDesign, Verification
+from synthesis.linkages import driven_fourbar
+from synthesis.problems import PathProblem
+from synthesis.verification.checks import at_most
+from synthesis.verification.path import verify_path
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+CURVE_STEPS = 1440
+"""Inputs at which the curve is compared with the target: a quarter of a degree of a full turn."""
+
+BULGE = 0.25
+"""A curve may bulge between two points by this share of their distance, as an arc of a hundred degrees does; what goes
+beyond is an excursion that the points do not show."""
+
+LOOK, LOOKS = 33, 6
+"""Inputs in each closer look at the farthest place, and the number of looks."""
+
+ROWS = 256
+"""Places that are compared with all sides of the polygon at a time: some megabytes."""
+
+
+def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign | None:
+    """Drive a fourbar over a problem's curve and measure it; as :func:`synthesis.verification.path.verify_path`."""
+    design = verify_path(problem, mechanism)
+    if design is None:
+        return None
+    points = np.array([point.point for point in problem.points])
+    fourbar = driven_fourbar(mechanism)
+    inputs = np.radians([target.input_angle for target in design.targets])
+    low, high = float(inputs.min()), float(inputs.max())
+    if problem.closed and design.metrics.full_rotation:
+        low, high = float(inputs[0]), float(inputs[0]) + 2.0 * np.pi
+
+    missed = design.metrics.max_distance
+
+    def distance(at: Real) -> tuple[Real, Real]:
+        return distances(positions(fourbar.linkage, at, fourbar.assembly).p, points, problem.closed, missed)
+
+    grid = np.linspace(low, high, CURVE_STEPS + 1)
+    off, beyond = distance(grid)
+    excursion = float(np.nanmax(beyond))
+    farthest = float(np.nanmax(off))
+    at, step = float(grid[int(np.nanargmax(off))]), (high - low) / CURVE_STEPS
+    for _ in range(LOOKS):
+        near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
+        off, beyond = distance(near)
+        farthest = max(farthest, float(np.nanmax(off)))
+        at, step = float(near[int(np.nanargmax(off))]), step * 2.0 / (LOOK - 1)
+    checks = list(design.verification.checks)
+    limit = problem.constraints.link_length
+    if limit is None or limit.max is None:
+        links = mechanism.links
+        longest = max(links.ground, links.input, links.coupler, links.output)
+        checks.append(at_most("longest_link", longest, problem.longest_link))
+    return design.model_copy(
+        update={
+            "metrics": design.metrics.model_copy(update={"curve_distance": farthest, "excursion": excursion}),
+            "verification": Verification(passed=all(check.passed for check in checks), checks=checks),
+        }
+    )
+
+
+def distances(places: Complex, points: Complex, closed: bool, missed: float) -> tuple[Real, Real]:
+    """Distances of places from the polygon (closed) or chain of straight lines through points; NaN for no place.
+
+    The second is what a distance is beyond ``missed``, by which the points themselves are missed, and :data:`BULGE` of
+    the length of the side that is nearest; at least 0.
+    """
+    ends = np.roll(points, -1) if closed else points[1:]
+    starts = points if closed else points[:-1]
+    sides = ends - starts
+    squares = np.maximum(sides.real**2 + sides.imag**2, np.finfo(float).tiny)
+    allowed = missed + BULGE * np.abs(sides)
+    found, beyond = np.empty(len(places)), np.empty(len(places))
+    for first in range(0, len(places), ROWS):
+        rows = slice(first, min(first + ROWS, len(places)))
+        gaps = places[rows, None] - starts
+        share = np.clip((gaps.real * sides.real + gaps.imag * sides.imag) / squares, 0.0, 1.0)
+        off = np.abs(gaps - share * sides)
+        found[rows] = off.min(axis=1)
+        beyond[rows] = np.maximum(off - allowed, 0.0).min(axis=1)
+    return found, beyond

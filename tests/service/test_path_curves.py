@@ -1,0 +1,60 @@
+"""Whole curves over HTTP: the answer, its drawing with the demanded curve, its motion."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+
+import numpy as np
+
+from synthesis.kinds import examples
+
+SVG = "{http://www.w3.org/2000/svg}"
+DRAWN = next(example for example in examples("path") if example.get("method") == "curve_match")
+
+
+def test_a_drawn_curve_is_matched_drawn_and_driven(client):
+    job = client.post("/v1/jobs", json={"problem": DRAWN}, headers={"Prefer": "wait=30"}).json()
+    while job["status"] in ("queued", "running"):
+        job = client.get(f"/v1/jobs/{job['id']}").json()
+    assert job["status"] == "succeeded"
+    result = job["result"]
+    assert result["search"]["method"] == "curve_match"
+    assert not result["search"]["complete"]
+    assert result["sweep"]["linkages"] >= 100_000
+    best = result["designs"][0]
+    assert best["verification"]["passed"]
+    assert best["metrics"]["full_rotation"]
+    assert best["metrics"]["rms_distance"] < 1.5
+    assert best["metrics"]["curve_distance"] < 5.0
+    assert len(best["targets"]) == len(DRAWN["points"])
+
+    drawing = client.get(f"/v1/jobs/{job['id']}/designs/0.svg")
+    root = ET.fromstring(drawing.text)
+    curves = {e.get("data-curve") for e in root.iter(f"{SVG}path")}
+    assert {"target", "used"} <= curves
+    assert "demanded curve" in drawing.text
+
+    motion = client.get(f"/v1/jobs/{job['id']}/designs/0/motion", params={"steps": 360}).json()
+    traced = np.array(motion["joints"]["P"]["x"], float) + 1j * np.array(motion["joints"]["P"]["y"], float)
+    off = [np.nanmin(np.abs(traced - complex(p["x"], p["y"]))) for p in DRAWN["points"]]
+    assert math.sqrt(np.mean(np.square(off))) < best["metrics"]["rms_distance"] + 0.5
+
+
+def test_what_no_curve_match_can_keep_is_refused_with_its_place(client):
+    timed = {
+        **DRAWN,
+        "timing": "prescribed",
+        "points": [{**p, "crank_angle": 9.0 * k} for k, p in enumerate(DRAWN["points"])],
+    }
+    refused = client.post("/v1/jobs", json={"problem": timed})
+    assert refused.status_code == 422
+    assert "/problem/timing" in [error["path"] for error in refused.json()["errors"]]
+    many = {**DRAWN, "points": [{"x": float(k), "y": float(k % 7)} for k in range(5000)]}
+    refused = client.post("/v1/jobs", json={"problem": many})
+    assert refused.status_code == 422
+    assert "/problem/points" in [error["path"] for error in refused.json()["errors"]]
+    nowhere = {**DRAWN, "points": [{"x": 1.0, "y": 2.0}] * 8}
+    refused = client.post("/v1/jobs", json={"problem": nowhere})
+    assert refused.status_code == 422
+    assert "/problem/points" in [error["path"] for error in refused.json()["errors"]]
