@@ -272,7 +272,7 @@ def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:
 def details(scene: Scene, whole: Box) -> list[Box]:
     """At most two parts of the mechanism that are too small to be read beside the rest, the most telling first."""
     first = scene.configurations[0] if scene.configurations else None
-    demanded = [demand.point for demand in scene.demands]
+    demanded = [demand.point for demand in scene.demands] if scene.target is None else list(scene.target)
     groups = [(SMALL_MOTION, scene.moving()), (SMALL_PART, [*demanded, *(c.p for c in scene.configurations)])]
     if first is not None:
         cranks = [c.a for c in scene.configurations]

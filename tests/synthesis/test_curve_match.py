@@ -196,7 +196,9 @@ def test_distances_both_ways_are_those_of_brute_force():
     assert metrics.curve_distance == pytest.approx(far, rel=1e-3)
 
 
-@pytest.mark.parametrize("size", [1e-5, 1.0, 1e5])
+@pytest.mark.parametrize(
+    "size", [1.0, pytest.param(1e-5, marks=pytest.mark.slow), pytest.param(1e5, marks=pytest.mark.slow)]
+)
 def test_a_crank_rocker_is_recovered_at_any_size_and_place(size):
     target = curve_of(EGG, 64) * size * np.exp(0.7j) + (40.0 - 90.0j) * size
     result = matched(target, True)
@@ -209,6 +211,7 @@ def test_a_crank_rocker_is_recovered_at_any_size_and_place(size):
     assert result.sweep.linkages >= 100_000
 
 
+@pytest.mark.slow
 def test_a_stroke_of_a_rocker_is_recovered():
     rocker = Fourbar(0.0, 5.0, 3.0, 3.5, 3.0, 2.0 + 3.0j)
     target = curve_of(rocker, 40, -1.1, 1.0)
@@ -217,6 +220,7 @@ def test_a_stroke_of_a_rocker_is_recovered():
     assert best.metrics.visits_in_order
 
 
+@pytest.mark.slow
 def test_demands_are_kept_and_cost_accuracy():
     case = CASES["yu1_20"]
     free = matched(case["curve"], True, rank_by="accuracy").designs[0]
@@ -241,6 +245,7 @@ def test_demands_are_kept_and_cost_accuracy():
     assert free.metrics.rms_distance < held.designs[0].metrics.rms_distance < 3.0 * free.metrics.rms_distance
 
 
+@pytest.mark.slow
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}
@@ -251,11 +256,13 @@ def test_given_pivots_are_hit():
         assert np.allclose(design.mechanism.fixed_pivots.output, pivots["output"], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_answer():
     target = curve_of(EGG, 30) * (1.0 + 0.05j)
     assert matched(target, True, seed=4) == matched(target, True, seed=4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("curve", "closed"),
     [
@@ -278,6 +285,7 @@ def test_odd_curves_end_with_an_honest_answer(curve, closed):
     assert result.designs[0].metrics.rms_distance < 0.1 * size
 
 
+@pytest.mark.slow
 def test_a_thousand_points():
     result = matched(curve_of(EGG, 1000), True)
     assert result.designs[0].metrics.max_distance < 1e-9
