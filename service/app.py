@@ -20,6 +20,7 @@ from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
 from service.jobs.feed import Feed
+from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
 from service.metrics import Metrics
 from service.settings import Settings
@@ -55,12 +56,14 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
                 executor.submit(job_id)
             if unfinished:
                 log.info("unfinished jobs taken up again", jobs=len(unfinished))
-            app.state.desk = JobDesk(store, executor, changes, measured)
+            app.state.desk = JobDesk(store, executor, changes, measured, settings.max_queued)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
             feed = app.state.feed = Feed(store, changes)
             measured.watch(lambda: feed.listeners, executor.ready, store.unfinished)
             following = asyncio.create_task(feed.run())
+            tidying = asyncio.create_task(keep_tidy(store, settings.retention_days))
             yield
+            tidying.cancel()
             changes.close()
             await following
         finally:

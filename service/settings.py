@@ -39,6 +39,11 @@ class Settings(BaseSettings):
     job_memory_mb: Annotated[
         int, Field(ge=64, le=1 << 20, description="Memory that a job may take beyond its idle worker's, MiB.")
     ] = 4096
+    max_queued: Annotated[int, Field(ge=1, le=1_000_000, description="Jobs in the queue; more are refused.")] = 1000
+    retention_days: (
+        Annotated[float, Field(gt=0, le=36_500, description="How long finished jobs are kept; for ever when left out.")]
+        | None
+    ) = None
     max_wait_s: Annotated[
         int, Field(ge=0, le=30, description="Longest wait that Prefer: wait is granted, seconds.")
     ] = 30

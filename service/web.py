@@ -13,6 +13,7 @@ from starlette.types import ASGIApp
 
 from service.api.head import HeadAsGet
 from service.app import create_app
+from service.connections import IDLE_S, ImpatientProtocol, raise_file_limit
 from service.jobs.executor import Executor
 from service.metrics import Metrics
 from service.settings import Settings
@@ -31,12 +32,16 @@ class WebServer(uvicorn.Server):
         self._app = create_app(settings, executor, metrics)
         self._executor = executor
         self._announcement: asyncio.Task[None] | None = None
+        ImpatientProtocol.most = raise_file_limit()
         super().__init__(
             uvicorn.Config(
                 HeadAsGet(Telemetry(_with_cors(self._app, settings.cors_origins), metrics)),
                 log_config=None,
                 access_log=False,
                 server_header=False,
+                http=ImpatientProtocol,
+                ws="none",
+                timeout_keep_alive=IDLE_S,
                 timeout_graceful_shutdown=GRACE_S,
                 lifespan="on",
             )

@@ -22,7 +22,7 @@ from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
-from service.jobs.store import KeyReused
+from service.jobs.store import KeyReused, QueueFull
 from service.telemetry import span
 from synthesis.kinds import KINDS, example
 
@@ -30,6 +30,9 @@ TAG = {"name": "jobs", "description": "State a problem, follow the job, read the
 
 RETRY_AFTER_S = 1
 """When a client that does not wait should look again; most jobs are done by then."""
+
+QUEUE_RETRY_AFTER_S = 5
+"""When a client whose job found no place in the queue should send it again."""
 
 ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
 """What can be the id of a job. Only that reaches the database, which need not stand every string."""
@@ -109,6 +112,7 @@ _APPLIED = {"Preference-Applied": {"description": "`wait`: the job was waited fo
             e413="The body is too large.",
             e415="The body is not `application/json`.",
             e422="The body does not state a problem; `errors` says where.",
+            e503="The queue is full.",
         ),
     },
 )
@@ -150,6 +154,11 @@ async def create_job(
         )
     except KeyReused:
         raise key_reused() from None
+    except QueueFull:
+        raise Refusal(
+            503, "queue-full", "Queue full", "As many jobs wait as may; send this one again later.",
+            headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
+        ) from None  # fmt: skip
     headers = {"Location": f"/v1/jobs/{job.id}"}
     if not job.status.finished:
         return _json(whole_job(job), 202, {**headers, "Retry-After": str(RETRY_AFTER_S)})

@@ -28,6 +28,7 @@ class JobDesk:
     executor: Executor
     changes: Changes
     metrics: Metrics
+    max_queued: int
 
     async def accept(
         self,
@@ -47,6 +48,8 @@ class JobDesk:
         ------
         KeyReused
             When the key came with another request before.
+        QueueFull
+            When no more jobs are taken for now.
         """
         with span("store"):
             job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, repeatable)
@@ -67,8 +70,16 @@ class JobDesk:
         self, tenant: str, kind: str, label: str | None, problem: str, repeatable: Repeatable | None
     ) -> tuple[JobRow, bool]:
         if repeatable is None:
-            return self.store.create(tenant=tenant, kind=kind, label=label, problem=problem), True
-        return self.store.create_once(tenant=tenant, kind=kind, label=label, problem=problem, repeatable=repeatable)
+            job = self.store.create(tenant=tenant, kind=kind, label=label, problem=problem, max_queued=self.max_queued)
+            return job, True
+        return self.store.create_once(
+            tenant=tenant,
+            kind=kind,
+            label=label,
+            problem=problem,
+            repeatable=repeatable,
+            max_queued=self.max_queued,
+        )
 
     async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:

@@ -74,5 +74,10 @@ class JobRow(JobSummary):
 
 
 def now() -> str:
-    """The time as it is stored."""
-    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+    """The present time as it is stored."""
+    return as_stored(datetime.now(UTC))
+
+
+def as_stored(time: datetime) -> str:
+    """A time (UTC) as it is stored."""
+    return time.strftime("%Y-%m-%dT%H:%M:%S.%fZ")

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Engine, RowMapping, case, delete, func, insert, select, text, update
+from sqlalchemy import Engine, RowMapping, case, delete, func, insert, literal, select, text, update
 from sqlalchemy.exc import IntegrityError
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import JobRow, JobSummary, jobs, now
+from service.jobs.schema import JobRow, JobSummary, as_stored, jobs, now
 from service.jobs.states import FINISHED, MOVES, UNFINISHED, Status
 
 MAX_CRASHES = 3
@@ -46,6 +47,10 @@ class Repeatable:
     request_hash: str
 
 
+class QueueFull(Exception):
+    """There are as many queued jobs as there may be."""
+
+
 class KeyReused(Exception):
     """A key came with another request than the one that it was first used for; carries the id of that one's job."""
 
@@ -65,12 +70,27 @@ class JobStore:
         with self._engine.connect() as connection:
             connection.execute(text("SELECT 1"))
 
-    def create(self, *, tenant: str, kind: str, label: str | None, problem: str) -> JobRow:
-        """Store a new job in the queue. When this returns, the job is on the disk."""
-        return self._insert(_new_row(tenant, kind, label, problem))
+    def create(
+        self, *, tenant: str, kind: str, label: str | None, problem: str, max_queued: int | None = None
+    ) -> JobRow:
+        """Store a new job in the queue. When this returns, the job is on the disk.
+
+        Raises
+        ------
+        QueueFull
+            When ``max_queued`` jobs are queued already.
+        """
+        return self._insert(_new_row(tenant, kind, label, problem), max_queued)
 
     def create_once(
-        self, *, tenant: str, kind: str, label: str | None, problem: str, repeatable: Repeatable
+        self,
+        *,
+        tenant: str,
+        kind: str,
+        label: str | None,
+        problem: str,
+        repeatable: Repeatable,
+        max_queued: int | None = None,
     ) -> tuple[JobRow, bool]:
         """Like :meth:`create`, or find the job that the same request has made already.
 
@@ -83,6 +103,8 @@ class JobStore:
         ------
         KeyReused
             When another request of the tenant has made a job under this key.
+        QueueFull
+            When the job would be new, and ``max_queued`` jobs are queued already.
         """
         row = {
             **_new_row(tenant, kind, label, problem),
@@ -91,16 +113,25 @@ class JobStore:
         }
         while True:
             try:
-                return self._insert(row), True
-            except IntegrityError:
+                return self._insert(row, max_queued), True
+            except (IntegrityError, QueueFull) as refusal:
                 found = self._made_by(tenant, repeatable)
                 if found is not None:
                     return found, False
+                if isinstance(refusal, QueueFull):
+                    raise
                 # The job that held the key has been removed since.
 
-    def _insert(self, row: dict[str, Any]) -> JobRow:
-        with self._engine.begin() as connection:
-            connection.execute(insert(jobs).values(row))
+    def _insert(self, row: dict[str, Any], max_queued: int | None) -> JobRow:
+        new: Any = insert(jobs).values(row)
+        if max_queued is not None:
+            # Counted by the statement that inserts, so that many who come at once cannot all find the last place.
+            queued = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(max_queued).subquery()
+            place = select(func.count()).select_from(queued).scalar_subquery() < max_queued
+            values = select(*(literal(value, jobs.c[name].type) for name, value in row.items())).where(place)
+            new = insert(jobs).from_select(list(row), values)
+        if not self._changed(new):
+            raise QueueFull
         return JobRow(**{name: row[name] for name in _ROW})
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
@@ -203,6 +234,22 @@ class JobStore:
         with self._engine.begin() as connection:
             gone = connection.execute(delete(jobs).where(jobs.c.id == job_id, jobs.c.status.in_(FINISHED)))
         return gone.rowcount > 0
+
+    def delete_finished(self, before: datetime, at_most: int) -> int:
+        """Remove jobs that finished before a time, oldest first; tells how many."""
+        # Ids begin with the time of creation, which lies before that of the end: the oldest are found without a search.
+        oldest = (
+            select(jobs.c.id)
+            .where(
+                jobs.c.id < str(ULID.from_datetime(before)),
+                jobs.c.status.in_(FINISHED),
+                jobs.c.finished_at < as_stored(before),
+            )
+            .order_by(jobs.c.id)
+            .limit(at_most)
+        )
+        with self._engine.begin() as connection:
+            return connection.execute(delete(jobs).where(jobs.c.id.in_(oldest))).rowcount
 
     def requeue(self, job_id: str) -> bool:
         """Put an unfinished job back into the queue because its executor stops."""

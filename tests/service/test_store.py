@@ -1,5 +1,7 @@
 import sqlite3
 import threading
+import time
+from datetime import UTC, datetime, timedelta
 from importlib.resources import files
 
 import pytest
@@ -11,7 +13,7 @@ from service.access.keys import api_keys
 from service.jobs.database import connect, upgrade
 from service.jobs.schema import jobs, metadata
 from service.jobs.states import FINISHED, MOVES, Status
-from service.jobs.store import MAX_CRASHES, JobStore, KeyReused, Repeatable, _new_row
+from service.jobs.store import MAX_CRASHES, JobStore, KeyReused, QueueFull, Repeatable, _new_row
 
 ACTIONS = {
     "claim": lambda store, job, attempt: store.claim(job) is not None,
@@ -196,6 +198,59 @@ def test_a_key_makes_one_job_until_that_is_removed(store):
     second, new = store.create_once(**ours, repeatable=Repeatable("k", "b"))
     assert new
     assert second.id != first.id
+
+
+def test_the_queue_has_an_end(engine, store):
+    ours = {"tenant": "", "kind": "motion", "label": None, "problem": "{}", "max_queued": 3}
+    kept = store.create_once(**ours, repeatable=Repeatable("k", "a"))[0]
+    created = [store.create(**ours) for _ in range(2)]
+    assert store.get(created[0].id) == created[0], "stored as it was returned"
+    with pytest.raises(QueueFull):
+        store.create(**ours)
+    with pytest.raises(QueueFull):
+        store.create_once(**ours, repeatable=Repeatable("other", "a"))
+    assert store.create_once(**ours, repeatable=Repeatable("k", "a")) == (kept, False), "it has its place already"
+    with pytest.raises(KeyReused):
+        store.create_once(**ours, repeatable=Repeatable("k", "b"))
+    store.claim(created[0].id)
+    assert store.create(**ours).status == Status.QUEUED, "a running job is not in the queue"
+    assert store.unfinished() == {"queued": 3, "running": 1}
+
+
+def test_many_who_come_at_once_do_not_overfill_the_queue(store):
+    start = threading.Barrier(8)
+    refused = []
+
+    def post():
+        start.wait()
+        for _ in range(5):
+            try:
+                store.create(tenant="", kind="motion", label=None, problem="{}", max_queued=11)
+            except QueueFull:
+                refused.append(1)
+
+    threads = [threading.Thread(target=post) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (store.unfinished()["queued"], len(refused)) == (11, 29)
+
+
+def test_old_finished_jobs_are_removed(engine, store):
+    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
+    for job_id in ids[:4]:
+        store.cancel(job_id)
+    store.claim(ids[5])
+    cutoff = datetime.now(UTC)
+    time.sleep(0.01)  # ids and times have milliseconds
+    late = store.create(tenant="", kind="motion", label=None, problem="{}").id
+    store.cancel(late)
+    store.cancel(ids[4])  # old, but finished just now
+    assert store.delete_finished(cutoff - timedelta(hours=1), 10) == 0
+    assert store.delete_finished(cutoff, 3) == 3
+    assert store.delete_finished(cutoff, 3) == 1
+    assert [job.id for job in store.page(tenant="", limit=10)] == [late, ids[5], ids[4]]
 
 
 def test_a_downgrade_undoes_the_upgrade(tmp_path):

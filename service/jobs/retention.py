@@ -1,0 +1,39 @@
+"""Removes finished jobs when their time is over."""
+
+from __future__ import annotations
+
+import asyncio
+from datetime import UTC, datetime, timedelta
+
+import structlog
+from starlette.concurrency import run_in_threadpool
+
+from service.jobs.store import JobStore
+
+AT_ONCE = 200
+"""Jobs removed by one statement, so that nobody who writes meanwhile waits for long."""
+
+LONGEST_PERIOD_S = 3600.0
+SHORTEST_PERIOD_S = 0.5
+_PAUSE_S = 0.05
+
+log = structlog.get_logger(__name__)
+
+
+async def keep_tidy(store: JobStore, days: float | None) -> None:
+    """Remove jobs that finished more than ``days`` ago, now and again and again; nothing where ``days`` is None."""
+    if days is None:
+        return
+    kept = timedelta(days=days)
+    period_s = min(max(kept.total_seconds() / 10, SHORTEST_PERIOD_S), LONGEST_PERIOD_S)
+    while True:
+        removed = 0
+        try:
+            while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, AT_ONCE):
+                removed += gone
+                await asyncio.sleep(_PAUSE_S)
+        except Exception:  # whatever a database driver raises: the jobs are still there the next time
+            log.exception("old jobs could not be removed")
+        if removed:
+            log.info("old jobs removed", jobs=removed)
+        await asyncio.sleep(period_s)

@@ -1,0 +1,190 @@
+"""What bounds a service: its queue, how long it keeps jobs, and how long a client may keep it waiting."""
+
+import contextlib
+import json
+import re
+import socket
+import time
+
+import httpx
+import pytest
+
+from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
+from tests.service.scripted_server import GATED, INSTANT
+
+REQUEST_S = 10.0  # what the documentation promises, not what the code says
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    running = RunningServer(tmp_path_factory.mktemp("limits"), SCRIPTED, workers=1, max_queued=3, log_level="warning")
+    yield running
+    assert running.stop() == 0
+
+
+def post(server, seed, **headers):
+    return server.client.post("/v1/jobs", json={"problem": {**PROBLEM, "seed": seed}}, headers=headers)
+
+
+def test_a_full_queue_refuses_until_it_has_room(server):
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    first = post(server, GATED, **{"Idempotency-Key": "first"}).json()
+    server.reaches(first["id"], "running")
+    waiting = [post(server, INSTANT, **{"Idempotency-Key": f"waiting-{n}"}) for n in range(3)]
+    assert [answer.status_code for answer in waiting] == [202] * 3
+    refused = post(server, INSTANT)
+    assert refused.status_code == 503
+    assert refused.json()["type"] == "/problems/queue-full"
+    assert int(refused.headers["retry-after"]) >= 1
+    again = post(server, INSTANT, **{"Idempotency-Key": "waiting-1"})
+    assert again.json()["id"] == waiting[1].json()["id"], "a job that is accepted stays so"
+    assert server.client.get("/readyz").status_code == 200
+    gate.touch()
+    server.reaches(waiting[-1].json()["id"], "succeeded")
+    assert post(server, INSTANT).status_code == 202
+    assert 'rejections_total{reason="queue-full"} 1.0' in server.client.get("/metrics").text
+
+
+def test_finished_jobs_are_removed_when_their_time_is_over(tmp_path):
+    kept_s = 2.0
+    server = RunningServer(tmp_path, SCRIPTED, workers=1, retention_days=kept_s / 86_400)
+    try:
+        unfinished = server.post(GATED)
+        server.reaches(unfinished["id"], "running")
+        (tmp_path / "open").touch()
+        server.reaches(unfinished["id"], "succeeded")
+        (tmp_path / "open").unlink()
+        unfinished = server.post(GATED)
+        finished = server.post(INSTANT)
+        server.client.delete(f"/v1/jobs/{finished['id']}")
+        began = time.monotonic()
+        until(lambda: server.client.get(f"/v1/jobs/{finished['id']}").status_code == 404, 10.0, "the removal")
+        assert time.monotonic() - began > 0.5 * kept_s
+        assert server.job(unfinished["id"])["status"] == "running", "however old it is"
+    finally:
+        (tmp_path / "open").touch()
+        assert server.stop() == 0
+
+
+def connected(server):
+    host, port = server.url.removeprefix("http://").split(":")
+    return socket.create_connection((host, int(port)), timeout=30)
+
+
+def is_healthy(connection):
+    connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n")
+    received = b""
+    while not received.endswith(b'{"status":"ok"}'):
+        received += connection.recv(65536)
+    return received.startswith(b"HTTP/1.1 200")
+
+
+BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
+HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+WHOLE = HEAD + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY
+HALVES = {
+    "nothing": b"",
+    "half a line": b"GET /heal",
+    "half a head": HEAD + b"X-Slow",
+    "no body": HEAD + b"Content-Length: 500\r\n\r\n",
+    "half a body": WHOLE[:-10],
+    "a chunk and no end": HEAD + b"Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n",
+    "a request and a half": b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n" + HEAD,
+    "a refused head and no body": HEAD.replace(b"json", b"xml") + b"Content-Length: 500\r\n\r\n",
+}
+
+
+def until_closed(connection, began):
+    """Everything that the server sends until it closes, and how long that took."""
+    received = b""
+    with contextlib.suppress(ConnectionError):
+        while chunk := connection.recv(65536):
+            received += chunk
+    return received, time.monotonic() - began
+
+
+@pytest.mark.slow
+def test_half_open_connections_end_while_honest_clients_are_served(server):
+    """Nine hundred connections that send half a request, and one that sends a byte now and then."""
+    (server.folder / "open").touch()
+    began = time.monotonic()
+    half_open = []
+    for n in range(900):
+        half_open.append(connected(server))
+        half_open[-1].sendall(list(HALVES.values())[n % len(HALVES)])
+    trickling = connected(server)
+    slowest, served = 0.0, 0
+    while time.monotonic() - began < REQUEST_S + 1.5:
+        with contextlib.suppress(OSError):
+            trickling.sendall(b"X")
+        asked = time.monotonic()
+        assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+        slowest, served = max(slowest, time.monotonic() - asked), served + 1
+    print(f"{served} jobs served beside 901 half-open connections, the slowest in {1e3 * slowest:.0f} ms")
+    assert slowest < 5.0
+    for n, connection in enumerate(half_open):
+        connection.settimeout(3.0)  # closed already; else this fails
+        received, _ = until_closed(connection, began)
+        if n % len(HALVES) == 0:
+            assert received == b""
+        elif n < len(HALVES):
+            statuses = re.findall(rb"HTTP/1.1 (\d+)", received)
+            name = list(HALVES)[n]
+            expected = {"a request and a half": [b"200", b"408"], "a refused head and no body": [b"415"]}
+            assert statuses == expected.get(name, [b"408"]), name
+        connection.close()
+    trickling.settimeout(3.0)
+    until_closed(trickling, began)
+    trickling.close()
+    assert "Traceback" not in server.log()
+
+
+@pytest.mark.slow
+def test_each_sort_of_half_open_connection_ends_in_time(server):
+    connections = {name: connected(server) for name in HALVES}
+    began = time.monotonic()
+    for name, half in HALVES.items():
+        connections[name].sendall(half)
+    # Beside them: a client that comes back after a pause is not one of them, and one that waits for its job neither.
+    idle = connected(server)
+    assert is_healthy(idle)
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    waiting = connected(server)
+    waiting.sendall(
+        WHOLE.replace(b'"seed": %d' % INSTANT, b'"seed": %d' % GATED).replace(b"Host: x", b"Host: x\r\nPrefer: wait=20")
+    )
+    for name, connection in connections.items():
+        received, seconds = until_closed(connection, began)
+        assert seconds < REQUEST_S + 2.0, name
+        if b"408" in received:
+            assert b'"/problems/request-timeout"' in received
+        connection.close()
+    time.sleep(max(0.0, REQUEST_S + 1.0 - (time.monotonic() - began)))  # a pause is what is tried
+    assert is_healthy(idle)
+    gate.touch()
+    assert waiting.recv(65536).startswith(b"HTTP/1.1 200")
+    idle.close()
+    waiting.close()
+
+
+@pytest.mark.slow
+def test_a_client_that_does_not_read_is_left(server):
+    connection = connected(server)
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    connection.sendall(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n" * 200)
+    time.sleep(2.0)  # the buffers fill
+    began = time.monotonic()
+
+    def gone():
+        try:
+            connection.sendall(b"G")
+            return False
+        except ConnectionError:
+            return True
+
+    until(gone, REQUEST_S + 5.0, "the end of the connection")
+    assert time.monotonic() - began < REQUEST_S + 5.0
+    connection.close()
+    assert httpx.get(f"{server.url}/healthz").status_code == 200
