@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
-
-import numpy as np
 
 from kinematics.gear.gearbox import preferred_numbers
 from synthesis.designs.base import Search
@@ -19,7 +17,8 @@ from synthesis.designs.gearbox import (
     GearPairTeeth,
     StructureVerdict,
 )
-from synthesis.gearbox.stages import Choice, Options, StageLimits, best_choices, stage_options, together
+from synthesis.gearbox.front import Choice, best_choices
+from synthesis.gearbox.stages import Options, StageLimits, stage_options
 from synthesis.gearbox.structures import Group, Structure, formula, spread, structures
 from synthesis.gearbox.verification import measure, verify
 from synthesis.kinds import Progress
@@ -52,15 +51,20 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     Returns
     -------
     GearboxResult
-        Always complete: no gearbox within the limits has a smaller deviation at the same tooth sum.
+        Complete where no gearbox within the limits has a smaller deviation at the same tooth sum: that is unless the
+        statement lets in gearboxes without a structural formula.
     """
     tried = _structures(problem)
     ratio = problem.speeds.progression_ratio
     kinds = {tuple(sorted(structure)): structure for structure in tried}
     covered, choices = 0, {}
     for k, groups in enumerate(kinds):
-        progress(k / len(kinds), f"structure {formula(kinds[groups])}")
-        choices[groups], count = _choices(problem, groups, ratio)
+        told = f"structure {formula(kinds[groups])}"
+
+        def within(share: float, done: int = k, message: str = told) -> None:
+            progress((done + share) / len(kinds), message)
+
+        choices[groups], count = _choices(problem, groups, ratio, within)
         covered += count
     made = []
     for groups, found in choices.items():
@@ -76,7 +80,7 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
         designs=[*passed, *failed] if problem.include_failed else passed,
         search=Search(
             method="exhaustive",
-            complete=not failed,
+            complete=not failed and not _unsearched(problem, tried),
             candidates=covered,
             accepted=len(passed),
             rejected={reason: count for reason, count in rejected.items() if count},
@@ -114,8 +118,11 @@ def _limits(problem: GearboxProblem) -> StageLimits:
     )
 
 
-def _choices(problem: GearboxProblem, groups: tuple[Group, ...], ratio: float) -> tuple[list[Choice], int]:
+def _choices(
+    problem: GearboxProblem, groups: tuple[Group, ...], ratio: float, progress: Callable[[float], None]
+) -> tuple[list[Choice], int]:
     """Pareto choices of teeth for stages in the order of ``groups``, and how many combinations they stand for."""
+    progress(0.0)
     limits = _limits(problem)
     widest = problem.stage_ratio.max / problem.stage_ratio.min * math.exp(2.0 * problem.widest)
     if any(spread(group, ratio) > widest for group in groups):
@@ -125,24 +132,9 @@ def _choices(problem: GearboxProblem, groups: tuple[Group, ...], ratio: float) -
         if group not in known:
             known[group] = stage_options(group, ratio, problem.widest, limits)
     stages = [known[group] for group in groups]
-    covered = math.prod(stage.covered for stage in stages)
-    half = (len(stages) + 1) // 2
-    first, second = _joined(stages[:half], problem.widest), _joined(stages[half:], problem.widest)
-    if not first.count or not second.count:
-        return [], covered
     level = math.log(problem.speeds.min / problem.input_speed)
-    found = best_choices(first, second, level)
-    return [choice for choice in found if choice.error <= problem.widest * (1.0 + 1e-12)], covered
-
-
-def _joined(stages: list[Options], widest: float) -> Options:
-    if not stages:
-        zero = np.zeros(1)
-        return Options(zero, zero, np.zeros(1, np.int64), np.zeros((1, 0), np.int64), (), 1)
-    joined = stages[0]
-    for stage in stages[1:]:
-        joined = together(joined, stage, widest)
-    return joined
+    found = best_choices(stages, level, problem.widest, progress)
+    return found, math.prod(stage.covered for stage in stages)
 
 
 def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Made:
@@ -195,17 +187,32 @@ def _verdict(structure: Structure, found: list[Choice]) -> StructureVerdict:
     )
 
 
+def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
+    """Which gearboxes of the statement have no structural formula and were not searched, in words; empty for none.
+
+    A stage of a prime number of pairs beside others has one characteristic. One of 4 or 6 may have two: {0, 1, 4, 5}
+    with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
+    """
+    if problem.widest > problem.structured:
+        return " Beyond a quarter of a step gearboxes need not have a structure; those without one were not searched."
+    several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
+    if any(len(pairs) > 1 and max(pairs) > 3 for pairs in several):
+        return " Stages of four or six pairs with two characteristics were not searched."
+    return ""
+
+
 def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
     count = problem.speeds.count
+    limit = _unsearched(problem, tried)
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
     if not passed:
         return (
             f"None of {len(tried)} structures with {covered:,} combinations of tooth numbers keeps all {count} speeds "
-            f"within {100.0 * problem.widest:.3g} % and the limits."
+            f"within {100.0 * problem.widest:.3g} % and the limits.{limit}"
         )
     first = passed[0]
     return (
         f"{first.mechanism.formula} keeps {count} speeds within {100.0 * first.metrics.max_error:.3g} %, the best of "
-        f"{len(tried)} structures with {covered:,} combinations of tooth numbers."
+        f"{len(tried)} structures with {covered:,} combinations of tooth numbers.{limit}"
     )

@@ -145,19 +145,35 @@ def _level(problem: LayshaftProblem, size: int) -> _Level:
 
 
 def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, Whole]:
-    """Gears on layshaft and main shaft that pass each other, with the smallest idler that reaches both, by ratio."""
+    """Gears on layshaft and main shaft that pass each other, with the smallest sound idler to reach both."""
     low, high = problem.teeth.min, problem.teeth.max
     counts = np.arange(low, high + 1)
     one, other = (side.reshape(-1) for side in np.meshgrid(counts, counts, indexing="ij"))
     idler = np.maximum(low, -((one + other - size) // 2))
     kept = (0.5 * (size - one - other) - 2.0 >= PASSING) & (idler <= high)
-    if problem.interference == "refuse":
-        angle = math.radians(problem.pressure_angle)
-        for gear in (one, other):
-            kept &= external_sound(gear.astype(np.float64), idler.astype(np.float64), angle)
     one, idler, other = one[kept], idler[kept], other[kept]
+    if problem.interference == "refuse":
+        idler = _sound_idler(counts, one, idler, other, math.radians(problem.pressure_angle))
+        kept = idler <= high
+        one, idler, other = one[kept], idler[kept], other[kept]
     order = np.lexsort((one, other / one))
     return one[order], idler[order], other[order]
+
+
+def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: float) -> Whole:
+    """The smallest idler from ``idler`` on that interferes with neither gear; beyond the range where there is none.
+
+    An idler can be too small for a large mate and too large for a small one: for each mate the sound ones are those
+    between two limits, since z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same turned round, are monotonic in z₂.
+    """
+    real = counts.astype(np.float64)
+    sound = external_sound(real[:, None], real[None, :], angle)
+    least = np.where(sound.any(axis=1), counts[sound.argmax(axis=1)], counts[-1] + 1)
+    most = counts[-1] - sound[:, ::-1].argmax(axis=1)
+    at, to = one - counts[0], other - counts[0]
+    found = np.maximum(idler, np.maximum(least[at], least[to]))
+    sound_one = found <= np.minimum(most[at], most[to])
+    return np.asarray(np.where(sound_one, found, counts[-1] + 1), np.int64)
 
 
 def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:

@@ -14,6 +14,10 @@ from synthesis.problems.planetary_train import ToothRange
 
 MOST_SPEEDS = 36
 
+MOST_PAIRS = 16_000
+"""Pairs of gears that a stage may be made of. The search of a stage rises with their number, that of all stages with
+its square at worst: three stages of so many take some seconds for each structure, five some ten."""
+
 STANDARD_TOLERANCE = 0.1
 """Speeds of machine tools may be off by 10 (φ − 1) %, a tenth of a step (Acherkan, Machine Tool Design, vol. 3)."""
 
@@ -69,8 +73,8 @@ class StageRatio(Statement):
 class GearboxProblem(StatedProblem):
     """Machine-tool gearbox: tooth numbers for spindle speeds in geometric progression.
 
-    All structures, orders and tooth numbers within the limits are covered; the answer is proven to have the least
-    largest deviation for its size.
+    All structural formulas, orders and tooth numbers within the limits are covered; the answer is proven to have the
+    least largest deviation for its size.
     """
 
     model_config = ConfigDict(
@@ -109,7 +113,9 @@ class GearboxProblem(StatedProblem):
         "4 lets a sliding cluster pass.",
     )
     tolerance: Annotated[float, Field(strict=True, gt=0.0, lt=0.5)] | None = Field(
-        default=None, description="Largest |ln(speed/nominal)|; null: a tenth of a step, 0.1 (φ − 1)."
+        default=None,
+        description="Largest |ln(speed/nominal)|, below half of ln φ; null: a tenth of a step, 0.1 (φ − 1), "
+        "or a quarter of ln φ where that is less.",
     )
     module: Pitch = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
@@ -122,11 +128,25 @@ class GearboxProblem(StatedProblem):
         """Largest |ln(speed/nominal)| that is tolerated."""
         if self.tolerance is not None:
             return self.tolerance
-        return STANDARD_TOLERANCE * (self.speeds.progression_ratio - 1.0)
+        return min(STANDARD_TOLERANCE * (self.speeds.progression_ratio - 1.0), self.structured)
+
+    @property
+    def structured(self) -> float:
+        """Largest |ln(speed/nominal)|, just below a quarter of ln φ, with which every gearbox has a structure.
+
+        Let the pairs of two stages add up to logarithms that lie within E of whole steps. The steps from one pair to
+        another then differ by 4 E at most over what else is engaged, and as they are whole they are equal where 4 E is
+        below a step: every pair has a number of steps of its own.
+        """
+        return 0.25 * math.log(self.speeds.progression_ratio) * (1.0 - 1e-9)
 
     def contradictions(self) -> list[Contradiction]:
-        """Limits the wrong way round, a structure with another number of speeds, a progression too wide."""
+        """Limits the wrong way round or too wide, a structure with another number of speeds, a progression too wide."""
         found = []
+        half = 0.5 * math.log(self.speeds.progression_ratio)
+        if self.widest >= half:
+            detail = f"must be below half a step, {half:.4g}, beyond which a speed is nearer to another nominal one"
+            found.append(Contradiction("/tolerance", detail))
         for name, limits in (("teeth", self.teeth), ("tooth_sum", self.tooth_sum)):
             if limits.min > limits.max:
                 found.append(Contradiction(f"/{name}/max", "must not be below min"))
@@ -142,7 +162,21 @@ class GearboxProblem(StatedProblem):
             found.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
         if self.tooth_sum.max > 400:
             found.append(Contradiction("/tooth_sum/max", "at most 400"))
+        elif (pairs := self.pairs_of_a_stage) > MOST_PAIRS:
+            detail = f"leaves {pairs} pairs of gears for a stage, of which at most {MOST_PAIRS} are searched; "
+            found.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))
         return found
+
+    @property
+    def pairs_of_a_stage(self) -> int:
+        """Pairs of gears that teeth, tooth sum and stage ratio allow, whether they interfere or not."""
+        slow, fast = (ratio / (1.0 + ratio) for ratio in (self.stage_ratio.min, self.stage_ratio.max))
+        low, high = self.teeth.min, self.teeth.max
+        pairs = 0
+        for total in range(self.tooth_sum.min, self.tooth_sum.max + 1):
+            least, most = math.ceil(total * slow), math.floor(total * fast)
+            pairs += max(0, min(high, total - low, most) - max(low, total - high, least) + 1)
+        return pairs
 
 
 class LayshaftProblem(StatedProblem):
