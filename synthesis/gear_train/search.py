@@ -5,8 +5,9 @@ somewhat more trains than are wanted; those are ordered in exact arithmetic. If 
 that belongs among the wanted, because two errors differ by less than they can tell, the search is done again with more
 room.
 
-A ratio that no tolerance is stated for is first sought within :data:`NEAR`, where the loops have the least to look at;
-only if fewer trains than are wanted are that near, and the ratio is within reach, all errors are searched.
+A ratio that no tolerance is stated for is first sought within :data:`~synthesis.problems.gear_train.NEAR`, where the
+loops have the least to look at; only if fewer trains than are wanted are that near, and the ratio is within reach, all
+errors are searched.
 """
 
 from __future__ import annotations
@@ -25,9 +26,7 @@ from synthesis.gear_train.candidates import Candidates, Halves, coaxial_meshes, 
 from synthesis.gear_train.kernels import MOST_STAGES, NOISE, Found, Integers
 from synthesis.gear_train.targets import Target
 from synthesis.gear_train.task import UNLIMITED, Task
-
-NEAR = 0.01
-"""Relative error within which trains are sought first where the client states no tolerance."""
+from synthesis.problems.gear_train import NEAR
 
 SPARE = 54
 """Trains kept beyond those wanted."""
@@ -93,7 +92,7 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     reach = {k: _reach(task, k) for k in task.stage_counts}
     spans = [span for span in reach.values() if span is not None]
     whole = (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
-    near = NEAR if tolerance is None else float(tolerance) * (1.0 + 1e-12) + 1e-15
+    near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + 1e-12) + 1e-15
     counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
     found = _searched(task, counts, near, tolerance, wanted, progress)
     nearest = None

@@ -149,8 +149,9 @@ def _summary(problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: 
     if accepted:
         best = accepted[0]
         stages = ", ".join(f"{s.driver}:{s.driven}" for s in best.mechanism.stages)
+        within = 100.0 * float(problem.exact_tolerance or 0)
         return (
-            f"{stages} is the smallest train within the tolerance, with a relative error of "
+            f"{stages} is the smallest train within {within:.3g} %, with a relative error of "
             f"{best.metrics.relative_error:.3g}. Proven over all {number} trains of the tooth numbers stated."
         )
     if outcome.trains:

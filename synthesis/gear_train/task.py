@@ -124,7 +124,7 @@ def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
         pitches=np.array(problem.pitches(), np.int64),
         stage_counts=stage_counts,
         most_total=problem.max_total_teeth,
-        by_size=problem.rank_by == "size" and problem.tolerance is not None,
+        by_size=problem.rank_by == "size",
         largest=problem.size == "largest_gear",
     )
 

@@ -23,6 +23,10 @@ MOST_COAXIAL = 3_000_000_000
 FINEST_PITCHES = 10**9
 """Modules are compared as whole multiples of their common measure, at most so many of it."""
 
+NEAR = Fraction(1, 100)
+"""Relative error up to which trains are of interest where no tolerance is stated: those of the Pareto set, and those
+among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
+
 DEFAULT_MOST_TEETH = 100
 
 FEWEST_TEETH = 3
@@ -156,7 +160,7 @@ class GearTrainProblem(StatedProblem):
     rank_by: Literal["error", "size"] = Field(
         default="error",
         description="`error`: the nearest first, of equally near ones the smallest. `size`: of the trains within the "
-        "tolerance the smallest first; without a tolerance, of those of least error.",
+        "tolerance, or within 1 % where none is stated, the smallest first.",
     )
     size: Literal["total_teeth", "largest_gear"] = "total_teeth"
 
@@ -174,8 +178,10 @@ class GearTrainProblem(StatedProblem):
 
     @property
     def exact_tolerance(self) -> Fraction | None:
-        """The tolerance as the decimal that was written."""
-        return None if self.tolerance is None else decimal(self.tolerance)
+        """The tolerance as the decimal that was written; :data:`NEAR` for the smallest trains if none was."""
+        if self.tolerance is None:
+            return NEAR if self.rank_by == "size" else None
+        return decimal(self.tolerance)
 
     @property
     def fewest_teeth(self) -> int:

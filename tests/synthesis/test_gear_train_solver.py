@@ -7,14 +7,17 @@ import math
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
 from synthesis.designs import GearTrainMechanism, GearTrainResult, Idler, Ratio, Stage
 from synthesis.dispatch import solve
+from synthesis.gear_train.targets import parse_target
 from synthesis.gear_train.verification import verify
 from synthesis.kinds import parse_problem
 from synthesis.problems import GearTrainProblem
+from synthesis.problems.gear_train import TeethRange
 
 
 def solved(**fields: Any) -> GearTrainResult:
@@ -315,3 +318,82 @@ def test_wide_ranges_stay_exact() -> None:
         frozenset({(1987, 1997), (1993, 1999)}),
     }
     assert result.designs[0].metrics.relative_error == 0.0
+
+
+def every_set_of_gears(stated: GearTrainProblem) -> list[tuple[Fraction, int, bool]]:
+    """Error with its sign, size and whether its teeth can hunt, of every choice of gears, by plain loops."""
+    target = parse_target(stated.ratio)[1].rational
+    assert target is not None
+    assert isinstance(stated.teeth, TeethRange)
+    numbers = range(stated.teeth.min or 0, stated.teeth.max + 1)
+    most = Fraction(str(stated.max_stage_ratio)) if stated.max_stage_ratio else None
+    found = []
+    for k in range(1, stated.max_stages + 1):
+        sets = list(itertools.combinations_with_replacement(numbers, k))
+        for drivers, driven in itertools.product(sets, sets):
+            pairings = [
+                meshes
+                for meshes in (list(zip(drivers, order, strict=True)) for order in itertools.permutations(driven))
+                if most is None or all(Fraction(max(mesh), min(mesh)) <= most for mesh in meshes)
+            ]
+            if not pairings:
+                continue
+            ratio = Fraction(math.prod(driven), math.prod(drivers))
+            hunting = any(all(math.gcd(*mesh) == 1 for mesh in meshes) for meshes in pairings)
+            found.append((ratio / target - 1, sum(drivers + driven), hunting))
+    return found
+
+
+def ranked_by(stated: GearTrainProblem, rows: list[tuple[Fraction, int, bool]]) -> list[tuple[Any, ...]]:
+    """What the ranking compares, best first: error, hunting and size, or size, error and hunting."""
+    prefer = stated.hunting_tooth == "prefer"
+    if stated.rank_by == "size":
+        return sorted((size, abs(error), prefer and not hunting) for error, size, hunting in rows)
+    return sorted((abs(error), prefer and not hunting, size) for error, size, hunting in rows)
+
+
+@pytest.mark.slow
+def test_preferences_against_plain_loops() -> None:
+    """Size, hunting teeth and tolerance in every combination: the keys of the ten best, in order."""
+    rng = np.random.default_rng(8)
+    answered = 0
+    for number in range(60):
+        low = int(rng.integers(8, 13))
+        numerator, denominator = (int(n) for n in rng.integers(7, 40, 2))
+        fields: dict[str, Any] = {
+            "ratio": f"{numerator}/{denominator}",
+            "max_stages": int(rng.integers(1, 3)),
+            "teeth": {"min": low, "max": low + int(rng.integers(4, 11))},
+            "tolerance": [None, None, 0.03, 0.0][rng.integers(4)],
+            "rank_by": ["error", "size"][number % 2],
+            "hunting_tooth": str(rng.choice(["any", "prefer", "prefer", "require"])),
+            "max_stage_ratio": float(rng.choice([1.5, 2.0])) if rng.random() < 0.3 else None,
+            "max_designs": 10,
+        }
+        stated = GearTrainProblem(kind="gear_train", **fields)
+        rows = every_set_of_gears(stated)
+        if stated.hunting_tooth == "require":
+            rows = [row for row in rows if row[2]]
+        within = Fraction(1, 100) if stated.rank_by == "size" else None
+        if stated.tolerance is not None:
+            within = Fraction(str(stated.tolerance))
+        near = [row for row in rows if within is None or abs(row[0]) <= within]
+        result = solved(**fields)
+        target = Fraction(numerator, denominator)
+        own = [
+            (
+                abs(abs(Fraction(design.mechanism.ratio.numerator, design.mechanism.ratio.denominator)) / target - 1),
+                sum(stage.driver + stage.driven for stage in design.mechanism.stages),
+                all(math.gcd(stage.driver, stage.driven) == 1 for stage in design.mechanism.stages),
+            )
+            for design in result.designs
+        ]
+        if within is None and not own:
+            # Only a ratio beyond all that the gears can make has no nearest train.
+            assert not rows or max(row[0] for row in rows) < 0 or min(row[0] for row in rows) > 0, fields
+            continue
+        assert ranked_by(stated, own) == ranked_by(stated, near)[:10], fields
+        keys = [ranked_by(stated, [row])[0] for row in own]
+        assert keys == sorted(keys), fields
+        answered += bool(own)
+    assert answered > 25
