@@ -23,6 +23,7 @@ from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused, QueueFull
+from service.render import Form
 from service.telemetry import span
 from synthesis.kinds import KINDS, example
 
@@ -238,12 +239,14 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
 
 
-_MEDIA_TYPES = {"svg": "image/svg+xml", "dxf": "image/vnd.dxf", "csv": "text/csv; charset=utf-8"}
+_TEXT = {"type": "string"}
+_FILE_SCHEMAS = {"gif": {"type": "string", "format": "binary"}}
+_MEDIA_TYPES = {"svg": "image/svg+xml", "gif": "image/gif", "dxf": "image/vnd.dxf", "csv": "text/csv; charset=utf-8"}
 
 
-def _exported(form: str) -> dict[int | str, dict[str, Any]]:
+def _exported(form: Form) -> dict[int | str, dict[str, Any]]:
     return {
-        200: {"description": "The file.", "content": {_MEDIA_TYPES[form]: {"schema": {"type": "string"}}}},
+        200: {"description": "The file.", "content": {_MEDIA_TYPES[form]: {"schema": _FILE_SCHEMAS.get(form, _TEXT)}}},
         **errors.responses(
             e404="There is no such job or design, or no such file of its type of mechanism.",
             e409="The job has no result (yet).",
@@ -261,6 +264,18 @@ def _exported(form: str) -> dict[int | str, dict[str, Any]]:
 async def draw_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
     """A labelled drawing of design ``number`` of the job's result, counted from 0."""
     return await _file(desk, tenant, job_id, number, "svg")
+
+
+@router.get(
+    "/{job_id}/designs/{number}.gif",
+    operation_id="animate_design",
+    summary="Animate a design",
+    response_class=Response,
+    responses=_exported("gif"),
+)
+async def animate_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
+    """Design ``number`` of the job's result going through its cycle, counted from 0: 60 frames, over and over."""
+    return await _file(desk, tenant, job_id, number, "gif")
 
 
 @router.get(
@@ -287,14 +302,14 @@ async def export_design_csv(desk: Desk, tenant: Tenant, job_id: str, number: str
     return await _file(desk, tenant, job_id, number, "csv")
 
 
-async def _file(desk: JobDesk, tenant: str, job_id: str, number: str, form: Literal["svg", "dxf", "csv"]) -> Response:
+async def _file(desk: JobDesk, tenant: str, job_id: str, number: str, form: Form) -> Response:
     job, result = await _solved(desk, tenant, job_id)
     with span("drawing"):
         drawn = await run_in_threadpool(_rendered, job, result, number, form)
     return Response(drawn, media_type=_MEDIA_TYPES[form])
 
 
-def _rendered(job: JobRow, result: str, number: str, form: Literal["svg", "dxf", "csv"]) -> str:
+def _rendered(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
     # Drawing is for those who ask for it; the other requests do not wait for its import.
     from service import render
 

@@ -1,28 +1,33 @@
-"""Files of designs: labelled SVG sheets, DXF drawings and tables, by type of mechanism."""
+"""Files of designs: labelled SVG sheets, animations, DXF drawings and tables, by type of mechanism."""
 
 from __future__ import annotations
 
 from importlib import import_module
 from typing import Any, Literal
 
-__all__ = ["NoSuchExport", "exported"]
+__all__ = ["Form", "NoSuchExport", "exported"]
 
-Form = Literal["svg", "dxf", "csv"]
+Form = Literal["svg", "gif", "dxf", "csv"]
 
 _LINKAGE: dict[Form, str] = {
     "svg": "service.render.linkage_sheet:linkage_sheet",
+    "gif": "service.render.linkage_animation:linkage_animation",
     "dxf": "service.render.linkage_dxf:linkage_drawing",
     "csv": "service.render.linkage_csv:linkage_table",
 }
 
+_MOVING: dict[Form, str] = {"gif": "service.render.linkage_animation:linkage_animation"}
+
 EXPORTS: dict[str, dict[Form, str]] = {
     "cam": {
         "svg": "service.render.cam_sheet:cam_sheet",
+        "gif": "service.render.cam_animation:cam_animation",
         "dxf": "service.render.cam_dxf:cam_drawing",
         "csv": "service.render.cam_csv:cam_table",
     },
     "barrel_cam": {
         "svg": "service.render.barrel_sheet:barrel_sheet",
+        "gif": "service.render.cam_animation:barrel_animation",
         "dxf": "service.render.barrel_exports:barrel_drawing",
         "csv": "service.render.barrel_exports:barrel_table",
     },
@@ -31,8 +36,16 @@ EXPORTS: dict[str, dict[Form, str]] = {
     "inverted_slider_crank": _LINKAGE,
     "watt_2": _LINKAGE,
     "stephenson_3": _LINKAGE,
+    "crank_shaper": _MOVING,
+    "whitworth": _MOVING,
+    "drag_link_rocker": _MOVING,
+    "drag_link_slider": _MOVING,
+    "peaucellier": _MOVING,
+    "hart": _MOVING,
+    "scott_russell": _MOVING,
     "gear_train": {
         "svg": "service.render.gear_sheet:gear_train_sheet",
+        "gif": "service.render.gear_animation:gear_train_animation",
         "dxf": "service.render.gear_dxf:gear_train_drawing",
         "csv": "service.render.gear_csv:gear_train_table",
     },
@@ -71,8 +84,8 @@ class NoSuchExport(LookupError):
     """This type of mechanism has no file of this form."""
 
 
-def exported(design: Any, problem: Any, title: str, form: Form) -> str:
-    """A design as the text of a file.
+def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
+    """A design as the text of a file, or its bytes where it is an animation.
 
     Parameters
     ----------
@@ -82,14 +95,14 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str:
         The problem that it answers.
     title : str
         Heading; any text, characters that the form forbids are left out.
-    form : {"svg", "dxf", "csv"}
+    form : {"svg", "gif", "dxf", "csv"}
         An SVG has a title and a description, and no scripts, style sheets, element ids or references, so that it can
         stand in a page beside others.
 
     Returns
     -------
-    str
-        The same arguments give the same text.
+    str or bytes
+        The same arguments give the same file.
 
     Raises
     ------
@@ -100,5 +113,5 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str:
     if form not in forms:
         raise NoSuchExport(design.mechanism.type, form)
     module, function = forms[form].split(":")
-    text: str = getattr(import_module(module), function)(design, problem, title)
-    return text
+    file: str | bytes = getattr(import_module(module), function)(design, problem, title)
+    return file

@@ -1,0 +1,105 @@
+"""Animations: GIFs of every family, bounded in size, that move as the mechanism does."""
+
+from __future__ import annotations
+
+import copy
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kinematics.cam.profile import even_angles
+from service.render import exported
+from service.render.animation import FRAMES, PIXELS, Stroke, animated, ring
+from service.render.cam import CamScene
+from service.render.cam_animation import _spin
+from service.render.svg import Box
+from synthesis.dispatch import solve
+from synthesis.kinds import examples, parse_problem
+
+CAM = examples("cam")[0]
+ARM = {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 120.0, "pivot_distance": 150.0}
+STATED = {
+    "cam": CAM,
+    "cam under an arm": CAM | {"follower": ARM, "rotation": "cw"},
+    "groove": CAM | {"closure": "form"},
+    "valve": examples("cam")[3],
+    "barrel": examples("cam")[4],
+    "motion": examples("motion")[0],
+    "gear train": examples("gear_train")[0],
+}
+
+
+def designed(name):
+    statement = copy.deepcopy(STATED[name])
+    if "arm" in name:
+        for segment in statement["segments"]:
+            if "lift" in segment:
+                segment["lift"] = 10.0
+    problem = parse_problem(statement)
+    return solve(problem, lambda fraction, message: None).designs[0], problem
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_a_cycle_in_bounded_frames(name):
+    design, problem = designed(name)
+    file = exported(design, problem, "title", "gif")
+    assert len(file) < 1_000_000
+    assert file == exported(design, problem, "other title", "gif")
+    picture = Image.open(io.BytesIO(file))
+    assert picture.format == "GIF"
+    assert picture.info["loop"] == 0
+    assert picture.n_frames > 0.8 * FRAMES
+    assert max(picture.size) == PIXELS
+    shown = []
+    for k in (0, picture.n_frames // 3, picture.n_frames // 2):
+        picture.seek(k)
+        shown.append(np.asarray(picture.convert("L")))
+    for one, other in ((0, 1), (1, 2), (0, 2)):
+        assert (np.abs(shown[one].astype(int) - shown[other]) > 60).sum() > 100
+    # The margin stays empty: nothing is cut off at the border.
+    for frame in shown:
+        border = np.concatenate([frame[:3].ravel(), frame[-3:].ravel(), frame[:, :3].ravel(), frame[:, -3:].ravel()])
+        assert border.min() > 200 or name == "barrel"
+
+
+@pytest.mark.parametrize("name", ["cam", "cam under an arm"])
+def test_the_roller_rolls_without_slip(name):
+    """At the contact the surfaces of cam and roller have one velocity along the tangent."""
+    design, _ = designed(name)
+    scene = CamScene(design.mechanism)
+    radius = scene.roller.roller_radius
+    theta = even_angles(FRAMES)
+    contact = scene.contour.follow(scene.follower, theta, scene.mechanism.rotation)
+    turns = np.exp(1j * scene.sense * theta)
+    point, normal = contact.point * turns, contact.normal * turns
+    spin = _spin(scene, contact.point, np.unwrap(np.angle(-normal)), radius)
+
+    def rate(values):
+        return (values[2:] - values[:-2]) / (theta[2:] - theta[:-2])
+
+    centre = point + radius * normal
+    cam = 1j * scene.sense * point[1:-1]
+    roller = rate(centre) - 1j * rate(spin) * radius * normal[1:-1]
+    tangent = 1j * normal[1:-1]
+    slip = ((cam - roller) * np.conj(tangent)).real
+    assert np.abs(slip).max() < 0.01 * np.abs(cam).max()
+
+
+def test_what_is_far_away_or_large_is_drawn_all_the_same():
+    far = 1e6 * (1 + 1j)
+    frames = [[Stroke(far + ring(complex(k), 2.0), "#000000", 2.0, closed=True)] for k in range(3)]
+    many = [[Stroke(np.linspace(0.0, 1.0, 100_000) * (k + 1j), "#000000", 1.0)] for k in range(3)]
+    for shown, box in ((frames, Box.around(far + ring(1j, 4.0))), (many, Box(0.0, 0.0, 2.0, 1.0))):
+        picture = Image.open(io.BytesIO(animated(shown, box)))
+        assert np.asarray(picture.convert("L")).min() < 100
+
+
+def test_over_http(client):
+    job = client.post("/v1/jobs", json={"problem": CAM}, headers={"Prefer": "wait=30"}).json()
+    answer = client.get(f"/v1/jobs/{job['id']}/designs/0.gif")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "image/gif"
+    assert Image.open(io.BytesIO(answer.content)).n_frames > 40
+    assert client.get(f"/v1/jobs/{job['id']}/designs/7.gif").status_code == 404
