@@ -18,6 +18,7 @@ from synthesis.analyses import (
     gearbox,
     linkage,
     planetary_train,
+    universal_joint,
 )
 from synthesis.analyses.base import AnalysisRequest, Family
 
@@ -33,6 +34,7 @@ FAMILIES: dict[str, Family] = {
     "gearbox": gearbox.FAMILY,
     "layshaft_gearbox": gearbox.LAYSHAFT_FAMILY,
     "planetary_train": planetary_train.FAMILY,
+    "universal_joint": universal_joint.FAMILY,
 }
 """By the mechanism types that are no linkages; every other mechanism is one."""
 

@@ -1,0 +1,183 @@
+"""Shafts joined by universal joints (Hooke's): rotation, speed ratio, acceleration, extremes and the double joint.
+
+A joint between shafts at an angle δ turns the driven shaft to γ while the driver turns to α, both from the position
+in which the driver's fork lies in the plane of the shafts (Rao, Sec. 4.6; Norton, Sec. 10, writes β for δ):
+
+    tan γ = tan α/cos δ,    ω_γ/ω_α = cos δ/(1 − cos² α sin² δ).
+
+On the pair (cos, sin) of an angle a joint acts as the matrix diag(cos δ, 1), up to a factor, and shafts in a row as the
+product M of such matrices with turns by the angles between their forks. For any matrix
+
+    dγ/dα = det M/|M u|²,    u = (cos α, sin α),
+
+lies between σ₂/σ₁ and σ₁/σ₂ of its singular values: a row of joints moves as one joint with cos δ = σ₂/σ₁. Two equal
+joints whose forks on the shaft between them lie in one plane, with all shafts in one plane, give σ₁ = σ₂: the speeds
+are equal at every instant.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.linkage.batch import require
+
+Real = NDArray[np.float64]
+
+
+class Joint(NamedTuple):
+    """One universal joint of a row.
+
+    Attributes
+    ----------
+    angle : float
+        Between the two shafts, radians, 0 to below π/2.
+    offset : float
+        For a joint that is not the first, radians: the angle between the forks at both ends of the shaft before it,
+        less the angle between the planes of the shafts at the two joints. 0: the arrangement that evens the speeds.
+    """
+
+    angle: float
+    offset: float = 0.0
+
+
+class ShaftMotion(NamedTuple):
+    """Output over input angles: angle, and its first and second derivative by the input's.
+
+    ``angle`` is the rotation from where the output stands at input angle 0.
+    """
+
+    angle: Real
+    ratio: Real
+    ratio_rate: Real
+
+
+class ShaftExtremes(NamedTuple):
+    """Extremes of the output over a turn of an input that turns evenly.
+
+    Attributes
+    ----------
+    greatest, least : float
+        Ratios of output to input speed.
+    fastest_at : float
+        Input angle of the greatest, radians in [0, π); the least stands π/2 from it, and both repeat every half turn.
+    fluctuation : float
+        (greatest − least) over the mean speed, which is the input's.
+    acceleration : float
+        The greatest magnitude of the output's acceleration, over the square of the input's speed.
+    steepest_at : float
+        Input angle from ``fastest_at`` at which it stands, radians in [0, π/2]; mirrored about ``fastest_at`` too.
+    equivalent_angle : float
+        Angle of the one joint that moves likewise, radians.
+    """
+
+    greatest: float
+    least: float
+    fastest_at: float
+    fluctuation: float
+    acceleration: float
+    steepest_at: float
+    equivalent_angle: float
+
+
+def joint_matrix(joints: Sequence[Joint]) -> Real:
+    """The matrix of a row of joints, shape (2, 2), with determinant 1.
+
+    Raises
+    ------
+    DimensionError
+        For no joint, or an angle that is not from 0 to below π/2: at a right angle a joint does not turn.
+    """
+    require("number of joints", "at least 1", np.asarray(len(joints)), np.bool_(len(joints) >= 1))
+    matrix = np.eye(2)
+    for n, joint in enumerate(joints):
+        angle = np.asarray(joint.angle)
+        require("angle of a joint", "from 0 to below a right angle", angle, (angle >= 0.0) & (angle < 0.5 * np.pi))
+        if n:
+            # The driven fork stands a quarter turn from the driver's; the next joint counts from its own driving fork.
+            turn = joint.offset + 0.5 * math.pi
+            matrix = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]) @ matrix
+        root = math.sqrt(math.cos(joint.angle))
+        matrix = np.diag([root, 1.0 / root]) @ matrix
+    return np.asarray(matrix)
+
+
+def shaft_motion(joints: Sequence[Joint], input: ArrayLike) -> ShaftMotion:
+    """Angle and rates of the last shaft.
+
+    Parameters
+    ----------
+    joints : sequence of Joint
+        From the input on.
+    input : float
+        Input angles from the position with the driver's fork in the plane of the shafts, radians, any shape.
+    """
+    matrix = joint_matrix(joints)
+    alpha = np.asarray(input, np.float64)
+    u = np.stack([np.cos(alpha), np.sin(alpha)])
+    v = np.stack([-u[1], u[0]])
+    x, y = np.tensordot(matrix, u, 1), np.tensordot(matrix, v, 1)
+    squared = np.sum(x * x, axis=0)
+    ratio = 1.0 / squared
+    # M is a turn after a stretch, and a stretch leads or lags by less than a quarter turn; what is counted from the
+    # output's place at input angle 0 does not need the turn.
+    _, sigma, right = np.linalg.svd(matrix)
+    stretch = right.T @ np.diag(sigma) @ right
+
+    def lead(at: Real) -> Real:
+        moved = np.tensordot(stretch, at, 1)
+        return np.asarray(np.arctan2(at[0] * moved[1] - at[1] * moved[0], at[0] * moved[0] + at[1] * moved[1]))
+
+    angle = alpha + lead(u) - lead(np.array([1.0, 0.0]))
+    return ShaftMotion(np.asarray(angle), np.asarray(ratio), np.asarray(-2.0 * np.sum(x * y, axis=0) * ratio * ratio))
+
+
+def shaft_extremes(joints: Sequence[Joint]) -> ShaftExtremes:
+    """Extremes over a turn, in closed form.
+
+    With s = sin² δ of the equivalent joint the acceleration is greatest where, from the fastest position on,
+    (s/2) cos² 2α + (1 − s/2) cos 2α = s; Rao's eq. 4.25 drops the first term.
+    """
+    _, sigma, right = np.linalg.svd(joint_matrix(joints))
+    cosine = float(min(sigma[1] / sigma[0], 1.0))
+    s = (1.0 - cosine) * (1.0 + cosine)
+    fastest = math.atan2(right[1, 1], right[1, 0]) % math.pi
+    half = 1.0 - 0.5 * s
+    twice = 2.0 * s / (half + math.sqrt(half * half + 2.0 * s * s))
+    steepest = 0.5 * math.acos(min(twice, 1.0))
+    at = 1.0 - s * math.cos(steepest) ** 2
+    return ShaftExtremes(
+        1.0 / cosine,
+        cosine,
+        fastest,
+        1.0 / cosine - cosine,
+        cosine * s * math.sin(2.0 * steepest) / (at * at),
+        steepest,
+        math.acos(cosine),
+    )
+
+
+def angle_of_fluctuation(fluctuation: float) -> float:
+    """The joint angle at which the speed fluctuates by (ω_max − ω_min)/ω_mean; radians (Rao, Solved Problem 4.10)."""
+    value = np.asarray(fluctuation)
+    require("fluctuation", "positive or zero, and finite", value, np.isfinite(value) & (value >= 0.0))
+    cosine = 0.5 * (math.hypot(fluctuation, 2.0) - fluctuation)
+    return math.acos(min(cosine, 1.0))
+
+
+def angle_within(least: float, greatest: float) -> float:
+    """The largest joint angle at which the speed ratio stays between two limits; radians.
+
+    Parameters
+    ----------
+    least, greatest : float
+        Limits of output over input speed, in (0, 1] and from 1 on; 0 and infinity where there is none.
+    """
+    low, high = np.asarray(least), np.asarray(greatest)
+    require("least ratio", "from 0 to 1", low, (low >= 0.0) & (low <= 1.0))
+    require("greatest ratio", "at least 1", high, high >= 1.0)
+    return math.acos(max(least, 1.0 / greatest))

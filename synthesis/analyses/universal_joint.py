@@ -1,0 +1,182 @@
+"""The analysis of universal joints: one, or several in a row of shafts."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from kinematics.linkage.universal_joint import (
+    Joint,
+    angle_of_fluctuation,
+    angle_within,
+    shaft_extremes,
+    shaft_motion,
+)
+from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.designs import Answer
+from synthesis.problems import Number, Statement
+
+EVEN = 1e-12
+"""Fluctuation of the speed that is rounding."""
+
+NonNegative = Annotated[Number, Field(ge=0.0)]
+
+
+class StatedJoint(Statement):
+    """One universal joint."""
+
+    angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0)] = Field(
+        description="Between the shafts that it joins, degrees."
+    )
+    offset: Number = Field(
+        default=0.0,
+        description="Of a joint that is not the first, degrees: the angle between the forks on the shaft before it, "
+        "less the angle between the planes of the shafts at the two joints. With equal angles 0 evens the speeds.",
+    )
+
+
+class SpeedLimits(Statement):
+    """How uneven the output may be: by its fluctuation, or by limits of the speed ratio."""
+
+    fluctuation: NonNegative | None = Field(default=None, description="(ω_max − ω_min)/ω_mean.")
+    least_ratio: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = 0.0
+    greatest_ratio: Annotated[Number, Field(ge=1.0)] | None = None
+
+
+class GivenUniversalJoint(Statement):
+    """Universal joints in a row, from the input shaft on, and what the output shaft drives."""
+
+    type: Literal["universal_joint"]
+    joints: Annotated[list[StatedJoint], Field(min_length=1, max_length=8)]
+    inertia: NonNegative | None = Field(default=None, description="That turns with the output shaft, e.g. kg m².")
+    torque: Number = Field(default=0.0, description="Steady load on the output shaft, e.g. N m.")
+
+    def core(self) -> list[Joint]:
+        """The joints of the analysis core."""
+        return [Joint(math.radians(joint.angle), math.radians(joint.offset)) for joint in self.joints]
+
+
+class UniversalJointRequest(AnalysisRequest):
+    """Universal joints and the motion of the input shaft."""
+
+    model_config = ConfigDict(
+        title="Universal joints",
+        json_schema_extra={
+            "examples": [
+                {
+                    "mechanism": {"type": "universal_joint", "joints": [{"angle": 20.0}], "inertia": 0.9375},
+                    "motion": {"from": 0.0, "to": 360.0, "steps": 72, "speed_rpm": 1000.0},
+                }
+            ]
+        },
+    )
+
+    mechanism: GivenUniversalJoint
+    motion: StatedMotion = Field(
+        default=Sweep(),
+        description="Of the input, its angle from where the driver's fork lies in the plane of the first two shafts.",
+    )
+    limits: SpeedLimits | None = Field(default=None, description="Asks for the largest angle of one joint within them.")
+
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        limits = self.limits
+        if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
+            return [("/limits", "state the fluctuation, or a least or greatest ratio")]
+        if self.mechanism.joints[0].offset != 0.0:
+            return [("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")]
+        return []
+
+    def answer(self) -> dict[str, Any]:
+        """Everything over the motion, in the shape of :class:`UniversalJointAnalysis`."""
+        at, speed, time = self.motion.inputs()
+        joints = self.mechanism.core()
+        moved, extremes = shaft_motion(joints, np.radians(at)), shaft_extremes(joints)
+        acceleration = moved.ratio_rate * speed * speed + moved.ratio * self.motion.acceleration
+        inertia, load = self.mechanism.inertia, self.mechanism.torque
+        steady = self.motion.rate
+        peak = extremes.acceleration * steady * steady
+        fastest = math.degrees(extremes.fastest_at)
+        steepest = math.degrees(extremes.steepest_at)
+        torque = None if inertia is None else load + inertia * acceleration
+        return {
+            "input_angle": at.tolist(),
+            "time": None if time is None else time.tolist(),
+            "output_angle": np.degrees(moved.angle).tolist(),
+            "speed_ratio": moved.ratio.tolist(),
+            "output_speed": (moved.ratio * speed).tolist(),
+            "output_acceleration": acceleration.tolist(),
+            "output_torque": None if torque is None else torque.tolist(),
+            "input_torque": None if torque is None else (torque * moved.ratio).tolist(),
+            "extremes": {
+                "greatest_ratio": extremes.greatest,
+                "least_ratio": extremes.least,
+                "greatest_ratio_at": [fastest % 180.0, fastest % 180.0 + 180.0],
+                "least_ratio_at": [(fastest + 90.0) % 180.0, (fastest + 90.0) % 180.0 + 180.0],
+                "fluctuation": extremes.fluctuation,
+                "greatest_speed": extremes.greatest * steady,
+                "least_speed": extremes.least * steady,
+                "greatest_acceleration": peak,
+                "greatest_acceleration_at": sorted(
+                    (fastest + turn + sign * steepest) % 360.0 for turn in (0.0, 180.0) for sign in (-1.0, 1.0)
+                ),
+                "torques": None if inertia is None else [load - inertia * peak, load + inertia * peak],
+            },
+            "equivalent_angle": math.degrees(extremes.equivalent_angle),
+            "constant_velocity": extremes.fluctuation <= EVEN,
+            "largest_angle": self._largest_angle(),
+        }
+
+    def _largest_angle(self) -> float | None:
+        limits = self.limits
+        if limits is None:
+            return None
+        greatest = math.inf if limits.greatest_ratio is None else limits.greatest_ratio
+        found = angle_within(limits.least_ratio, greatest)
+        if limits.fluctuation is not None:
+            found = min(found, angle_of_fluctuation(limits.fluctuation))
+        return math.degrees(found)
+
+    @classmethod
+    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
+        """The same over a full turn of the input."""
+        return cls(mechanism=GivenUniversalJoint.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
+
+
+class JointExtremes(Answer):
+    """Extremes over a turn of an input at the stated speed, without acceleration."""
+
+    greatest_ratio: float
+    least_ratio: float
+    greatest_ratio_at: list[float] = Field(description="Input angles, degrees.")
+    least_ratio_at: list[float] = Field(description="Input angles, degrees.")
+    fluctuation: float = Field(description="(ω_max − ω_min)/ω_mean.")
+    greatest_speed: float
+    least_speed: float
+    greatest_acceleration: float = Field(description="Magnitude, rad/s².")
+    greatest_acceleration_at: list[float] = Field(description="Input angles, degrees.")
+    torques: list[float] | None = Field(description="Least and greatest of the output shaft; null without inertia.")
+
+
+class UniversalJointAnalysis(Answer):
+    """What universal joints do; degrees, rad/s, and the units of the stated inertia and torque."""
+
+    input_angle: list[float]
+    time: list[float] | None
+    output_angle: list[float] = Field(description="Rotation from where the output stands at input angle 0, degrees.")
+    speed_ratio: list[float] = Field(description="Output speed over input speed.")
+    output_speed: list[float]
+    output_acceleration: list[float]
+    output_torque: list[float] | None = Field(description="Load and inertia; null without inertia.")
+    input_torque: list[float] | None = Field(description="Without losses; null without inertia.")
+    extremes: JointExtremes
+    equivalent_angle: float = Field(description="Angle of the one joint that moves likewise, degrees.")
+    constant_velocity: bool = Field(description="Whether output and input have one speed at every instant.")
+    largest_angle: float | None = Field(description="Of one joint within `limits`, degrees; null without limits.")
+
+
+FAMILY = Family(UniversalJointRequest, UniversalJointAnalysis)
