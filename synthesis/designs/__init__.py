@@ -49,7 +49,7 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
-from synthesis.designs.path import CognateTriples, CurveSweep, PathDesign, PathMetrics, PathResult
+from synthesis.designs.path import CognateTriples, CurveSweep, GivenPivotSolutions, PathDesign, PathMetrics, PathResult
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -103,6 +103,7 @@ __all__ = [
     "GearboxDesign",
     "GearboxMechanism",
     "GearboxResult",
+    "GivenPivotSolutions",
     "Idler",
     "InvertedLinks",
     "InvertedSliderCrankMechanism",

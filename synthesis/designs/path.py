@@ -50,6 +50,15 @@ class PathDesign(LinkageDesign):
     metrics: PathMetrics
 
 
+class GivenPivotSolutions(Answer):
+    """What was computed of the 36 fourbars through five points on two given fixed pivots."""
+
+    computed: int = Field(description="Solutions found, real and complex; 36 where none is missing.")
+    real: int
+    on_one_circuit: int = Field(description="Real ones with all demanded points on one circuit.")
+    largest_residual: float = Field(description="Of the equations, with points and pivots of unit mean distance.")
+
+
 class CurveSweep(Answer):
     """What a match of whole curves has looked at."""
 
@@ -68,4 +77,7 @@ class PathResult(Result[PathDesign]):
     )
     sweep: CurveSweep | None = Field(
         default=None, exclude_if=nothing, description="For curves that are matched as a whole."
+    )
+    given_pivots: GivenPivotSolutions | None = Field(
+        default=None, exclude_if=nothing, description="For five points on two given fixed pivots."
     )

@@ -18,6 +18,7 @@ from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.continuation import follow, refine
 from synthesis.path import curve_match
+from synthesis.path.given_pivots import all_are_found, solve_given_pivots
 from synthesis.path.nine_point import Triples, all_triples
 from synthesis.path.nine_point_start import start
 from synthesis.path.nine_point_system import (
@@ -63,6 +64,8 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation."""
     if problem.matched:
         return curve_match.solve_curve_match(problem, progress)
+    if all_are_found(problem):
+        return solve_given_pivots(problem, progress)
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds

@@ -1,0 +1,98 @@
+"""Fourbars on two given fixed pivots whose coupler point goes through five points: the polynomial system.
+
+Everything is relative to the first point. A dyad has the fixed pivot a, given, and the moving pivot x in the first
+position; the coupler has turned by e^{iφⱼ} = 1 + sⱼ at point δⱼ, j = 1…4. With isotropic coordinates (each vector and
+its conjugate are two unknowns) the dyad keeps its length where
+
+    αβ + rβ + r̄α = 0,    α = δⱼ + x sⱼ,    β = δ̄ⱼ + x̄ s̄ⱼ,    r = x − a,    s̄ⱼ = −sⱼ/(1 + sⱼ)
+
+(Wampler, Morgan & Sommese 1992, eq. 6 with r no longer free): eight equations for x, x̄ of both dyads and four sⱼ.
+Eliminating each sⱼ leaves four quartics in four unknowns with at most 36 solutions (Morgan & Wampler 1990,
+doi:10.1115/1.2912641); for general points and pivots there are as many, none singular.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.numerics.continuation import SYSTEM
+from synthesis.numerics.elimination import factor, solve
+
+Complex = NDArray[np.complex128]
+
+SOLUTIONS = 36
+"""Solutions for general points and pivots."""
+
+UNKNOWNS, PARAMETERS, SCRATCH = 8, 12, 72
+"""x₁, x̄₁, x₂, x̄₂, s₁…s₄; δ₁…δ₄, their conjugates, a₁, ā₁, a₂, ā₂; and what the system needs to work with."""
+
+GROUPS = np.array([0, 0, 0, 0, 1, 1, 1, 1], np.int64)
+"""The vectors share a scale, and the turns do."""
+
+
+@njit(SYSTEM, cache=True, nogil=True)
+def five_point_system(
+    y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
+) -> int:
+    """The system, of the type that the continuation follows."""
+    matrix = work[:64].reshape((8, 8))
+    pivots = work[64:72].view(np.int64)
+    matrix[:] = 0.0
+    for j in range(4):
+        s = y[4 + j]
+        back = 1.0 / (1.0 + s)
+        s_back, slope = -s * back, -back * back
+        for dyad in range(2):
+            row, k = 2 * j + dyad, 2 * dyad
+            x, x_bar, a, a_bar = y[k], y[k + 1], p[8 + k], p[9 + k]
+            alpha, beta = p[j] + x * s, p[4 + j] + x_bar * s_back
+            by_alpha, by_beta = beta + x_bar - a_bar, alpha + x - a
+            matrix[row, k] = by_alpha * s + beta
+            matrix[row, k + 1] = by_beta * s_back + alpha
+            matrix[row, 4 + j] = by_alpha * x + by_beta * x_bar * slope
+            newton[row] = -(alpha * beta + (x - a) * beta + (x_bar - a_bar) * alpha)
+            tangent[row] = -(by_alpha * dp[j] + by_beta * dp[4 + j] - dp[8 + k] * beta - dp[9 + k] * alpha)
+    if not factor(matrix, pivots):
+        return 0
+    solve(matrix, pivots, newton)
+    solve(matrix, pivots, tangent)
+    return 1
+
+
+def residuals(y: Complex, p: Complex) -> NDArray[np.float64]:
+    """Largest |αβ + rβ + r̄α| of each solution, shape (...), for y of shape (..., 8)."""
+    s = y[..., 4:]
+    s_back = -s / (1.0 + s)
+    largest = np.zeros(y.shape[:-1])
+    for k in (0, 2):
+        x, x_bar, a, a_bar = y[..., k, None], y[..., k + 1, None], p[8 + k], p[9 + k]
+        alpha, beta = p[:4] + x * s, p[4:8] + x_bar * s_back
+        gaps = np.abs(alpha * beta + (x - a) * beta + (x_bar - a_bar) * alpha)
+        largest = np.maximum(largest, gaps.max(axis=-1))
+    return np.asarray(largest)
+
+
+def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
+    """Condition of the Jacobian at each solution, rows and columns scaled to their size: shape (solutions,)."""
+    jacobian = np.zeros((len(y), UNKNOWNS, UNKNOWNS), np.complex128)
+    s = y[:, 4:]
+    back = 1.0 / (1.0 + s)
+    s_back, slope = -s * back, -back * back
+    j = np.arange(4)
+    for dyad in range(2):
+        k = 2 * dyad
+        x, x_bar = y[:, k, None], y[:, k + 1, None]
+        alpha, beta = p[:4] + x * s, p[4:8] + x_bar * s_back
+        by_alpha, by_beta = beta + x_bar - p[9 + k], alpha + x - p[8 + k]
+        rows = 2 * j + dyad
+        jacobian[:, rows, k] = by_alpha * s + beta
+        jacobian[:, rows, k + 1] = by_beta * s_back + alpha
+        jacobian[:, rows, 4 + j] = by_alpha * x + by_beta * x_bar * slope
+    vectors = np.abs(y[:, :4]).max(axis=1)[:, None]
+    sizes = np.concatenate([np.repeat(vectors, 4, axis=1), np.abs(s) + 1e-300], axis=1)
+    jacobian *= sizes[:, None, :]
+    norms = np.abs(jacobian).max(axis=2)
+    jacobian /= np.where(norms > 0.0, norms, 1.0)[:, :, None]
+    return np.asarray(np.linalg.cond(jacobian))
