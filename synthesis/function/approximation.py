@@ -42,6 +42,9 @@ JITTER = 0.8
 SAME_START = 0.12
 """Starts differ by this much in the logarithm of some length, or in some angle."""
 
+DRAWN, TURNING_KEPT, WIDEST = 40_000, 4000, 100.0
+"""Random lengths where a link must turn through, those kept of them, and their widest link ratio."""
+
 STARTS, KEPT = 14, 6
 """Starts that are improved a little, and those of them that are improved to the end."""
 
@@ -100,10 +103,17 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
     for n, one in enumerate(first[:KEPT]):
         progress(0.5 + 0.4 * n / KEPT, f"candidate {n + 1}")
         better = improve(one.generator, one.sign, ROUNDS)
-        if not any(better.sign == k.sign and np.allclose(better.generator, k.generator, SAME, SAME) for k in optima):
+        if not any(_same(better, other) for other in optima):
             optima.append(better)
     optima.sort(key=lambda one: one.error)
     return Found([one for one in optima if math.isfinite(one.error)], len(pool), len(chosen))
+
+
+def _same(one: Approximation, other: Approximation) -> bool:
+    """Whether two optima are one; angles without full turns."""
+    gaps = one.generator - other.generator
+    gaps[3] -= math.tau * round(gaps[3] / math.tau)
+    return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator))))
 
 
 def _starts(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> tuple[Real, Real]:
@@ -120,10 +130,50 @@ def _starts(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> tup
                     found.append(_with_scales(many_exact(task.closure, *pairs, task.zeros), k, scale))
                 else:
                     found.append(_with_scales(family(task.closure, *pairs, task.zeros, rng), k, scale))
+    if None not in task.zeros and task.problem.aim == "least_squares":
+        # Only who states zeros waits for the import.
+        from synthesis.function.design_equation import least_design_error
+
+        for first in task.scales[0]:
+            for second in task.scales[1]:
+                best = least_design_error(task, limits, sum(first) / 2.0, sum(second) / 2.0)
+                if best is not None:
+                    found.append(best[None])
     pool = limits.contained(np.concatenate(found))
-    signs = task.samples().signs(pool)
     # The assembly that the sampled function lies in, by most of its places.
-    return pool, np.where(signs.sum(axis=1) >= 0.0, 1.0, -1.0)
+    signs = np.where(task.samples().signs(pool).sum(axis=1) >= 0.0, 1.0, -1.0)
+    if limits.shortest_link is None and not limits.turns_through:
+        return pool, signs
+    # Linkages that turn through are rare among those that meet points.
+    turning = _turning(task, limits, rng)
+    more = [_centred(task, turning, sign) for sign in (1.0, -1.0)]
+    return np.concatenate([pool, *more]), np.concatenate([signs, np.ones(len(turning)), -np.ones(len(turning))])
+
+
+def _turning(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> Real:
+    """Random generators whose link turns through that is to."""
+    reach = 0.5 * math.log(min(limits.ratio, WIDEST))
+    drawn = np.ones((DRAWN, STEPS))
+    drawn[:, :3] = np.exp(rng.uniform(-reach, reach, (DRAWN, 3)))
+    drawn[:, 3:5] = rng.uniform(-math.pi, math.pi, (DRAWN, 2))
+    for side, column in ((0, 5), (1, 6)):
+        choice = rng.integers(len(task.scales[side]), size=DRAWN)
+        both = np.array([_drawn(choices, DRAWN, rng) for choices in task.scales[side]])
+        drawn[:, column] = both[choice, np.arange(DRAWN)]
+        if task.zeros[side] is not None:
+            drawn[:, 3 + side] = task.zeros[side]
+    return np.asarray(drawn[limits.turning(drawn)][:TURNING_KEPT])
+
+
+def _centred(task: FunctionTask, generators: Real, sign: float) -> Real:
+    """Generators with the output's zero, where it is open, moved to where their mean error vanishes."""
+    centred = generators.copy()
+    if task.zeros[1] is None:
+        errors = task.samples().errors(generators, np.full(len(generators), sign))
+        errors = np.where(np.isfinite(errors), errors, 0.0)
+        mean = errors.mean(axis=1) if task.problem.slides else np.angle(np.exp(1j * errors).mean(axis=1))
+        centred[:, 4] += mean
+    return centred
 
 
 def _places(task: FunctionTask, count: int, rng: np.random.Generator) -> tuple[Real, Real]:
@@ -152,14 +202,17 @@ def _with_scales(found: Real, k: Real, scale: Real) -> Real:
 def _best_distinct(descent: _Descent, pool: Real, signs: Real) -> list[int]:
     """Starts with the least errors that differ from one another."""
     merit = descent.merits(pool, signs)
+    within = np.array([float(descent.limits.values(one)[0].max(initial=0.0)) <= 0.0 for one in pool])
     features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
     chosen: list[int] = []
-    for j in np.argsort(merit)[: 40 * STARTS]:
-        if not math.isfinite(merit[j]) or len(chosen) == STARTS:
-            break
-        gaps = np.abs(features[chosen] - features[j]).max(axis=1) if chosen else np.array([np.inf])
-        if gaps.min() > SAME_START:
-            chosen.append(int(j))
+    # Half of them from within all limits, if there are such: a descent comes into them, but not from everywhere.
+    for order, most in ((np.where(within, merit, np.inf), STARTS // 2), (merit, STARTS)):
+        for j in np.argsort(order)[: 40 * STARTS]:
+            if not math.isfinite(order[j]) or len(chosen) == most:
+                break
+            gaps = np.abs(features[chosen] - features[j]).max(axis=1) if chosen else np.array([np.inf])
+            if gaps.min() > SAME_START:
+                chosen.append(int(j))
     return chosen
 
 

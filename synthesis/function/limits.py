@@ -26,6 +26,9 @@ LOOKED_AT = 25
 INSIDE = 1e-7
 """Relative distance that is kept from every limit, so that rounding does not break it."""
 
+TURNING = 1e-4
+"""What a crank turns through with, in lengths of the shortest link: less would be a change point."""
+
 
 class Limits:
     """Inequalities g(generator) ≤ 0 of a task."""
@@ -70,6 +73,17 @@ class Limits:
         if self.slides:
             found[:, 2] = np.clip(found[:, 2], -self.longest, self.longest)
         return found
+
+    def turning(self, generators: Real) -> NDArray[np.bool_]:
+        """Which of many generators have the link turning through that is to, with some room; shape (k,)."""
+        a, b, c = generators[:, :3].T
+        if self.slides:
+            return np.asarray(a + np.abs(c) < b)
+        lengths = np.stack([np.ones_like(a), a, b, c])
+        shortest, total = lengths.argmin(axis=0), lengths.sum(axis=0)
+        excess = lengths.min(axis=0) + lengths.max(axis=0) - 0.5 * total
+        wanted = [0, 1] if self.shortest_link is None else [self.shortest_link]
+        return np.asarray((excess < -TURNING * lengths.min(axis=0)) & np.isin(shortest, wanted))
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
         """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, 7)."""
@@ -135,7 +149,7 @@ class Limits:
                 return []
             a, b, e = (float(x) for x in generator[:3])
             slope = a * _unit(0) - b * _unit(1)
-            return [((a + sign * e - b) / b + INSIDE, (slope + sign * _unit(2)) / b) for sign in (1.0, -1.0)]
+            return [((a + sign * e - b) / b + TURNING, (slope + sign * _unit(2)) / b) for sign in (1.0, -1.0)]
         lengths = [1.0, *(float(x) for x in generator[:3])]
         short = self.shortest_link
         if short is None:
@@ -144,11 +158,14 @@ class Limits:
             short = 1 if lengths[1] < 1.0 else 0
         slopes = [np.zeros(STEPS), *(lengths[j + 1] * _unit(j) for j in range(3))]
         total, total_slope = sum(lengths), np.sum(slopes, axis=0)
+        # In units of the shortest link, which may be short beside the others.
+        unit = lengths[short]
         rows = []
         for j in range(4):
             if j != short:
                 pair, slope = lengths[short] + lengths[j], slopes[short] + slopes[j]
-                rows.append(((2.0 * pair - total) / total + INSIDE, (2.0 * slope - total_slope) / total))
+                excess = (2.0 * pair - total) / unit
+                rows.append((excess + TURNING, (2.0 * slope - total_slope - excess * slopes[short]) / unit))
         return rows
 
 

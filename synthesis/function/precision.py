@@ -26,8 +26,9 @@ INDEPENDENT = 1e-11
 APART = 1e-6
 """Roots of the cubic that are nearer, as angles of their line's points, are not told apart with certainty."""
 
-POLISHES = 6
-"""Steps of Newton's method on the structural errors themselves, which meet the pairs to the last digits."""
+POLISHES, LONGEST = 6, 0.5
+"""Steps of Newton's method on the structural errors themselves, which meet the pairs to the last digits, and the most
+that a step changes."""
 
 
 class Exact(NamedTuple):
@@ -61,6 +62,13 @@ def left_over(rows: Real) -> tuple[Real, Real]:
     """Basis of what the equations leave, shape (..., 7 − r, 7), and how independent they are."""
     _, s, vh = np.linalg.svd(rows)
     return vh[..., rows.shape[-2] :, :], np.asarray(s[..., -1] / s[..., 0])
+
+
+def _left_at_least(rows: Real) -> Real:
+    """Basis of what every one of many sets of equations leaves, more where they are not independent."""
+    _, s, vh = np.linalg.svd(rows)
+    rank = int((s > INDEPENDENT * s[..., :1]).sum(axis=-1).max())
+    return np.asarray(vh[..., min(rank, UNKNOWNS - 1) :, :])
 
 
 def on_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDArray[np.bool_]]:
@@ -146,7 +154,7 @@ def family(
     rng: np.random.Generator,
 ) -> Real:
     """Random linkages through sets of fewer pairs, shape (m, n) each: results as of :func:`many_exact`."""
-    basis, _ = left_over(equations(closure, inputs, outputs, zeros))
+    basis = _left_at_least(equations(closure, inputs, outputs, zeros))
     count, left = basis.shape[:2]
     if None not in zeros:
         points = (rng.normal(size=(count, 1, left)) @ basis).reshape(count, 1, UNKNOWNS)
@@ -169,14 +177,14 @@ def polished(generators: Generators, dimensions: Real, free: NDArray[np.bool_]) 
     generators : Generators
         The pairs.
     dimensions : float, shape (7,)
-        A generator that meets them nearly, in one assembly.
+        A generator that meets them nearly, each in the assembly that it keeps.
     free : bool, shape (7,)
         Which of its numbers may move.
     """
-    signs = generators.signs(dimensions[None])[0]
+    signs = generators.signs(dimensions[None])
     least, best = np.inf, dimensions
     for _ in range(POLISHES):
-        errors = generators.errors(dimensions[None], np.sign(signs[:1]))[0]
+        errors = generators.errors(dimensions[None], signs)[0]
         size = float(np.abs(errors).max()) if np.isfinite(errors).all() else np.inf
         if not size < least:
             break
@@ -185,6 +193,6 @@ def polished(generators: Generators, dimensions: Real, free: NDArray[np.bool_]) 
         if not np.isfinite(jacobian).all():
             break
         step = np.zeros(STEPS)
-        step[free] = -np.linalg.lstsq(jacobian, errors, rcond=None)[0]
+        step[free] = np.clip(-np.linalg.lstsq(jacobian, errors, rcond=None)[0], -LONGEST, LONGEST)
         dimensions = generators.stepped(dimensions, step)
     return best

@@ -10,6 +10,7 @@ doi:10.1137/S0036142901398325). For two scales the sign changes of both conditio
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -24,20 +25,22 @@ Zeros = tuple[float | None, float | None]
 
 SIX = 6
 
-DEGREES = 64, 128, 256
-"""Degrees of the interpolation, one after another until it is good enough."""
+DEGREE, DEPTH = 32, 10
+"""Degree of the interpolation on a piece of the interval, and how often a piece is halved until that is enough."""
 
-RESOLVED = 1e-11
-"""Last coefficients of the interpolation, relative to the largest, at which it has converged."""
+RESOLVED, ROUNDING = 1e-9, 4e-15
+"""Last coefficients of the interpolation, relative to the largest, at which it has converged; and what rounding leaves
+of them, over the independence of the equations."""
 
-NEARLY_REAL = 1e-6
-"""Distance from the interval, as a share of it, at which a root is still looked at."""
-
-CLEAR = 1e-6
-"""Roots nearer to each other than this share of the interval are not told apart with certainty."""
+UNCLEAR = 1e-3
+"""Roots this near to each other or to the real axis, in half-lengths of their piece, are not told apart with certainty:
+the root of the interpolation's error, with room."""
 
 GRID = 120
 """Scales a side, logarithmically spaced, where two are open."""
+
+DIFFERENCE, NEWTON_STEPS, LONGEST_STEP = 1e-5, 8, 0.05
+"""Of the refinement of two scales: difference in the logarithm, steps, and their greatest length."""
 
 
 class Scaled(NamedTuple):
@@ -102,51 +105,50 @@ def one_scale(pairs: Scaling, limits: tuple[float, float], side: int, other: flo
     other : float
         The other side's scale.
     """
-    low, high = limits
 
     def at(x: Real) -> tuple[Real, Real, Real]:
-        open_, given = x, np.full_like(x, other)
-        return pairs.conditions(*((open_, given) if side == 0 else (given, open_)))
+        given = np.full_like(x, other)
+        return pairs.conditions(*((x, given) if side == 0 else (given, x)))
 
-    resolved = False
-    series: Real = np.zeros(1)
-    for degree in DEGREES:
-        nodes = chebyshev.chebpts1(degree + 1)
-        values = at(0.5 * (low + high) + 0.5 * (high - low) * nodes)[0][:, 0]
-        series = _fitted(nodes, values)
-        tail = float(np.abs(series[-4:]).max())
-        resolved = tail <= RESOLVED * float(np.abs(series).max())
-        if resolved:
-            break
-    roots = chebyshev.chebroots(series[: _last(series) + 1])
-    near = (np.abs(roots.imag) <= NEARLY_REAL) & (np.abs(roots.real) <= 1.0 + NEARLY_REAL)
-    x = np.unique(np.clip(roots.real[near], -1.0, 1.0))
-    apart = bool(np.all(np.diff(x) > CLEAR)) and not np.any(near & (roots.imag != 0.0))
-    scales = 0.5 * (low + high) + 0.5 * (high - low) * x
-    if not len(scales):
-        return Scaled(np.empty((0, 7)), 0, resolved)
-    _, v, independent = at(scales)
-    found = pairs.closure.dimensions(v)
-    both = (scales, np.full_like(scales, other))
-    columns = both if side == 0 else both[::-1]
-    found = np.column_stack([found, *columns])
+    roots, proved = _roots(lambda x: (at(x)[0][:, 0], at(x)[2]), limits)
+    if not len(roots):
+        return Scaled(np.empty((0, 7)), 0, proved)
+    found = pairs.closure.dimensions(at(roots)[1])
+    both = (roots, np.full_like(roots, other))
+    found = np.column_stack([found, *(both if side == 0 else both[::-1])])
     sound = np.isfinite(found[:, 0])
-    proved = resolved and apart and bool(np.all(independent > 1e-11))
     return Scaled(found[sound], int(np.count_nonzero(~sound)), proved)
 
 
-def _fitted(nodes: Real, values: Real) -> Real:
-    """Chebyshev coefficients of the interpolation at the nodes of the first kind, by their orthogonality."""
-    n = len(nodes)
-    series = 2.0 / n * np.cos(np.outer(np.arange(n), np.arccos(nodes))) @ values
-    series[0] *= 0.5
-    return np.asarray(series)
+def _roots(function: Callable[[Real], tuple[Real, Real]], limits: tuple[float, float]) -> tuple[Real, bool]:
+    """All roots in an interval of a function that comes with the independence of its equations.
 
-
-def _last(series: Real) -> int:
-    """The last coefficient above rounding."""
-    large = np.flatnonzero(np.abs(series) > 1e-15 * np.abs(series).max())
-    return max(int(large[-1]) if len(large) else 0, 1)
+    Returns
+    -------
+    roots : float, shape (k,)
+    proved : bool
+        Every piece is resolved and no root is unclear.
+    """
+    nodes = chebyshev.chebpts1(DEGREE + 1)
+    transform = 2.0 / len(nodes) * np.cos(np.outer(np.arange(len(nodes)), np.arccos(nodes)))
+    transform[0] *= 0.5
+    pieces, found, proved = [(*limits, 0)], [], True
+    while pieces:
+        low, high, depth = pieces.pop()
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        values, independent = function(middle + half * nodes)
+        series = transform @ values
+        allowed = max(RESOLVED, ROUNDING / max(float(independent.min()), 1e-300))
+        resolved = float(np.abs(series[-3:]).max()) <= allowed * float(np.abs(series).max())
+        if not resolved and depth < DEPTH:
+            pieces += [(low, middle, depth + 1), (middle, high, depth + 1)]
+            continue
+        large = np.flatnonzero(np.abs(series) > 0.1 * allowed * np.abs(series).max())
+        roots = chebyshev.chebroots(series[: max(int(large[-1]), 1) + 1]) if len(large) else np.empty(0)
+        roots = roots[(np.abs(roots.real) <= 1.0 + UNCLEAR) & (np.abs(roots.imag) <= UNCLEAR)]
+        proved &= resolved and not np.any(roots.imag != 0.0) and bool(np.all(np.diff(np.sort(roots.real)) > UNCLEAR))
+        found.append(middle + half * np.clip(roots.real, -1.0, 1.0))
+    return np.unique(np.concatenate(found)), proved
 
 
 def two_scales(
@@ -167,13 +169,25 @@ def two_scales(
         math.copysign(1.0, low) * np.geomspace(abs(low), abs(high), GRID) for low, high in (input_limits, output_limits)
     )
     at = np.stack(np.meshgrid(k, scale, indexing="ij"), axis=-1)
-    values, v, _ = pairs.conditions(at[..., 0], at[..., 1])
+    values, _, _ = pairs.conditions(at[..., 0], at[..., 1])
     positive = values > 0.0
     corners = np.stack([positive[:-1, :-1], positive[1:, :-1], positive[:-1, 1:], positive[1:, 1:]])
     crossed = np.all(corners.any(axis=0) & ~corners.all(axis=0), axis=-1)
     i, j = np.nonzero(crossed)
-    found = [np.column_stack([pairs.closure.dimensions(v[i, j]), at[i, j]])]
-    if len(extra):
-        found.append(np.column_stack([pairs.closure.dimensions(pairs.conditions(extra[:, 0], extra[:, 1])[1]), extra]))
-    both = np.concatenate(found)
-    return np.asarray(both[np.isfinite(both[:, 0])])
+    starts = np.sqrt(at[i, j] * at[i + 1, j + 1]) * np.sign(at[i, j])
+    both = np.concatenate([_refined(pairs, starts), extra])
+    found = np.column_stack([pairs.closure.dimensions(pairs.conditions(both[:, 0], both[:, 1])[1]), both])
+    return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def _refined(pairs: Scaling, scales: Real) -> Real:
+    """Newton's method in the logarithms of both scales, by differences, from many places at once; shape (k, 2)."""
+    ahead = np.exp(DIFFERENCE * np.eye(2))
+    for _ in range(NEWTON_STEPS):
+        moved = [scales * factor for factor in (ahead[0], 1.0 / ahead[0], ahead[1], 1.0 / ahead[1])]
+        here = pairs.conditions(scales[:, 0], scales[:, 1])[0]
+        there = [pairs.conditions(m[:, 0], m[:, 1])[0] for m in moved]
+        jacobian = np.stack([there[0] - there[1], there[2] - there[3]], axis=-1) / (2.0 * DIFFERENCE)
+        step = -np.einsum("kij,kj->ki", np.linalg.pinv(jacobian), here)
+        scales = scales * np.exp(np.clip(step, -LONGEST_STEP, LONGEST_STEP))
+    return scales

@@ -84,7 +84,10 @@ def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResu
         proved = _with_one_scale(task, harvest)
         return harvest.determined(proved, "one_scale")
     if missing == 0 and open_scales == 0:
-        return harvest.determined(_determined(task, harvest), "exact")
+        proved = _determined(task, harvest)
+        if harvest.passed or proved:
+            return harvest.determined(proved, "exact")
+        # Pairs of a linkage that moves as others do, a parallelogram's for example, do not determine it.
     _family(task, harvest, rng, progress)
     return harvest.searched("family")
 
@@ -181,7 +184,7 @@ def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
         count = DRAWN // len(choices)
         k, scale = (_drawn(limits, count, rng) for limits in (first, second))
         pairs = k[:, None] * task.inputs, scale[:, None] * task.outputs
-        if len(task.inputs) == most:
+        if len(task.inputs) == most and task.free[5:].any():
             members = many_exact(task.closure, *pairs, task.zeros)
         else:
             members = family(task.closure, *pairs, task.zeros, rng)
@@ -319,16 +322,17 @@ class _Harvest:
     def _key(self, design: FunctionDesign) -> tuple[bool, bool, float, float]:
         metrics = design.metrics
         by = self.problem.rank_by
+        approximates = self.problem.aim != "precision"
         if by == "transmission_angle":
             value = -metrics.min_transmission_angle
         elif by == "size":
             value = metrics.size
-        elif by == "accuracy" or (by == "quality" and self.problem.function is not None):
+        elif by == "accuracy" or (by == "quality" and (self.problem.function is not None or approximates)):
             value = self._error(design)
         else:
             value = -metrics.quality
-        if self.problem.aim == "precision" and self.problem.pairs is not None and by == "accuracy":
-            value = 0.0
+        if self.problem.pairs is not None and by == "accuracy" and not approximates:
+            value = 0.0  # all of them meet the pairs to rounding
         # Pairs as they were stated come before pairs on other scales.
         off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
         rescaled = self.problem.pairs is not None and max(off) > UNCHANGED

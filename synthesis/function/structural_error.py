@@ -15,8 +15,9 @@ Real = NDArray[np.float64]
 STEPS = 7
 """Numbers that a linkage and its scales have."""
 
-ERROR = 0.25
-"""Structural errors are wrapped into half a turn; beyond this many radians an approximation is none."""
+ERROR = 1.0
+"""Structural errors are wrapped into half a turn; beyond this many radians (or ranges of a slider) an approximation is
+none."""
 
 
 class Generators:
@@ -34,18 +35,19 @@ class Generators:
         self.slides, self.inputs, self.outputs = slides, inputs, outputs
 
     def errors(self, dimensions: Real, signs: Real) -> Real:
-        """Errors of generators of shape (k, 7) with assembly signs (k,): shape (k, n), NaN where one does not close."""
+        """Errors of generators of shape (k, 7) with assembly signs (k,) or (k, n): shape (k, n), NaN where none is."""
+        signs = signs if signs.ndim == dimensions.ndim else signs[..., None]
         a, b, c, start, zero, k, scale = (dimensions[..., j, None] for j in range(STEPS))
         theta = start + k * self.inputs
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", over="ignore"):
             if self.slides:
                 y = c - a * np.sin(theta)
-                s = a * np.cos(theta) + signs[..., None] * np.sqrt(b * b - y * y)
+                s = a * np.cos(theta) + signs * np.sqrt(b * b - y * y)
                 return np.asarray(s - zero - scale * self.outputs)
             pin = a * np.exp(1j * theta)
             f = np.abs(1.0 - pin)
             x = (f * f + (b - c) * (b + c)) / (2.0 * f)
-            joint = pin + (1.0 - pin) / f * (x + 1j * signs[..., None] * np.sqrt(b * b - x * x))
+            joint = pin + (1.0 - pin) / f * (x + 1j * signs * np.sqrt(b * b - x * x))
             return np.asarray(np.angle((joint - 1.0) * np.exp(-1j * (zero + scale * self.outputs))))
 
     def signs(self, dimensions: Real) -> Real:
@@ -59,6 +61,10 @@ class Generators:
 
     def derivatives(self, dimensions: Real, errors: Real) -> Real:
         """Of the errors of one generator by the steps: shape (n, 7)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self._derivatives(dimensions, errors)
+
+    def _derivatives(self, dimensions: Real, errors: Real) -> Real:
         a, b, c, start, zero, k, scale = dimensions
         theta = start + k * self.inputs
         if self.slides:

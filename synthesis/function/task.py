@@ -87,7 +87,10 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
         # Of an open zero only differences count, and small numbers are kept exact.
         given -= np.where([zero is None for zero in zeros], given[0], 0.0)
         inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)
-        choices = tuple([problem.scale_limits] if scale is None else [(scale, scale)] for scale in problem.scale_choice)
+        choices = tuple(
+            [problem.open_scale(side)] if scale is None else [(scale, scale)]
+            for side, scale in enumerate(problem.scale_choice)
+        )
         samples = inputs, outputs
         begins = 0.0, 0.0
     else:

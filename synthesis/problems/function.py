@@ -231,6 +231,14 @@ class FunctionProblem(LinkageProblem):
             return None, 1.0
         return (1.0, None) if beyond == 1 else (None, None)
 
+    def open_scale(self, side: int) -> tuple[float, float]:
+        """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""
+        low, high = self.scale_limits
+        assert self.pairs is not None
+        values = [(pair.input, pair.output)[side] for pair in self.pairs]
+        most = MOST_TURNED / (max(values) - min(values))
+        return low, max(min(high, most), low)
+
     @property
     def precision_shares(self) -> Real:
         """Places of the precision points, as shares of the interval of x."""

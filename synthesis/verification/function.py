@@ -348,7 +348,10 @@ def _structural_error(
         return None
     part = _Curve(*(values[known] for values in whole))
     extremes = curve_at(_extremes(lambda x: curve_at(x).errors, part))
-    rms = math.sqrt(float(np.mean(part.errors**2)))
+    # The mean over the range: the ends count half.
+    rms = math.sqrt(
+        float(np.trapezoid(part.errors**2, part.values) / np.ptp(part.values) if len(part.values) > 1 else 0)
+    )
     shown = _Curve(*(values[:: (DRIVEN - 1) // (SHOWN - 1)] for values in whole))
     shown = _Curve(*(values[np.isfinite(shown.errors)] for values in shown))
     return _stated(problem, extremes, shown, rms), bool(known.all())
@@ -424,7 +427,7 @@ def _dials_off(problem: FunctionProblem, dials: Dials, drive: _Drive) -> float:
         stated = problem.stated_zeros[k]
         if problem.pairs is not None:
             scale = problem.scale_choice[k]
-            low, high = problem.scale_limits
+            low, high = problem.open_scale(k)
             off.append(_outside(dial.scale, (low, high) if scale is None else (scale, scale)))
             begins = dial.scale * getattr(problem.pairs[0], side)
             first = getattr(problem.pairs[0], side)

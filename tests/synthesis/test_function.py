@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import Fourbar, SliderCrank, positions, slider_crank
+from synthesis.function.closure import FOURBAR
+from synthesis.function.precision import many_exact
 from synthesis.function.solver import solve_function
 from synthesis.problems import FunctionProblem
 
@@ -182,3 +184,307 @@ class TestPrecisionPoints:
                     (d.mechanism.links.crank, d.mechanism.links.coupler, -d.mechanism.offset) for d in result.designs
                 ]
                 assert any(np.allclose(one, (a, b, e), rtol=1e-6, atol=1e-6) for one in found)
+
+
+def scaled_pairs(rng, lengths_and_pairs):
+    """Pairs of a planted linkage on scales that are not told: six keep the input's."""
+    lengths, inputs, outputs = lengths_and_pairs
+    k, scale = rng.uniform(0.5, 2.0, 2)
+    k = 1.0 if len(inputs) == 6 else k
+    return lengths, pairs_of((inputs - inputs[0]) / k, (outputs - outputs[0]) / scale)
+
+
+class TestOpenScales:
+    @pytest.mark.parametrize("count", [6, 7])
+    def test_planted_linkages_come_back(self, count):
+        rng = np.random.default_rng(count)
+        for _ in range(6):
+            lengths, pairs = scaled_pairs(rng, planted_fourbar(rng, count))
+            result = solved(pairs=pairs, constraints=UNBOUNDED, max_designs=50)
+            assert holds(result, lengths, 1e-5)
+            for design in result.designs:
+                assert design.targets[-1].residual <= 1e-9
+
+    @pytest.mark.campaign
+    @pytest.mark.timeout(400)
+    @pytest.mark.parametrize("count", [6, 7])
+    def test_a_hundred_planted_linkages_come_back(self, count):
+        rng = np.random.default_rng(100 + count)
+        for n in range(100):
+            lengths, pairs = scaled_pairs(rng, planted_fourbar(rng, count))
+            result = solved(pairs=pairs, constraints=UNBOUNDED, max_designs=50)
+            assert holds(result, lengths, 1e-5), n
+
+    @pytest.mark.parametrize("count", [6, 7])
+    def test_pairs_on_their_own_scales_come_first(self, count):
+        rng = np.random.default_rng(20 + count)
+        for _ in range(3):
+            lengths, inputs, outputs = planted_fourbar(rng, count)
+            result = solved(pairs=pairs_of(inputs, outputs), constraints=UNBOUNDED, max_designs=1)
+            assert np.allclose(proportions(result.designs[0]), lengths, rtol=1e-6)
+
+    def test_one_open_scale_has_the_roots_that_a_fine_scan_shows(self):
+        # By another way: of every five of the six pairs all linkages, and whether the sixth is met.
+        rng = np.random.default_rng(5)
+        shown = 0
+        for _ in range(3):
+            _, pairs = scaled_pairs(rng, planted_fourbar(rng, 6))
+            result = solved(pairs=pairs, constraints=UNBOUNDED, max_designs=50, include_failed=True)
+            found = np.sort([design.dials.output.scale for design in result.designs])
+            inputs, outputs = np.radians([[p["input"] for p in pairs], [p["output"] for p in pairs]])
+            scales = np.geomspace(0.25, min(4.0, math.radians(359.0) / np.ptp(outputs)), 4001)
+            some = many_exact(FOURBAR, np.tile(inputs[:5], (4001, 1)), scales[:, None] * outputs[:5], (None, None))
+            at = scales[some[:, 5].astype(int)]
+            a, b, c, phi, psi = some[:, :5].T
+            gap = np.abs(1.0 + c * np.exp(1j * (psi + at * outputs[5])) - a * np.exp(1j * (phi + inputs[5])))
+            miss = (gap - b) / b
+            for scale in found:
+                near = np.abs(at / scale - 1.0) < 2e-3
+                assert miss[near].min() < 0.0 < miss[near].max()
+                shown += 1
+        assert shown >= 3
+
+    def test_a_slider_crank_with_the_input_on_an_open_scale(self):
+        rng = np.random.default_rng(8)
+        for _ in range(5):
+            a, b, e = 10.0, rng.uniform(15.0, 30.0), rng.uniform(-3.0, 3.0)
+            inputs = 20.0 + 110.0 * (np.arange(6) + rng.uniform(-0.2, 0.2, 6)) / 5.0
+            travel = slider_crank.positions(SliderCrank(0.0, 1j * e, 0.0, a, b), np.radians(inputs)).travel
+            stated = pairs_of((inputs - inputs[0]) / 1.3, travel)
+            result = solved(mechanism="slider_crank", pairs=stated, constraints=UNBOUNDED, max_designs=50)
+            found = [(d.mechanism.links.crank, d.mechanism.links.coupler, -d.mechanism.offset) for d in result.designs]
+            assert any(np.allclose(one, (a, b, e), rtol=1e-5, atol=1e-5) for one in found)
+
+
+def measured(design, problem_task, shares):
+    """Structural error in degrees at shares of the range, by the triangle A B O4 and the dials."""
+    m, dials = design.mechanism, design.dials
+    (low, high), name = problem_task["function"]["x"], problem_task["function"]["name"]
+    x = low + (high - low) * shares
+    y = {
+        "logarithm": np.log10,
+        "power": lambda x: x ** problem_task["function"].get("exponent", 1.0),
+        "sine": lambda x: np.sin(np.radians(x)),
+        "exponential": np.exp,
+        "reciprocal": lambda x: 1.0 / x,
+        "tangent": lambda x: np.tan(np.radians(x)),
+    }[name](x)
+    o2, o4 = complex(*m.fixed_pivots.input), complex(*m.fixed_pivots.output)
+    theta = np.radians(dials.input.place + dials.input.scale * (x - dials.input.at))
+    away = o4 - o2 - m.links.input * np.exp(1j * theta)
+    f = np.abs(away)
+    corner = np.arccos((f**2 + m.links.output**2 - m.links.coupler**2) / (2.0 * f * m.links.output))
+    output = np.angle(-away) + (-corner if m.assembly == "open" else corner)
+    wanted = np.radians(dials.output.place + dials.output.scale * (y - dials.output.at))
+    return np.degrees(np.angle(np.exp(1j * (output - wanted))))
+
+
+class TestApproximations:
+    @pytest.mark.slow
+    @pytest.mark.parametrize("case", CASES, ids=lambda case: case["id"])
+    def test_the_classical_tasks(self, case):
+        task = task_of(case)
+        exact, square, minimax = (
+            solved(**task, criterion=criterion).designs[0] for criterion in ("precision", "least_squares", "minimax")
+        )
+        assert minimax.structural_error.max <= 1.01 * case["reference"]["value"]
+        # Five free numbers, and so six extremes of one size.
+        assert minimax.structural_error.alternations >= 6
+        shares = np.linspace(0.0, 1.0, 1001)
+        worst, mean = {}, {}
+        for name, design in (("exact", exact), ("square", square), ("minimax", minimax)):
+            errors = measured(design, task, shares)
+            worst[name], mean[name] = np.abs(errors).max(), math.sqrt(np.trapezoid(errors**2, shares))
+            assert worst[name] == pytest.approx(design.structural_error.max, rel=2e-3)
+            assert mean[name] == pytest.approx(design.structural_error.rms, rel=2e-3)
+            assert design.dials.input.scale * (task["function"]["x"][1] - task["function"]["x"][0]) == pytest.approx(
+                task["input_range"]
+            )
+        assert worst["minimax"] <= worst["exact"]
+        assert worst["minimax"] <= worst["square"]
+        assert mean["square"] <= mean["exact"]
+        assert mean["square"] <= mean["minimax"]
+
+    def test_with_zeros_given_four_extremes(self):
+        task = task_of(CASES[3])
+        design = solved(**task, zeros={"input": 240.0, "output": 220.0}).designs[0]
+        assert design.structural_error.alternations >= 4
+        assert design.mechanism.reference_input_angle % 360.0 == pytest.approx(240.0)
+        square = solved(**task, zeros={"input": 240.0, "output": 220.0}, criterion="least_squares").designs[0]
+        assert square.structural_error.rms <= design.structural_error.rms
+        assert len({round(d.mechanism.links.coupler, 6) for d in [square]}) == 1
+
+    @pytest.mark.parametrize("sign", [1.0, -1.0])
+    def test_either_direction_is_tried_where_it_is_open(self, sign):
+        # The optima of both directions differ three times.
+        either = solved(**task_of(CASES[0]), either_direction=True)
+        given = solved(**{**task_of(CASES[0]), "output_range": sign * 60.0})
+        there = [d for d in either.designs if d.metrics.output_range * sign > 0.0]
+        assert there[0].structural_error.max == pytest.approx(given.designs[0].structural_error.max, rel=1e-3)
+        assert either.designs[0].metrics.output_range < 0.0
+        assert either.designs[0].structural_error.max == pytest.approx(0.00102, rel=0.005)
+
+    @pytest.mark.slow
+    def test_a_limit_on_the_link_ratio_is_a_part_of_the_task(self):
+        # x² from 0 runs to links without end: the more is allowed the smaller the error.
+        errors = []
+        for ratio in (10.0, 100.0, 1000.0):
+            result = solved(
+                function={"name": "power", "exponent": 2.0, "x": [0.0, 1.0]},
+                input_range=90.0,
+                output_range=90.0,
+                constraints={"max_link_ratio": ratio},
+            )
+            for design in result.designs:
+                assert design.metrics.link_ratio <= ratio * (1.0 + 1e-9)
+            errors.append(result.designs[0].structural_error.max)
+        assert errors[0] > 1.5 * errors[1]
+        assert errors[1] > 1.2 * errors[2]
+
+    @pytest.mark.slow
+    def test_limits_hold(self):
+        limits = {"max_link_ratio": 5.0, "min_transmission_angle": 50.0}
+        task = {**task_of(CASES[0]), "constraints": limits}
+        for criterion in ("least_squares", "minimax"):
+            for design in solved(**task, criterion=criterion).designs:
+                assert design.metrics.link_ratio <= 5.0 * (1.0 + 1e-9)
+                assert design.metrics.min_transmission_angle >= 50.0 * (1.0 - 1e-9)
+        crank = solved(**{**task, "constraints": {"grashof": "crank_rocker"}}).designs[0]
+        assert crank.metrics.grashof == "crank_rocker"
+
+    def test_slider_cranks_alternate_too(self):
+        result = solved(
+            mechanism="slider_crank",
+            function={"name": "logarithm", "x": [1.0, 10.0]},
+            input_range=80.0,
+            output_range=50.0,
+        )
+        assert result.designs[0].structural_error.alternations >= 6
+        assert result.designs[0].structural_error.max <= 0.0081
+        assert result.designs[0].metrics.output_range == pytest.approx(50.0)
+
+    def test_pairs_beyond_what_can_be_met_are_followed(self):
+        rng = np.random.default_rng(4)
+        lengths, inputs, outputs = planted_fourbar(rng, 12)
+        noisy = outputs + rng.normal(0.0, 0.05, 12)
+        for criterion in ("least_squares", "minimax"):
+            design = solved(pairs=pairs_of(inputs, noisy), criterion=criterion, constraints=UNBOUNDED).designs[0]
+            assert design.structural_error.rms < 0.06
+        exact = solved(pairs=pairs_of(inputs, outputs), criterion="least_squares", constraints=UNBOUNDED).designs[0]
+        assert exact.structural_error.max < 1e-4
+        assert np.allclose(proportions(exact), lengths, rtol=1e-2)
+
+    def test_a_table_is_followed_as_the_function_that_it_lists(self):
+        x = np.linspace(1.0, 4.0, 61)
+        table = {"name": "table", "points": [{"x": float(v), "y": float(v**1.5)} for v in x]}
+        one = solved(**{**task_of(CASES[1]), "function": table}).designs[0]
+        other = solved(**task_of(CASES[1])).designs[0]
+        assert one.structural_error.max == pytest.approx(other.structural_error.max, abs=2e-4)
+
+    def test_open_ranges_stay_within_their_limits(self):
+        result = solved(function={"name": "logarithm", "x": [1.0, 2.0]}, range_limits=[50.0, 100.0])
+        for design in result.designs:
+            assert 50.0 - 1e-6 <= abs(design.metrics.input_rotation) <= 100.0 + 1e-6
+            assert 50.0 - 0.01 <= abs(design.metrics.output_range) <= 100.0 + 0.01
+
+    def test_the_same_seed_gives_the_same_answer(self):
+        task = {**task_of(CASES[3]), "seed": 5}
+        assert solved(**task).model_dump() == solved(**task).model_dump()
+
+
+class TestPlaceAndSize:
+    @pytest.mark.parametrize(("origin", "size"), [(0.0, 1e-6), (1e6, 1.0), (-1e5, 1e5)])
+    def test_the_pivots_are_where_they_are_stated(self, origin, size):
+        pivots = {"input": [origin, origin], "output": [origin + size, origin + size]}
+        lengths, inputs, outputs = planted_fourbar(np.random.default_rng(2), 5)
+        result = solved(pairs=pairs_of(inputs, outputs), fixed_pivots=pivots, constraints=UNBOUNDED)
+        assert any(np.allclose(proportions(design), lengths, rtol=1e-5) for design in result.designs)
+        assert result.designs[0].mechanism.fixed_pivots.input == (origin, origin)
+
+    def test_sizes_and_regions_are_kept(self):
+        task = task_of(CASES[3])
+        limits = {"link_length": {"min": 20.0, "max": 90.0}}
+        links = solved(**{**task, "constraints": limits}).designs[0].mechanism.links
+        assert min(links.ground, links.input, links.coupler, links.output) >= 20.0 * (1.0 - 1e-9)
+        assert max(links.ground, links.input, links.coupler, links.output) <= 90.0 * (1.0 + 1e-9)
+        region = {"x": [-10.0, -5.0], "y": [3.0, 4.0]}
+        pivots = solved(**{**task, "constraints": {"fixed_pivot_region": region}}).designs[0].mechanism.fixed_pivots
+        assert -10.0 <= pivots.input[0] < pivots.output[0] <= -5.0
+
+
+REFUSED = [
+    ({}, "/pairs"),
+    ({"pairs": [(0, 0), (0, 5), (9, 9)]}, "/pairs/1/input"),
+    ({"pairs": [(0, 0), (20, 5), (10, 9)]}, "/pairs/2/input"),
+    ({"pairs": [(0, 5), (20, 5), (30, 5)]}, "/pairs"),
+    ({"pairs": [(0, 0), (200, 5), (400, 9)]}, "/pairs"),
+    ({"pairs": [(float(k), float(k * k)) for k in range(9)], "criterion": "precision"}, "/pairs"),
+    ({"pairs": [(0, 0), (10, 5), (20, 9)], "input_range": 60.0}, "/input_range"),
+    ({"pairs": [(0, 0), (10, 5)], "mechanism": "slider_crank", "scales": {"input": 1.0}}, "/scales/output"),
+    ({"function": {"name": "logarithm", "x": [0.0, 2.0]}}, "/function/x"),
+    ({"function": {"name": "tangent", "x": [0.0, 90.0]}}, "/function/x"),
+    ({"function": {"name": "reciprocal", "x": [-1.0, 2.0]}}, "/function/x"),
+    ({"function": {"name": "power", "exponent": 0.5, "x": [-1.0, 2.0]}}, "/function/x"),
+    ({"function": {"name": "power", "exponent": -1.0, "x": [-1.0, 2.0]}}, "/function/x"),
+    ({"function": {"name": "power", "x": [1.0, 2.0]}}, "/function/exponent"),
+    ({"function": {"name": "sine"}}, "/function/x"),
+    ({"function": {"name": "exponential", "x": [-1e5, 1e5]}}, "/function/x"),
+    ({"function": {"name": "exponential", "base": 1.0, "x": [0.0, 1.0]}}, "/function/base"),
+    ({"function": {"name": "sine", "exponent": 2.0, "x": [0.0, 1.0]}}, "/function/exponent"),
+    ({"function": {"name": "linear", "x": [1e9 - 1e-7, 1e9]}}, "/function/x"),
+    ({"function": {"name": "table", "points": [(1, 1), (3, 1), (2, 3)]}}, "/function/points/2/x"),
+    ({"function": {"name": "table", "points": [(1, 1), (2, 1), (3, 1)]}}, "/function/x"),
+    ({"function": {"name": "table", "points": [(1, 1), (2, 2), (3, 1)], "x": [0.0, 2.0]}}, "/function/x"),
+    ({"function": {"name": "linear", "x": [0.0, 1.0]}, "input_range": 360.0}, "/input_range"),
+    ({"function": {"name": "linear", "x": [0.0, 1.0]}, "output_range": 0.0}, "/output_range"),
+    ({"function": {"name": "linear", "x": [0.0, 1.0]}, "mechanism": "slider_crank"}, "/output_range"),
+    (
+        {"function": {"name": "sine", "x": [0.0, 9.0]}, "criterion": "minimax", "precision_points": 3},
+        "/precision_points",
+    ),
+    (
+        {"function": {"name": "sine", "x": [0.0, 9.0]}, "input_range": 9.0, "output_range": 9.0, "precision_points": 6},
+        "/precision_points",
+    ),
+    ({"function": {"name": "sine", "x": [0.0, 9.0]}, "scales": {"input": 1.0}}, "/scales"),
+    ({"function": {"name": "sine", "x": [0.0, 9.0]}, "range_limits": [-5.0, 20.0]}, "/range_limits"),
+    ({"pairs": [(0, 0), (10, 5)], "fixed_pivots": {"input": [1.0, 1.0], "output": [1.0, 1.0]}}, "/fixed_pivots/output"),
+]
+
+
+@pytest.mark.parametrize(("fields", "path"), REFUSED, ids=lambda value: value if isinstance(value, str) else "")
+def test_what_cannot_be_meant_is_refused_at_its_field(fields, path):
+    stated = json.loads(json.dumps(fields))
+    if "pairs" in stated:
+        stated["pairs"] = [{"input": float(x), "output": float(y)} for x, y in stated["pairs"]]
+    if "points" in stated.get("function", {}):
+        stated["function"]["points"] = [{"x": float(x), "y": float(y)} for x, y in stated["function"]["points"]]
+    problem = FunctionProblem(kind="function", **stated)
+    assert path in [fault.path for fault in problem.contradictions()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"function": {"name": "linear", "x": [0.0, 1.0]}, "input_range": 90.0, "output_range": 90.0},
+        {
+            "function": {"name": "linear", "x": [0.0, 1.0]},
+            "input_range": 90.0,
+            "output_range": 90.0,
+            "precision_points": 5,
+        },
+        {"pairs": [(0.0, 0.0), (1e-3, 1e-3), (2e-3, 4e-3)]},
+        {"pairs": [(0.0, 0.0), (90.0, 0.0), (180.0, 1.0)]},
+        {"function": {"name": "sine", "x": [0.0, 360.0]}, "input_range": 90.0, "output_range": 90.0},
+        {"function": {"name": "power", "exponent": 50.0, "x": [0.0, 1.0]}, "input_range": 90.0, "output_range": 90.0},
+        {"function": {"name": "logarithm", "x": [1.0, 2.0]}, "input_range": 0.02, "output_range": 0.02},
+        {"function": {"name": "logarithm", "x": [1.0, 2.0]}, "input_range": 350.0, "output_range": 350.0},
+    ],
+)
+def test_what_is_hard_is_answered_and_verified(fields):
+    if "pairs" in fields:
+        fields = {"pairs": pairs_of(*zip(*fields["pairs"], strict=True))}
+    result = solved(**fields)
+    assert all(design.verification.passed for design in result.designs)
+    assert result.summary
