@@ -38,6 +38,9 @@ TAIL = 1e-11
 OFF_LINE = 1e-3
 """Roots nearer than this to the real segment are tried: rounding moves double ones off it."""
 
+BRACKET = 2e-14
+"""Roots are enclosed to this, radians: some units of the last place of an input."""
+
 DEPTH = 40
 """Halvings of a segment at most."""
 
@@ -264,7 +267,7 @@ class Elimination:
         low, high, start = points[:-1][change], points[1:][change], values[:-1][change] > 0.0
         if not len(low):
             return []
-        for _ in range(60):
+        while (high - low).max() > BRACKET:
             middle = 0.5 * (low + high)
             same = (self._real(middle, choice)[level] > 0.0) == start
             low, high = np.where(same, middle, low), np.where(same, high, middle)
