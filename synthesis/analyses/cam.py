@@ -21,7 +21,7 @@ from kinematics.cam.profile import even_angles
 from kinematics.cam.response import FollowerTrain, Response
 from kinematics.errors import DimensionError
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import Run, StatedMotion, Sweep
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam, NonNegative
@@ -117,13 +117,7 @@ class CamAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = []
-        if self.motion.speed is not None and self.motion.speed_rpm is not None:
-            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
-        if isinstance(self.motion, Run) and not 0.0 <= self.motion.time.end - self.motion.time.start <= 9999 * (
-            self.motion.time.step
-        ):
-            found.append(("/motion/time", "the run must end after its start, in at most 10000 positions"))
+        found = self.motion.faults()
         if self.train is not None and self.motion.rate <= 0.0:
             found.append(("/motion/speed", "a vibration needs a speed that is positive"))
         return found

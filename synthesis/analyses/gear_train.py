@@ -17,7 +17,7 @@ from pydantic import ConfigDict, Field
 from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer, Ratio
 from synthesis.designs.gear_train import MeshGeometry
 from synthesis.gear_train.verification import mesh_geometries
@@ -105,15 +105,7 @@ class GearTrainAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = []
-        if self.motion.speed is not None and self.motion.speed_rpm is not None:
-            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
-        if isinstance(self.motion, Run):
-            span = self.motion.time
-            if span.end < span.start:
-                found.append(("/motion/time/end", "the end lies before the start"))
-            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        found = self.motion.faults()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
                 found.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))

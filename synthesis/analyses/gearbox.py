@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.gear.gearbox import layshaft_ratios, spindle_speeds
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
 from synthesis.problems import Statement
 
@@ -108,19 +108,6 @@ class GearboxAnalysis(Answer):
     speeds: list[EngagedSpeed] = Field(description="Everything that can be engaged, slowest output first.")
 
 
-def _motion_faults(motion: StatedMotion) -> list[tuple[str, str]]:
-    found = []
-    if motion.speed is not None and motion.speed_rpm is not None:
-        found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
-    if isinstance(motion, Run):
-        span = motion.time
-        if span.end < span.start:
-            found.append(("/motion/time/end", "the end lies before the start"))
-        elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-            found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
-    return found
-
-
 class GearboxAnalysisRequest(AnalysisRequest):
     """A machine-tool gearbox, the pairs that are engaged, and how the input turns."""
 
@@ -151,7 +138,7 @@ class GearboxAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = _motion_faults(self.motion)
+        found = self.motion.faults()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
             found.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
@@ -207,7 +194,7 @@ class LayshaftAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = _motion_faults(self.motion)
+        found = self.motion.faults()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
                 found.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))

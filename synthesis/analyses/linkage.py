@@ -14,7 +14,7 @@ from pydantic import ConfigDict, Field, TypeAdapter
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
-from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.designs import Answer
 from synthesis.mechanisms import GivenMechanism, MechanismError
@@ -56,16 +56,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
-        found = []
-        if self.motion.speed is not None and self.motion.speed_rpm is not None:
-            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
-        if isinstance(self.motion, Run):
-            span = self.motion.time
-            if span.end < span.start:
-                found.append(("/motion/time/end", "the end lies before the start"))
-            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
-        return found
+        return self.motion.faults()
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""

@@ -32,6 +32,12 @@ class _Motion(Statement):
             return self.speed
         return 1.0 if self.speed_rpm is None else self.speed_rpm * RAD_PER_S
 
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows: (JSON pointer in the request, detail)."""
+        if self.speed is not None and self.speed_rpm is not None:
+            return [("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both")]
+        return []
+
 
 class Sweep(_Motion):
     """Equal steps of the input from one angle to another, both included."""
@@ -71,6 +77,15 @@ class Run(_Motion):
 
     time: TimeSpan
     at: Number = Field(default=0.0, description="Input angle at time 0, degrees.")
+
+    def faults(self) -> list[tuple[str, str]]:
+        """A run backwards, or of too many positions, beside what every motion may have."""
+        found, span = super().faults(), self.time
+        if span.end < span.start:
+            found.append(("/motion/time/end", "the end lies before the start"))
+        elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
+            found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        return found
 
     def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs (degrees, or lengths along the input ``slide``), speeds and times."""

@@ -17,7 +17,7 @@ from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speeds
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import MOST_POSITIONS, Run, StatedMotion, Sweep
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
 from synthesis.problems import Flag, Number, Statement
 
@@ -144,15 +144,7 @@ class PlanetaryAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.mechanism.faults()
-        if self.motion.speed is not None and self.motion.speed_rpm is not None:
-            found.append(("/motion/speed_rpm", "give the speed in rad/s or in revolutions a minute, not both"))
-        if isinstance(self.motion, Run):
-            span = self.motion.time
-            if span.end < span.start:
-                found.append(("/motion/time/end", "the end lies before the start"))
-            elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-                found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        found = [*self.mechanism.faults(), *self.motion.faults()]
         return found or self._unknown_bodies()
 
     def _unknown_bodies(self) -> list[tuple[str, str]]:

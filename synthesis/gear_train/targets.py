@@ -63,21 +63,9 @@ class Target:
         """The number itself where it is rational."""
         return self.factor if self.pi == self.e == 0 and self.radicand == 1 else None
 
-    @lru_cache(maxsize=256)  # noqa: B019  (values, not owners: equal targets share their bounds)
     def enclosure(self, bits: int) -> tuple[Fraction, Fraction]:
         """Lower and upper bound, about 2^-bits of the number apart."""
-        low = high = self.factor
-        for bounds, power in ((_pi, self.pi), (_e, self.e)):
-            below, above = (Fraction(bound, 1 << bits) for bound in bounds(bits))
-            if power < 0:
-                below, above = above, below
-            low, high = low * below**power, high * above**power
-        if self.radicand != 1:
-            scale = 1 << (2 * bits)
-            floor = math.isqrt(self.radicand.numerator * self.radicand.denominator * scale)
-            unit = self.radicand.denominator << bits
-            low, high = low * Fraction(floor, unit), high * Fraction(floor + 1, unit)
-        return low, high
+        return _enclosure(self, bits)
 
     def compared(self, ratio: Fraction) -> int:
         """Sign of target − ratio, decided in exact arithmetic."""
@@ -130,19 +118,38 @@ class Target:
                 return 0.0
             bits *= 4
 
-    @lru_cache(maxsize=256)  # noqa: B019
     def parts(self) -> tuple[float, float]:
         """The number as an unevaluated sum of two floats, good to 2^-105 of it."""
-        if self.rational is not None:
-            value = self.rational
-        else:
-            low, high = self.enclosure(4 * _SIZE)
-            value = (low + high) / 2
-        head = float(value)
-        return head, float(value - Fraction(head))
+        return _parts(self)
 
     def __float__(self) -> float:
         return self.parts()[0]
+
+
+@lru_cache(maxsize=256)
+def _enclosure(target: Target, bits: int) -> tuple[Fraction, Fraction]:
+    low = high = target.factor
+    for bounds, power in ((_pi, target.pi), (_e, target.e)):
+        below, above = (Fraction(bound, 1 << bits) for bound in bounds(bits))
+        if power < 0:
+            below, above = above, below
+        low, high = low * below**power, high * above**power
+    if target.radicand != 1:
+        scale = 1 << (2 * bits)
+        floor = math.isqrt(target.radicand.numerator * target.radicand.denominator * scale)
+        unit = target.radicand.denominator << bits
+        low, high = low * Fraction(floor, unit), high * Fraction(floor + 1, unit)
+    return low, high
+
+
+@lru_cache(maxsize=256)
+def _parts(target: Target) -> tuple[float, float]:
+    value = target.rational
+    if value is None:
+        low, high = target.enclosure(4 * _SIZE)
+        value = (low + high) / 2
+    head = float(value)
+    return head, float(value - Fraction(head))
 
 
 def parse_target(stated: float | str) -> tuple[int, Target]:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from kinematics.gear.gearbox import preferred_numbers
-from synthesis.designs.base import Search
 from synthesis.designs.gearbox import (
     GearboxDesign,
     GearboxMechanism,
@@ -17,6 +16,7 @@ from synthesis.designs.gearbox import (
     GearPairTeeth,
     StructureVerdict,
 )
+from synthesis.exhaustive import sifted
 from synthesis.gearbox.front import Choice, best_choices
 from synthesis.gearbox.stages import Options, StageLimits, stage_options
 from synthesis.gearbox.structures import Group, Structure, formula, spread, structures
@@ -67,26 +67,18 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
         choices[groups], count = _choices(problem, groups, ratio, within)
         covered += count
     made = []
-    for groups, found in choices.items():
+    for groups, front in choices.items():
         orders = [structure for structure in tried if tuple(sorted(structure)) == groups]
-        made += [_ordered(choice, groups, orders) for choice in found]
+        made += [_ordered(choice, groups, orders) for choice in front]
     made.sort(key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque))
     designs = [_design(problem, one) for one in made[: problem.max_designs]]
-    passed = [design for design in designs if design.verification.passed]
-    failed = [design for design in designs if not design.verification.passed]
-    rejected = {"outranked": covered - len(designs), "verification": len(failed)}
+    unsearched = _unsearched(problem, tried)
+    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)}, complete=not unsearched)
     progress(1.0, "done")
     return GearboxResult(
-        designs=[*passed, *failed] if problem.include_failed else passed,
-        search=Search(
-            method="exhaustive",
-            complete=not failed and not _unsearched(problem, tried),
-            candidates=covered,
-            accepted=len(passed),
-            rejected={reason: count for reason, count in rejected.items() if count},
-            seed=problem.seed,
-        ),
-        summary=_summary(problem, tried, passed, covered),
+        designs=found.returned,
+        search=found.search,
+        summary=_summary(problem, tried, found.passed, covered) + unsearched,
         progression_ratio=ratio,
         structures=[_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
     )
@@ -203,16 +195,15 @@ def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
 
 def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
     count = problem.speeds.count
-    limit = _unsearched(problem, tried)
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
     if not passed:
         return (
             f"None of {len(tried)} structures with {covered:,} combinations of tooth numbers keeps all {count} speeds "
-            f"within {100.0 * problem.widest:.3g} % and the limits.{limit}"
+            f"within {100.0 * problem.widest:.3g} % and the limits."
         )
     first = passed[0]
     return (
         f"{first.mechanism.formula} keeps {count} speeds within {100.0 * first.metrics.max_error:.3g} %, the best of "
-        f"{len(tried)} structures with {covered:,} combinations of tooth numbers.{limit}"
+        f"{len(tried)} structures with {covered:,} combinations of tooth numbers."
     )

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.gearbox import layshaft_ratios
-from synthesis.designs.base import Search
 from synthesis.designs.gear_train import Ratio
 from synthesis.designs.gearbox import (
     GearPairTeeth,
@@ -26,6 +25,7 @@ from synthesis.designs.gearbox import (
     ParetoLayshaft,
     ReverseGear,
 )
+from synthesis.exhaustive import sifted
 from synthesis.kinds import Progress
 from synthesis.layshaft_gearbox.verification import PASSING, measure, verify
 from synthesis.planetary_train.mesh_limits import external_sound
@@ -81,28 +81,19 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
         progress(k / len(sums), f"tooth sum {size}")
         level = _level(problem, size)
         covered += level.covered
-        found = _of_level(problem, size, level, problem.max_designs)
-        boxes = sorted([*boxes, *found])[: problem.max_designs]
-        best += found[:1]
+        own = _of_level(problem, size, level, problem.max_designs)
+        boxes = sorted([*boxes, *own])[: problem.max_designs]
+        best += own[:1]
     limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
     ranked = boxes if problem.rank_by == "error" else best
     chosen = [box for box in ranked if limit is None or box.error <= limit][: problem.max_designs]
     designs = [_design(problem, box) for box in chosen]
-    passed = [design for design in designs if design.verification.passed]
-    failed = [design for design in designs if not design.verification.passed]
-    rejected = {"outranked": covered - len(designs), "verification": len(failed)}
+    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)})
     progress(1.0, "done")
     return LayshaftResult(
-        designs=[*passed, *failed] if problem.include_failed else passed,
-        search=Search(
-            method="exhaustive",
-            complete=not failed,
-            candidates=covered,
-            accepted=len(passed),
-            rejected={reason: count for reason, count in rejected.items() if count},
-            seed=problem.seed,
-        ),
-        summary=_summary(problem, passed, boxes, covered),
+        designs=found.returned,
+        search=found.search,
+        summary=_summary(problem, found.passed, boxes, covered),
         pareto=_front(best),
     )
 

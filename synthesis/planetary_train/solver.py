@@ -13,7 +13,6 @@ from fractions import Fraction
 import numpy as np
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from synthesis.designs.base import Search
 from synthesis.designs.gear_train import Ratio
 from synthesis.designs.planetary_train import (
     ParetoPlanetaryTrain,
@@ -22,6 +21,7 @@ from synthesis.designs.planetary_train import (
     PlanetaryResult,
     PlanetPlaces,
 )
+from synthesis.exhaustive import sifted
 from synthesis.kinds import Progress
 from synthesis.planetary_train import mesh_limits
 from synthesis.planetary_train.nearest import Candidate, Nearest, SetTable, nearest, train_value
@@ -120,23 +120,12 @@ class _Found:
         ranked = self._best if problem.rank_by == "error" else [self._by_size[size] for size in sorted(self._by_size)]
         chosen = [c for c in ranked if limit is None or c.error <= limit][: problem.max_designs]
         designs = [_design(problem, candidate) for candidate in chosen]
-        passed = [design for design in designs if design.verification.passed]
-        failed = [design for design in designs if not design.verification.passed]
-        rejected = dict(self._rejected)
-        rejected["outranked"] = self._sound - len(designs)
-        if failed:
-            rejected["verification"] = len(failed)
+        rejected = {**self._rejected, "outranked": self._sound - len(designs)}
+        found = sifted(problem, designs, self._combinations, rejected)
         return PlanetaryResult(
-            designs=[*passed, *failed] if problem.include_failed else passed,
-            search=Search(
-                method="exhaustive",
-                complete=not failed,
-                candidates=self._combinations,
-                accepted=len(passed),
-                rejected={reason: count for reason, count in rejected.items() if count},
-                seed=problem.seed,
-            ),
-            summary=self._summary(passed),
+            designs=found.returned,
+            search=found.search,
+            summary=self._summary(found.passed),
             ties=self._ties[self._best[0].error] if self._best else 0,
             pareto=[_pareto(problem, candidate) for candidate in self._front() if _holds(problem, candidate)],
         )

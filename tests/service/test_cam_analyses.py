@@ -234,7 +234,7 @@ def test_faults_of_motions() -> None:
     train = {"mass": 1.0, "stiffness": 1.0}
     for body, path in (
         ({**cam, "motion": {"speed": 1.0, "speed_rpm": 1.0}}, "/motion/speed_rpm"),
-        ({**cam, "motion": {"time": {"start": 1.0, "end": 0.0, "step": 0.1}}}, "/motion/time"),
+        ({**cam, "motion": {"time": {"start": 1.0, "end": 0.0, "step": 0.1}}}, "/motion/time/end"),
         ({**cam, "motion": {"speed": -1.0}, "train": train}, "/motion/speed"),
         ({**shaft, "motion": {"speed": 0.0}}, "/motion/speed"),
         ({**shaft, "motion": {"acceleration": 1.0}}, "/motion/acceleration"),
