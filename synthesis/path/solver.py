@@ -29,6 +29,8 @@ from synthesis.path.nine_point_system import (
     nine_point_system_extended,
     orbit_keys,
 )
+from synthesis.path.point_fit import fit_points
+from synthesis.path.point_fit import warm_up as warm_up_fits
 from synthesis.problems import PathProblem
 from synthesis.ranking import distinct, ranked
 from synthesis.verification.path import verify_path
@@ -66,6 +68,8 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
         return curve_match.solve_curve_match(problem, progress)
     if all_are_found(problem):
         return solve_given_pivots(problem, progress)
+    if problem.fitted:
+        return fit_points(problem, progress)
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
@@ -101,6 +105,7 @@ def warm_up() -> None:
     y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
     follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))
     orbit_keys(y, begun.p, low)
+    warm_up_fits()
 
 
 def _nine(given: Complex, rng: np.random.Generator) -> Complex:
