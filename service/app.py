@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
@@ -10,6 +11,7 @@ from importlib.metadata import version
 import structlog
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
+from starlette.types import Lifespan
 
 from service.access.gate import Gate
 from service.access.keys import KeyStore
@@ -71,6 +73,23 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
+    app = _application(lifespan)
+    app.state.settings = settings
+    app.state.metrics = measured
+    return app
+
+
+def api_document() -> str:
+    """The OpenAPI document of the service as it is kept with the source, without any service running."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        yield
+
+    return json.dumps(_application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
+
+
+def _application(lifespan: Lifespan[FastAPI]) -> FastAPI:
     app = FastAPI(
         title="mechsynth",
         summary="A REST service that designs mechanisms.",
@@ -85,8 +104,6 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
         separate_input_output_schemas=False,
         openapi_tags=[jobs.TAG, analyses.TAG, problems.TAG, health.TAG],
     )
-    app.state.settings = settings
-    app.state.metrics = measured
     errors.install(app)
     docs.install(app)
     routers = (jobs.router, events.router, analyses.router, problems.router, health.router, metrics.router)

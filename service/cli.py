@@ -7,6 +7,7 @@ start, and ``mechsynth --help`` should not take a second.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,6 +35,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except (DemoFailure, HTTPError, OSError) as failure:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
+        return 0
+    if command.name == "solve":
+        from service.solve import SolveFailure, solve
+
+        try:
+            solve(command.problem, command.url, os.environ.get("MECHSYNTH_API_KEY"), command.output, command.forms)
+        except (SolveFailure, OSError) as failure:
+            print(f"mechsynth solve: {failure}", file=sys.stderr)
+            return EXIT_FAILURE
+        return 0
+    if command.name == "openapi":
+        from service.app import api_document
+
+        command.output.write_text(api_document(), encoding="utf-8")
         return 0
     if command.name == "keys":
         return _keys(command)
@@ -96,6 +111,20 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
     demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
     demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
+    solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")
+    solve.add_argument("problem", help="a JSON file with a problem, or the body of a request; - for standard input")
+    solve.add_argument(
+        "--url",
+        default=os.environ.get("MECHSYNTH_URL", "http://127.0.0.1:8000"),
+        help="the service (MECHSYNTH_URL; the API key comes from MECHSYNTH_API_KEY)",
+    )
+    solve.add_argument("--output", type=Path, help="folder of the drawings; named after the file when left out")
+    solve.add_argument(
+        "--forms", default="svg,dxf,csv", type=lambda text: [form for form in text.split(",") if form],
+        help="which files to write for each design, separated by commas; '' for none",
+    )  # fmt: skip
+    openapi = commands.add_parser("openapi", help="write the OpenAPI document to a file")
+    openapi.add_argument("output", type=Path)
     keys = commands.add_parser("keys", help="make, list and revoke API keys").add_subparsers(
         dest="act", required=True, metavar="act"
     )

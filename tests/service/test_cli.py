@@ -23,7 +23,7 @@ def mechsynth(folder, *arguments, program=REAL, **settings):
 def test_help_lists_the_commands(tmp_path):
     done = mechsynth(tmp_path, "--help")
     assert done.returncode == 0
-    assert all(command in done.stdout for command in ("serve", "demo", "warm"))
+    assert all(command in done.stdout for command in ("serve", "demo", "warm", "solve", "keys"))
 
 
 def test_the_command_line_is_read_without_heavy_imports():
