@@ -57,7 +57,8 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     verification, measured = verify_barrel(problem, mechanism)
     for _ in range(REFINEMENTS):
         failed = {check.name for check in verification.checks if not check.passed}
-        if measured is None or not np.isfinite(measured.off).all() or not any("reproduces" in name for name in failed):
+        lost = measured is None or not np.isfinite(measured.off).all() or "no_cusp" in failed
+        if measured is None or lost or not any("reproduces" in name for name in failed):
             break
         finer = refined(angle, measured.off, REPRODUCED)
         if len(finer) > FINEST:
@@ -67,7 +68,11 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
         mechanism = barrel_mechanism(barrel, problem.rotation, angle)
         verification, measured = verify_barrel(problem, mechanism)
     if measured is None:
-        return none_of(problem, "the roller cannot be laid against the groove", False, "follower_can_be_laid_on")
+        reason = (
+            f"the contact of a roller of radius {roller:.6g} in a groove on a cylinder of radius {size.radius:.6g} is "
+            "not resolved by any number of points that a wall may have; take a larger roller or a slower motion"
+        )
+        return none_of(problem, reason, False, "follower_can_be_laid_on")
     design = BarrelCamDesign(
         mechanism=mechanism,
         segments=segments_of(problem, composed),

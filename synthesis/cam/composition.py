@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +54,10 @@ FITS = 1e-9
 
 EDGE = 0.02
 """Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge and no cam."""
+
+LOOSE = 1e6
+"""Limits on a derivative that are this many times a unit lift over a unit angle do not bind on any grid here, and would
+only spoil the program's scaling; verification holds the motion to them all the same."""
 
 SAMPLES = 721
 """Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
@@ -388,10 +392,13 @@ def _run(
                 demands.append(Demand((1.0,), band.upper * unit, (), *span))
             if band.lower is not None:
                 demands.append(Demand((-1.0,), -band.lower * unit, (), *span))
+    run = Run(total, tuple(conditions), continuity, (), tuple(demands))
     limits = tuple(
-        Limit(order, limit) for name, order in ORDERS.items() if (limit := getattr(problem.limits, name)) is not None
+        Limit(order, limit)
+        for name, order in ORDERS.items()
+        if (limit := getattr(problem.limits, name)) is not None and limit * total**order < LOOSE * run.lift
     )
-    return Run(total, tuple(conditions), continuity, limits, tuple(demands))
+    return replace(run, limits=limits)
 
 
 def _turns(heights: Sequence[tuple[float, float]], before: int, after: int) -> bool:
@@ -502,6 +509,8 @@ def _bound(
         scope += f", with a peak {name} of at most {cap[1]:.6g}"
     name = problem.minimize
     kind, _, of = name.partition("_")
+    if of == "torque" and (problem.limits.acceleration is not None or problem.limits.jerk is not None):
+        scope += ", whatever their acceleration and jerk: under the limits on these the least is higher than the bound"
     if name in ("size", "peak_contact_force"):
         return best[0].bound, scope
     open_ = {k for row in rows for k in row}

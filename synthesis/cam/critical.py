@@ -72,7 +72,8 @@ def smallest_allowed(
     Returns
     -------
     float or None
-        None where a worst angle allows no radius up to ``stop``.
+        None where a worst angle allows no radius up to ``stop``. Where the exchanges do not end, the last radius: none
+        below it is allowed, and whether it is itself the measurement of the finished cam tells.
     """
     p = start
     for _ in range(EXCHANGES):
@@ -94,7 +95,7 @@ def smallest_allowed(
             good = excess(Motion(*(values[:, 0] for values in worst)), middle) <= 0.0
             high, low = np.where(good, middle, high), np.where(good, low, middle)
         p = float(high.max())
-    return None
+    return p
 
 
 def _at_radius(excess: Callable[[Motion, Real], Real], radius: Real, motion: Motion) -> Real:

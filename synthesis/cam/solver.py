@@ -59,6 +59,9 @@ until the profile reproduces it; beyond this number the design fails its verific
 SHAPE = {"curvature_ratio", "min_radius", "convex"}
 """Checks of curvature, which a profile of too few points can fail although its cam does not."""
 
+UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
+"""Checks that more points do not mend."""
+
 REFINEMENTS = 8
 """Times that points are put closer at most."""
 
@@ -96,6 +99,8 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     if sized is None:
         proven = not isinstance(getattr(problem.follower, "pivot_distance", None), LengthRange)
         proven = proven and getattr(problem.follower, "offset", None) != "free" and composed.bound is None
+        # Where an arm's face is too wide is found on a grid of start angles.
+        proven = proven and (problem.limits.face_width is None or not isinstance(problem.follower, OscillatingFlat))
         reason = "no cam of any size carries the program within the limits on pressure angle, curvature and face width"
         return none_of(problem, reason, proven, "size")
     cam, size = sized
@@ -107,6 +112,8 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         if measured is None or not np.isfinite(measured.off).all():
             break
         failed = {check.name for check in verification.checks if not check.passed}
+        if failed & UNSOUND:
+            break
         if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
             finer = refined(angle, measured.off, REPRODUCED)
         elif failed & SHAPE and not _shape_fails(problem, cam):
@@ -120,7 +127,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         mechanism = cam_mechanism(cam, angle, problem.closure == "form")
         verification, measured = verify(problem, mechanism)
     if measured is None:
-        return none_of(problem, "the follower cannot be laid against the profile", False, "follower_can_be_laid_on")
+        return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
     design = CamDesign(
         mechanism=mechanism,
         segments=segments_of(problem, composed),
@@ -131,6 +138,17 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     )
     progress(1.0, "verified")
     return result_of(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
+
+
+def _not_laid_on(cam: Cam) -> str:
+    if cam.program.smoothness < 2:
+        return "where the displacement or the velocity jumps the profile breaks off; choose laws that join"
+    if cam.roller_radius <= 0.0:
+        return "the follower cannot be laid against the profile"
+    return (
+        f"the contact of a roller of radius {cam.roller_radius:.6g} on a cam of prime radius {cam.size:.6g} is not "
+        "resolved by any number of points that a profile may have; take a larger roller or a slower motion"
+    )
 
 
 def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:

@@ -29,7 +29,9 @@ WHOLE_TURN = 1e-7
 SMOOTH = 1e-6
 """Jump at a joint, relative to the segments' own rates, up to which it is continuous."""
 
-Angle = Annotated[float, Field(strict=True, gt=0.0, le=360.0, allow_inf_nan=False)]
+Angle = Annotated[float, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
+"""Of a segment, degrees: shorter ones are below what any shaft is set to, and rates over them are rounding."""
+
 NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False)]
 
 Law = Literal[
@@ -445,7 +447,7 @@ class CamProblem(StatedProblem):
                 conditions = self.polynomial_conditions(segment)
                 if polynomial_ends(math.radians(segment.angle), conditions) is None:
                     found.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
-        if not found and all(start == end for start, end in heights) and not _any_polynomial(self.segments):
+        if not found and not any(_moves(segment) for segment in self.segments):
             found.append(Contradiction("/segments", "the follower never moves; state a rise"))
         return found
 
@@ -552,5 +554,9 @@ def _band_faults(where: str, band: DisplacementBand, angle: float) -> list[Contr
     return []
 
 
-def _any_polynomial(segments: list[Segment]) -> bool:
-    return any(isinstance(segment, Polynomial) for segment in segments)
+def _moves(segment: Segment) -> bool:
+    """Whether the follower moves in a segment; the polynomial of least degree through one value is that value."""
+    if isinstance(segment, Polynomial):
+        stated = [pair for condition in segment.conditions for pair in condition.values()]
+        return len({value for order, value in stated if order == 0}) > 1 or any(x for order, x in stated if order)
+    return isinstance(segment, Move) or (isinstance(segment, ConstantVelocity) and segment.lift != 0.0)
