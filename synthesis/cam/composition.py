@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -28,12 +29,14 @@ from synthesis.cam.optimal import (
     Best,
     NoMotion,
     Run,
+    Told,
     best_derivative,
     best_flat_size,
     best_force,
     best_roller_size,
     best_torque,
 )
+from synthesis.kinds import Progress
 from synthesis.problems.cam import (
     BarrelRoller,
     CamProblem,
@@ -63,6 +66,30 @@ SAMPLES = 721
 """Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
 
 
+def unheard(fraction: float, message: str) -> None:
+    """A progress that nobody follows."""
+
+
+@dataclass(frozen=True)
+class _Teller:
+    """Tells how far the programs of several runs are, within a part of the whole work."""
+
+    progress: Progress
+    reach: tuple[float, float]
+    runs: int
+
+    def of(self, run: int) -> Told:
+        """For the programs of one run."""
+        start, end = self.reach
+
+        def told(steps: int) -> None:
+            share = (run + (0.5 if steps > STEPS[0] else 0.0)) / self.runs
+            which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
+            self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
+
+        return told
+
+
 @dataclass(frozen=True)
 class Composition:
     """A finished program, and the criterion's value and bound.
@@ -86,8 +113,14 @@ class NoProgram:
     proven: bool
 
 
-def compose(problem: CamProblem, grids: Sequence[int] = STEPS) -> Composition | NoProgram:
-    """The best program of a problem without contradictions; ``grids`` as for the convex program of least size."""
+def compose(
+    problem: CamProblem, grids: Sequence[int] = STEPS, progress: Progress = unheard, reach: tuple[float, float] = (0, 1)
+) -> Composition | NoProgram:
+    """The best program of a problem without contradictions.
+
+    ``grids`` is as for the convex program of least size; ``progress`` is told before each program, with fractions
+    within ``reach``.
+    """
     heights = problem.heights()
     ends = problem.ends()
     segments: list[Segment | None] = []
@@ -111,7 +144,7 @@ def compose(problem: CamProblem, grids: Sequence[int] = STEPS) -> Composition | 
     runs = _runs(problem, segments)
     best: list[Best] = []
     if runs:
-        found = _optimized(problem, heights, ends, segments, runs, grids)
+        found = _optimized(problem, heights, ends, segments, runs, grids, _Teller(progress, reach, len(runs)))
         if isinstance(found, NoProgram):
             return found
         best = found
@@ -413,6 +446,7 @@ def _optimized(
     segments: list[Segment | None],
     rows: Sequence[Sequence[int]],
     grids: Sequence[int],
+    teller: _Teller,
 ) -> list[Best] | NoProgram:
     """Solve the runs, and put their motions where the program is open."""
     runs = [_run(problem, heights, ends, segments, row) for row in rows]
@@ -420,17 +454,20 @@ def _optimized(
     kind, _, of = problem.minimize.partition("_")
     found: list[Best | NoMotion]
     if problem.minimize == "size":
-        found = [_smallest(problem, runs, given, grids)]
+        found = [_smallest(problem, runs, given, grids, teller.of(0))]
     elif problem.minimize == "peak_contact_force":
         load, speed = follower_load(problem)
         weights = load.spring_rate, load.damping * speed, load.mass * speed**2
         loads = [_range_of(segment, lambda m: load.force(m, speed) - load.preload) for segment in given]
         rest = (min(low for low, _ in loads), max(high for _, high in loads)) if loads else None
-        found = [best_force(runs, weights, _floor(problem), _preload(problem), rest)]
+        found = [best_force(runs, weights, _floor(problem), _preload(problem), rest, told=teller.of(0))]
     elif of == "torque":
-        found = [best_torque(run, "peak" if kind == "peak" else "rms") for run in runs]
+        measure: Literal["peak", "rms"] = "peak" if kind == "peak" else "rms"
+        found = [best_torque(run, measure, told=teller.of(k)) for k, run in enumerate(runs)]
     else:
-        found = [best_derivative(run, "peak" if kind == "peak" else "rms", ORDERS[of]) for run in runs]
+        order = ORDERS[of]
+        measure = "peak" if kind == "peak" else "rms"
+        found = [best_derivative(run, measure, order, told=teller.of(k)) for k, run in enumerate(runs)]
     best = []
     for each in found:
         if isinstance(each, NoMotion):
@@ -466,7 +503,7 @@ def _range_of(segment: Segment, function: Callable[[Motion], np.ndarray]) -> tup
 
 
 def _smallest(
-    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int]
+    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], told: Told
 ) -> Best | NoMotion:
     """Motion and size together, for a translating follower."""
     limits = problem.limits
@@ -476,7 +513,7 @@ def _smallest(
             low = min(_range_of(segment, lambda m: np.asarray(m.s + m.a))[0] for segment in given)
             speeds = [_range_of(segment, lambda m: m.v) for segment in given]
             rest = low, min(v for v, _ in speeds), max(v for _, v in speeds)
-        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest)
+        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest, told=told)
     assert isinstance(problem.follower, TranslatingRoller)
     rising = math.tan(math.radians(limits.pressure_angle))
     falling = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
@@ -487,7 +524,7 @@ def _smallest(
     lowest = min(min(pair) for pair in problem.heights())
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
-    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids)
+    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, told=told)
 
 
 def _room(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:

@@ -49,6 +49,14 @@ SAME_TIME = 1e-9
 """Times closer than this share of the run are one."""
 
 
+Told = Callable[[int], None]
+"""Called with the number of steps before a program is solved."""
+
+
+def untold(steps: int) -> None:
+    """Nobody wants to know."""
+
+
 @dataclass(frozen=True)
 class Run:
     """What is open: an angle, and all that must hold in it. Radians from its start, derivatives per radian."""
@@ -88,7 +96,7 @@ class NoMotion:
     factor: float | None
 
 
-def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int) -> Best | NoMotion:
+def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int, *, told: Told = untold) -> Best | NoMotion:
     """The motion of least peak or root mean square of a derivative."""
     size = max(_order(run), order)
 
@@ -103,14 +111,14 @@ def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int) -> Be
         curve = solution.motions[0].derivative(order)
         return curve.peak() if measure == "peak" else curve.rms()
 
-    best = _solved((run,), program, value, run.lift / run.angle**order, run.lift)
+    best = _solved((run,), program, value, run.lift / run.angle**order, run.lift, told=told)
     limit = next((limit.constant for limit in run.limits if limit.order == order), math.inf)
     if isinstance(best, Best) and measure == "peak" and best.value > limit:
         return NoMotion(best.bound / limit if best.bound > limit and best.cap is None else None)
     return best
 
 
-def best_torque(run: Run, measure: Literal["peak", "rms"]) -> Best | NoMotion:
+def best_torque(run: Run, measure: Literal["peak", "rms"], *, told: Told = untold) -> Best | NoMotion:
     """The motion of least peak or root mean square of v a, what a mass takes of the shaft at constant speed."""
     lift, angle = run.lift, run.angle
     size = max(_order(run), 3)
@@ -125,6 +133,7 @@ def best_torque(run: Run, measure: Literal["peak", "rms"]) -> Best | NoMotion:
     if falls:
         block = _mirrored(block)
         ends = tuple(-v for v in ends)
+    told(len(block.times) - 1)
     found = least_torque(block, measure, abs(end - start), (ends[0], ends[1]))
     if found is None:
         return _none((run,), lift)
@@ -141,6 +150,8 @@ def best_force(
     floor: float,
     preload: float | None,
     rest: tuple[float, float] | None,
+    *,
+    told: Told = untold,
 ) -> Best | NoMotion:
     """The motions of least peak contact force Σ weights[i] s⁽ⁱ⁾ + preload, which stays at or above a floor.
 
@@ -189,7 +200,7 @@ def best_force(
             highs.append(rest[1] / unit)
         return max(highs) + (known / unit if preload is not None else floor / unit - min(lows))
 
-    return _solved(runs, program, value, unit, lift, unit)
+    return _solved(runs, program, value, unit, lift, unit, told=told)
 
 
 def best_roller_size(
@@ -198,6 +209,8 @@ def best_roller_size(
     offset: float | None,
     rest: Sequence[tuple[float, int, float]],
     grids: Sequence[int] = STEPS,
+    *,
+    told: Told = untold,
 ) -> Best | NoMotion:
     """The motions of least prime radius of a translating roller follower under a pressure angle.
 
@@ -242,14 +255,19 @@ def best_roller_size(
     def value(solution: Solution) -> float:
         return float(np.linalg.norm(solution.scalars))
 
-    best = _solved(runs, program, value, unit, unit, unit, grids)
+    best = _solved(runs, program, value, unit, unit, unit, grids, told=told)
     if isinstance(best, Best) and offset is not None:
         return replace(best, value=math.hypot(best.value, offset), bound=math.hypot(best.bound, offset))
     return best
 
 
 def best_flat_size(
-    runs: Sequence[Run], least_radius: float, width: float | None, rest: tuple[float, float, float] | None
+    runs: Sequence[Run],
+    least_radius: float,
+    width: float | None,
+    rest: tuple[float, float, float] | None,
+    *,
+    told: Told = untold,
 ) -> Best | NoMotion:
     """The motions of least base radius of a translating flat-faced follower.
 
@@ -302,7 +320,7 @@ def best_flat_size(
             least.append(rest[0] / unit)
         return least_radius / unit - min(least)
 
-    return _solved(runs, program, value, unit, unit, unit)
+    return _solved(runs, program, value, unit, unit, unit, told=told)
 
 
 def _solved(
@@ -313,10 +331,13 @@ def _solved(
     lift: float,
     scalar_worth: float = 1.0,
     grids: Sequence[int] = STEPS,
+    *,
+    told: Told,
 ) -> Best | NoMotion:
     """Solve on the first grid, and on the second where there is no solution or a gap; back to the client's units."""
     best: tuple[Solution, float, LowerBound] | None = None
     for steps in grids:
+        told(steps)
         statement = program(steps)
         solution = solve(statement)
         if solution is None:

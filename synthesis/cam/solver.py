@@ -84,7 +84,7 @@ LEAST_BASE = 1e-3
 def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     """Solve a cam problem."""
     progress(0.05, "composing the motion program")
-    composed = compose(problem)
+    composed = compose(problem, progress=progress, reach=(0.05, 0.4))
     if isinstance(composed, NoProgram):
         return none_of(problem, composed.reason, composed.proven, "motion_limits")
     composed = _smoothed(problem, composed, progress)
@@ -167,13 +167,14 @@ def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) ->
     for n, share in enumerate(SMOOTHER):
         if least <= composed.bound * (1.0 + NEAR_BOUND):
             break
-        progress(0.1 + 0.4 * n / len(SMOOTHER), "trading size by pressure angle against size by curvature")
+        progress(0.4 + 0.1 * n / len(SMOOTHER), "trading size by pressure angle against size by curvature")
         a = share * composed.program.lift / span**2
         j = JERK_SHARE * a / span
         limits = stated.model_copy(
             update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
         )
-        other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1])
+        reach = 0.4 + 0.1 * n / len(SMOOTHER), 0.4 + 0.1 * (n + 1) / len(SMOOTHER)
+        other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1], progress, reach)
         if isinstance(other, Composition):
             radius = _radius(problem, other)
             if radius < least:

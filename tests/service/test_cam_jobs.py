@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import time
 
 import pytest
 
 from synthesis.kinds import KINDS
+from tests.service.running import until
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
 NAMES = ("double dwell", "rise-fall-dwell", "critical path", "valve", "barrel")
@@ -50,3 +52,32 @@ def test_a_groove_is_drawn_with_both_walls(client):
     assert 'data-part="outer wall"' in client.get(f"{place}.svg").text
     assert "OUTER_WALL" in client.get(f"{place}.dxf").text
     assert "outer_wall_x [mm]" in client.get(f"{place}.csv").text
+
+
+def test_a_convex_program_tells_its_progress_and_is_cancelled_within_two_seconds(server):
+    """Motion and size of 24 optimal segments together: some programs of thousands of variables, one after the other."""
+    segments = [
+        {"motion": "rise" if k % 2 == 0 else "fall", "angle": 15.0, "lift": 10.0, "law": "optimal"} for k in range(24)
+    ]
+    problem = {
+        "kind": "cam",
+        "segments": segments,
+        "follower": {"type": "translating_roller", "roller_radius": 10.0},
+        "limits": {"pressure_angle": 30.0},
+        "minimize": "size",
+    }
+    job = server.post(problem=problem)
+    heard = until(
+        lambda: (found := server.job(job["id"])) and "convex program" in found["progress"]["message"] and found,
+        20.0,
+        "a message from the convex program",
+    )
+    assert heard["status"] == "running"
+    assert 0.0 < heard["progress"]["fraction"] < 1.0
+    began = time.monotonic()
+    assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
+    cancelled = server.reaches(job["id"], "cancelled", 2.0)
+    assert time.monotonic() - began < 2.0
+    assert cancelled["result"] is None
+    # Its worker is free again: the next job is answered.
+    assert server.post(problem=EXAMPLES[0], wait=30)["status"] == "succeeded"
