@@ -254,10 +254,19 @@ class _Coupling:
             # ω_one/ω_other past the carrier is n/d: d (ω_one − ω_c) = n (ω_other − ω_c).
             rows.append(mesh_row(value.one, value.other, value.carrier, (f"d{k}", f"n{k}"), 1))
         form = ratio_form(rows, *roles)
-        named = {name for term in (*form.over, *form.under) for name in term}
-        if not ({"n0", "d0"} & named and {"n1", "d1"} & named):
+        if not (form.over and form.under) or not any(len(term) == 2 for term in (*form.over, *form.under)):
             return None
-        return cls(_bilinear(form.over), _bilinear(form.under))
+        coupling = cls(_bilinear(form.over), _bilinear(form.under))
+        return coupling if coupling.hangs_on_second and coupling.swapped().hangs_on_second else None
+
+    @property
+    def hangs_on_second(self) -> bool:
+        """Whether the ratio (a + b x₁ + (c + d x₁) x₂)/(e + f x₁ + (g + h x₁) x₂) changes with x₂.
+
+        It does not where (a + b x₁)(g + h x₁) = (c + d x₁)(e + f x₁) for all x₁: a factor in which x₂ stands cancels.
+        """
+        (a, b, c, d), (e, f, g, h) = self.over, self.under
+        return (a * g, a * h + b * g, b * h) != (c * e, c * f + d * e, d * f)
 
     def quotient(self, one: tuple[Real, Real], other: tuple[Real, Real]) -> tuple[Real, Real]:
         """Numerator and denominator of the ratio for train values n/d of both sets."""
