@@ -49,7 +49,15 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
-from synthesis.designs.path import CognateTriples, CurveSweep, GivenPivotSolutions, PathDesign, PathMetrics, PathResult
+from synthesis.designs.path import (
+    CognateTriples,
+    CurveSweep,
+    FamilySearch,
+    GivenPivotSolutions,
+    PathDesign,
+    PathMetrics,
+    PathResult,
+)
 from synthesis.designs.planetary_train import (
     MeshContact,
     ParetoPlanetaryTrain,
@@ -89,6 +97,7 @@ __all__ = [
     "CurveSweep",
     "DragLinkMechanism",
     "ExactLineMechanism",
+    "FamilySearch",
     "FixedPivots",
     "FourbarLinks",
     "FourbarMechanism",

@@ -59,6 +59,13 @@ class GivenPivotSolutions(Answer):
     largest_residual: float = Field(description="Of the equations, with points and pivots of unit mean distance.")
 
 
+class FamilySearch(Answer):
+    """What was looked at of the fourbars through fewer than nine points."""
+
+    followed: int = Field(description="Linkages that were brought to the points by least squares.")
+    met: int = Field(description="Of these, the ones that came to meet all points, and the pivots that are demanded.")
+
+
 class CurveSweep(Answer):
     """What a match of whole curves has looked at."""
 
@@ -80,4 +87,7 @@ class PathResult(Result[PathDesign]):
     )
     given_pivots: GivenPivotSolutions | None = Field(
         default=None, exclude_if=nothing, description="For five points on two given fixed pivots."
+    )
+    family: FamilySearch | None = Field(
+        default=None, exclude_if=nothing, description="For fewer than nine points with demands."
     )

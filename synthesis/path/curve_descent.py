@@ -21,6 +21,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.path.traced_curves import (
+    FOURBAR,
     GEARED_FIVEBAR,
     LARGEST_LOG,
     OPTIONS,
@@ -50,6 +51,9 @@ NOTHING = 1e-28
 
 TOO_LONG = 4.0
 """Weight of a length's excess over the longest allowed: only a guide for the search, what is returned is checked."""
+
+ANYWHERE = np.array([[-np.inf, np.inf]] * 4)
+"""Fixed pivots without limits."""
 
 CYCLE_CHECKS = 48
 """Crank positions a cycle at which a geared fivebar must not jam."""
@@ -105,6 +109,34 @@ def _cost(
 
 
 @njit(**OPTIONS)
+def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
+    """Sum of squares of what the fixed pivots lie outside their limits; each part, and its slopes in the unknowns."""
+    off[:] = 0.0
+    slopes[:] = 0.0
+    places = np.empty(4)
+    places[0], places[1] = x[0], x[1]
+    known = 2
+    if family <= FOURBAR:
+        cosine, sine = math.cos(x[2]), math.sin(x[2])
+        places[2], places[3] = x[0] + lengths[0] * cosine, x[1] + lengths[0] * sine
+        slopes[2, 2], slopes[3, 2] = -lengths[0] * sine, lengths[0] * cosine
+        for k in range(4):
+            slopes[2, 3 + k], slopes[3, 3 + k] = chart[0, k] * cosine, chart[0, k] * sine
+        slopes[2, 0], slopes[3, 1] = 1.0, 1.0
+        known = 4
+    elif family == GEARED_FIVEBAR:
+        places[2], places[3] = x[2], x[3]
+        slopes[2, 2], slopes[3, 3] = 1.0, 1.0
+        known = 4
+    slopes[0, 0], slopes[1, 1] = 1.0, 1.0
+    total = 0.0
+    for k in range(known):
+        off[k] = min(0.0, places[k] - within[k, 0]) + max(0.0, places[k] - within[k, 1])
+        total += off[k] * off[k]
+    return total
+
+
+@njit(**OPTIONS)
 def _solved(matrix: Real, right: Real) -> bool:
     """Cholesky's method in place; the solution is left in ``right``; False where not positive definite."""
     m = len(right)
@@ -144,12 +176,13 @@ def _descend(
     weights: Real,
     longest: float,
     cycle: float,
+    within: Real,
     iterations: int,
 ) -> float:
     """Descend in place; returns the sum of squared distances, infinite where the start does not close."""
     m, n = len(x), len(points)
     logs = 4 if family == GEARED_FIVEBAR else 3
-    count = 4 if family <= 2 or family == GEARED_FIVEBAR else 3
+    count = 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     slopes = np.empty(m + 1, np.complex128)
     a, g = np.empty((m, m)), np.empty(m)
@@ -161,6 +194,8 @@ def _descend(
     if not distance < math.inf:
         return math.inf
     guide = TOO_LONG * TOO_LONG
+    off, off_slopes = np.zeros(4), np.zeros((4, m))
+    distance += _pivots_off(family, x, lengths, chart, within, off, off_slopes)
     cost = distance + guide * _excess(lengths[:count], m, x, longest)
     damping, idle = FIRST_DAMPING, 0
     for _ in range(iterations):
@@ -178,6 +213,13 @@ def _descend(
                 c[i, j] = w * (along.real * s.real + along.imag * s.imag)
                 for k in range(j + 1):
                     a[j, k] += w * (s.real * slopes[k].real + s.imag * slopes[k].imag)
+        _pivots_off(family, x, lengths, chart, within, off, off_slopes)
+        for i in range(4):
+            if off[i] != 0.0:
+                for j in range(m):
+                    g[j] += off_slopes[i, j] * off[i]
+                    for k in range(j + 1):
+                        a[j, k] += off_slopes[i, j] * off_slopes[i, k]
         # The guide for long links, each a residual of its own.
         for k in range(count):
             over = abs(lengths[k]) / longest - 1.0
@@ -225,6 +267,7 @@ def _descend(
                 theta_new[i] = theta[i] + min(max(turn, -FURTHEST_TURN), FURTHEST_TURN)
             natural(family, x_new, lengths, chart)
             distance_new = _cost(family, x_new, lengths, sign, ratio, theta_new, points, weights, cycle)
+            distance_new += _pivots_off(family, x_new, lengths, chart, within, off, off_slopes)
             cost_new = distance_new + guide * _excess(lengths[:count], m, x_new, longest)
             if cost_new < cost:
                 accepted = True
@@ -254,11 +297,12 @@ def _descend_all(
     weights: Real,
     longest: float,
     cycle: float,
+    within: Real,
     iterations: int,
     cost: Real,
 ) -> None:
     for k in range(len(x)):
-        cost[k] = _descend(family, x[k], sign[k], ratio, theta[k], points, weights, longest, cycle, iterations)
+        cost[k] = _descend(family, x[k], sign[k], ratio, theta[k], points, weights, longest, cycle, within, iterations)
 
 
 def descend(
@@ -272,6 +316,7 @@ def descend(
     weights: Real | None = None,
     longest: float = math.inf,
     cycle: float = 0.0,
+    within: Real | None = None,
     iterations: int = 60,
 ) -> Descent:
     """Descend from every start to the least sum of squared distances of the points from the curve.
@@ -292,6 +337,9 @@ def descend(
         Links longer than this are discouraged.
     cycle : float
         For geared fivebars: the crank's full cycle, over which it must not jam; 0 where it need not go round.
+    within : float, shape (4, 2), optional
+        Least and greatest x and y of O2, then of the other fixed pivot: what lies outside counts as a distance, so that
+        a cost of zero keeps them. For slider-cranks the last two rows have no meaning.
     iterations : int
         Steps at most.
     """
@@ -308,6 +356,7 @@ def descend(
         w,
         longest if math.isfinite(longest) else 1e300,
         cycle,
+        ANYWHERE if within is None else np.ascontiguousarray(within, np.float64),
         iterations,
         cost,
     )

@@ -1,4 +1,6 @@
-"""Path generation: all fourbars through nine points; for fewer points, through nine of which some are drawn.
+"""Path generation: all fourbars through nine points; for fewer points, members of the family that they leave.
+
+Where a search near a smooth curve finds no member that will do, points are drawn until there are nine.
 
 A real cognate triple is six designs: three linkages, each with either fixed pivot as the input's. Every one of them is
 verified, and what each was rejected for is counted.
@@ -18,6 +20,7 @@ from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.continuation import follow, refine
 from synthesis.path import curve_match
+from synthesis.path.family_search import solve_family
 from synthesis.path.given_pivots import all_are_found, solve_given_pivots
 from synthesis.path.nine_point import Triples, all_triples
 from synthesis.path.nine_point_start import start
@@ -45,6 +48,9 @@ THREADS = 2
 OFF_CURVE = 0.03
 """Drawn points lie this share of the points' mean distance off the smooth curve, so that no two rounds are alike."""
 
+FIRST_PART = 0.5
+"""Share of the progress that the search near a smooth curve counts for, where others may follow it."""
+
 SHORTEST_LINK = 1e-9
 """Links shorter than this share of the longest are no links."""
 
@@ -70,6 +76,17 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
         return solve_given_pivots(problem, progress)
     if problem.fitted:
         return fit_points(problem, progress)
+    if len(problem.points) < NINE and not problem.prescribed:
+        near = solve_family(problem, lambda share, message: progress(FIRST_PART * share, message))
+        if near.search.accepted:
+            progress(1.0, "verified")
+            return near
+        return _solve_nine(problem, lambda share, message: progress(FIRST_PART + (1.0 - FIRST_PART) * share, message))
+    return _solve_nine(problem, progress)
+
+
+def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
+    """All fourbars through nine points, some of which are drawn where fewer are given."""
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds

@@ -80,8 +80,8 @@ class PathProblem(LinkageProblem):
 
     With *free* timing the input angles at the points are free: nine points are as many as a fourbar can meet. For nine
     every fourbar is computed: all 1442 cognate triples, real and complex, from which the real ones are verified with
-    both cognates and either fixed pivot as the input's. Fewer points leave freedom: points on a smooth curve between
-    them, drawn anew in each round, make them nine. With *prescribed* timing each point has its crank angle: five points
+    both cognates and either fixed pivot as the input's. Fewer points leave freedom: it goes into what is demanded,
+    and the ranking. With *prescribed* timing each point has its crank angle: five points
     can be met exactly, and for five every fourbar is found. More points are fitted by least squares.
     """
 
@@ -154,7 +154,8 @@ class PathProblem(LinkageProblem):
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
-        default=3, description="For fewer than nine points of free timing: how often points are drawn between them."
+        default=3,
+        description="For fewer than nine points of free timing: how often linkages near them are drawn.",
     )
 
     @property

@@ -109,11 +109,11 @@ def passes_in_order(design, points):
 
 
 @pytest.mark.slow
-def test_fewer_points_are_met_by_linkages_through_drawn_ones():
+def test_fewer_points_are_met_by_members_of_their_family():
     problem = parse_problem(example("path"))
     result = solve(problem, silent)
     assert not result.search.complete
-    assert result.search.method == "nine_point_family"
+    assert result.search.method == "family_search"
     assert result.designs
     for design in result.designs:
         assert design.verification.passed
