@@ -21,6 +21,7 @@ from synthesis.designs import (
     PlanetaryResult,
     QuickReturnResult,
     Result,
+    SteeringResult,
     StraightLineResult,
 )
 from synthesis.problems import (
@@ -34,6 +35,7 @@ from synthesis.problems import (
     PlanetaryProblem,
     QuickReturnProblem,
     StatedProblem,
+    SteeringProblem,
     StraightLineProblem,
 )
 
@@ -56,6 +58,7 @@ KINDS: dict[str, Kind] = {
     "straight_line": Kind(
         StraightLineProblem, StraightLineResult, "synthesis.straight_line.solver:solve_straight_line"
     ),
+    "steering": Kind(SteeringProblem, SteeringResult, "synthesis.steering.solver:solve_steering"),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

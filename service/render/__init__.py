@@ -75,6 +75,7 @@ EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
         "csv": "service.render.function_csv:function_table",
     },
     "quick_return": {"svg": "service.render.stroke_sheet:stroke_sheet"},
+    "steering": {"svg": "service.render.steering_sheet:steering_sheet"},
     "straight_line": {"svg": "service.render.line_sheet:line_sheet"},
 }
 """The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""

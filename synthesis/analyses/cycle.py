@@ -28,13 +28,18 @@ def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
 
     From the reference through a full turn (or as many as the gears need) where the input is a crank, else from toggle
     to toggle of the reference's branch. Where the branch is not known (its reference is at a toggle of several, or the
-    circuits cannot be listed) a full turn too: ``valid`` then tells where the mechanism exists.
+    circuits cannot be listed) a full turn too, and as far as the mechanism is wide where a slider drives it: ``valid``
+    then tells where the mechanism exists.
     """
     at = float(mechanism.reference_input)
     try:
         here = holding_reference(mechanism, branches(mechanism))
     except TopologyError:
         here = None
+    if (here is None or here.full) and mechanism.driven_by_slide:
+        places = np.array([complex(joint) for joint in mechanism.joints.values()])
+        half = 0.5 * float(np.abs(places[:, None] - places).max())
+        return at - half, at + half
     if here is None or here.full:
         return at, at + cycle(mechanism)
     low = here.low

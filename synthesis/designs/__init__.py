@@ -77,6 +77,14 @@ from synthesis.designs.quick_return import (
     QuickReturnResult,
     RatioRange,
 )
+from synthesis.designs.steering import (
+    DavisMechanism,
+    SteeringDesign,
+    SteeringMechanisms,
+    SteeringMetrics,
+    SteeringPosition,
+    SteeringResult,
+)
 from synthesis.designs.straight_line import (
     ExactLineMechanism,
     LinePoint,
@@ -95,6 +103,7 @@ __all__ = [
     "CognateTriples",
     "CouplerPoint",
     "CurveSweep",
+    "DavisMechanism",
     "DragLinkMechanism",
     "ExactLineMechanism",
     "FamilySearch",
@@ -155,6 +164,11 @@ __all__ = [
     "SliderCrankLinks",
     "SliderCrankMechanism",
     "Stage",
+    "SteeringDesign",
+    "SteeringMechanisms",
+    "SteeringMetrics",
+    "SteeringPosition",
+    "SteeringResult",
     "StraightLineDesign",
     "StraightLineMetrics",
     "StraightLineResult",

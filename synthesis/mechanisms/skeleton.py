@@ -86,6 +86,7 @@ class GivenSkeleton(Statement):
         "stephenson_3",
         "drag_link_rocker",
         "drag_link_slider",
+        "davis",
         "dwell_rocker",
         "dwell_slider",
         "dwell_slot",

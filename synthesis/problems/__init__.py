@@ -45,9 +45,11 @@ from synthesis.problems.planetary_train import (
     ToothRange,
 )
 from synthesis.problems.quick_return import QuickReturnProblem
+from synthesis.problems.steering import ArmLimits, SteeringProblem
 from synthesis.problems.straight_line import StraightLineProblem
 
 __all__ = [
+    "ArmLimits",
     "CamProblem",
     "Constraints",
     "Contradiction",
@@ -82,6 +84,7 @@ __all__ = [
     "Region",
     "StatedProblem",
     "Statement",
+    "SteeringProblem",
     "StockedGear",
     "StraightLineProblem",
     "TeethRange",

@@ -1,0 +1,122 @@
+"""The sheet of a steering mechanism: straight and at both locks, tables, and the outer wheel's angle with its error."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from kinematics.linkage.mechanism import GROUND
+from service.render import blocks
+from service.render.diagrams import Diagram
+from service.render.linkage_drawing import Scene, drawing
+from service.render.numbers import angle, length, small
+from service.render.svg import Box, Viewport, clean, document, shortened, text
+from service.render.symbols import CURVE, GREY, INK, OUTPUT
+from synthesis.designs import Check, SteeringDesign
+from synthesis.mechanisms import GivenMechanism
+from synthesis.problems import SteeringProblem
+
+WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
+"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
+
+HEIGHTS = (260.0, 520.0)
+"""Least and greatest height of the drawing, pixels."""
+
+DIAGRAM = 170.0
+"""Height of a diagram, pixels."""
+
+NAMES = {"fourbar": "Ackermann steering linkage", "davis": "Davis steering gear"}
+"""What the types are called on a sheet."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+def steering_sheet(design: SteeringDesign, problem: SteeringProblem, title: str) -> str:
+    """The drawing of a steering design as a complete SVG document."""
+    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    straight, metrics = float(mechanism.reference_input), design.metrics
+    if mechanism.driven_by_slide:
+        # Both locks are as far from the straight position.
+        locks = [design.targets[-1].input_angle, 2.0 * straight - design.targets[-1].input_angle]
+    else:
+        locks = [straight + math.radians(problem.lock), straight - math.radians(metrics.outer_lock)]
+    traced = [joint for joint in mechanism.joints if joint not in mechanism.links[GROUND]]
+    shown = Scene(mechanism, np.array([straight, *locks]), [])
+    name = NAMES[design.mechanism.type]
+    heading = clean(title) or name
+    width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
+    box = shown.box()
+    wanted = (width - 100.0) / max(box.width, 1e-300) * box.height + 130.0
+    height = math.floor(min(max(wanted, HEIGHTS[0]), HEIGHTS[1]))
+    view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), 50.0, 26.0)
+    parts = [drawing(shown, view, problem.length_unit)]
+    bottom = view.panel.high
+    for diagram in _diagrams(design):
+        parts.append(diagram.draw(Box(EDGE, bottom + 8.0, EDGE + width, bottom + 8.0 + DIAGRAM), []))
+        bottom += 8.0 + DIAGRAM
+    y = TOP - 6.0
+    for block in _tables(design, problem, box.diagonal, traced):
+        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
+        parts.append(drawn)
+    full = float(math.ceil(max(bottom, y) + EDGE - 8.0))
+    failed = [c for c in design.verification.checks if not c.passed]
+    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
+    words = (
+        f"{name}, tie rod {metrics.tie_rod} the kingpins, to a lock of {angle(problem.lock)}; "
+        f"lengths in {problem.length_unit}; {verdict}"
+    )
+    return document(
+        heading,
+        f"Drawing of a steering mechanism, straight and at both locks. {words}.",
+        (WIDTH, full),
+        text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
+        text(EDGE, 55.0, words, 12.5, fill=GREY),
+        *parts,
+    )
+
+
+def _diagrams(design: SteeringDesign) -> list[Diagram]:
+    """The outer wheel's angle and its error over the inner wheel's, to the left."""
+    inner = np.array([target.inner for target in design.targets])
+    outer = np.array([target.outer for target in design.targets])
+    error = np.array([target.error for target in design.targets])
+    span, limit = float(inner[-1]), design.metrics.steering_error
+    return [
+        Diagram("outer wheel (°) over the inner wheel's angle", "outer", inner, outer, CURVE, span=span),
+        Diagram("steering error (°)", "error", inner, error, OUTPUT, limits=(-limit, limit), span=span),
+    ]
+
+
+def _tables(design: SteeringDesign, problem: SteeringProblem, size: float, moving: list[str]) -> list[blocks.Block]:
+    unit, metrics, mechanism = problem.length_unit, design.metrics, design.mechanism
+    links = mechanism.links if isinstance(mechanism.links, dict) else mechanism.links.model_dump()
+    rows = [(name.replace("_", " "), length(value)) for name, value in links.items()]
+    for name in ("O2", "O4", *moving):
+        x, y = mechanism.skeleton.joints[name]
+        rows.append((f"{name}, straight", f"({length(x, size)}, {length(y, size)})"))
+    met = [
+        (f"inner {angle(target.inner, 2)}: outer {angle(target.outer, 3)}", f"error {angle(target.error, 4)}")
+        for target in design.targets
+    ]
+    measured = [
+        ("steering error", f"{small(metrics.steering_error)}°"),
+        ("correct at", ", ".join(angle(at, 2) for at in metrics.correct_at) or "everywhere"),
+        ("outer wheel at the lock", angle(metrics.outer_lock)),
+        ("arms", f"{length(metrics.arm_length)} {unit} at {angle(metrics.arm_angle)}"),
+        ("turning radius", f"{length(metrics.turning_radius)} {unit}"),
+        ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+    ]
+    if metrics.bar_travel is not None:
+        measured.append(("travel of the bar", f"± {length(metrics.bar_travel)} {unit}"))
+    return [
+        blocks.rows(f"Dimensions ({unit})", rows),
+        blocks.rows("Targets", met),
+        blocks.checks(design.verification, _written),
+        blocks.rows("Metrics", measured),
+    ]
+
+
+def _written(check: Check, value: float) -> str:
+    return angle(value, 3) if check.name in ("transmission_angle", "steering_error") else small(value)

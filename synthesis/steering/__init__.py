@@ -1,0 +1,1 @@
+"""Steering: linkages and gears between two stub axles."""

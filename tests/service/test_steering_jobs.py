@@ -1,0 +1,55 @@
+"""Steering through HTTP: solved, drawn and driven."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+from synthesis.kinds import example
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def job(server):
+    answer = server.client.post("/v1/jobs", json={"problem": example("steering")}, headers={"Prefer": "wait=30"})
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_the_example_has_linkages_and_gears(job):
+    assert job["status"] == "succeeded"
+    assert {design["mechanism"]["type"] for design in job["result"]["designs"]} == {"fourbar", "davis"}
+    assert all(design["verification"]["passed"] for design in job["result"]["designs"])
+
+
+def test_designs_are_drawn_and_driven(client, job):
+    for n, design in enumerate(job["result"]["designs"]):
+        place = f"/v1/jobs/{job['id']}/designs/{n}"
+        drawing = client.get(f"{place}.svg")
+        assert drawing.status_code == 200, drawing.text
+        root = ElementTree.fromstring(drawing.text)
+        joints = {e.get("data-joint") for e in root.iter(f"{SVG}circle")} - {None}
+        assert joints == set(design["mechanism"]["skeleton"]["joints"])
+        assert len([g for g in root.iter() if g.get("data-configuration")]) == 3
+        assert {g.get("data-diagram") for g in root.iter() if g.get("data-diagram")} == {"outer", "error"}
+        motion = client.get(f"{place}/motion?steps=36")
+        assert motion.status_code == 200, motion.text
+        assert all(motion.json()["valid"])
+        # The positions that the answer lists are those that an analysis of the mechanism gives.
+        last = design["targets"][-1]
+        body = {"mechanism": design["mechanism"], "motion": {"at": last["input_angle"]}}
+        here = client.post("/v1/analyses", json=body).json()
+        name = "output" if design["mechanism"]["type"] == "fourbar" else "right_arm"
+        body["motion"]["at"] = design["targets"][0]["input_angle"]
+        straight = client.post("/v1/analyses", json=body).json()
+        turned = here["links"][name]["angle"][0] - straight["links"][name]["angle"][0]
+        assert (turned - last["outer"] + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("stated", "path"), [({"lock": 90.0}, "/problem/lock"), ({"track": 1.0}, "/problem/track")])
+def test_a_refusal_names_the_field(client, stated, path):
+    answer = client.post("/v1/jobs", json={"problem": {**example("steering"), **stated}})
+    assert answer.status_code == 422
+    assert [error["path"] for error in answer.json()["errors"]] == [path]
