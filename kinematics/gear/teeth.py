@@ -309,7 +309,8 @@ class Mesh:
 
         The pinion's tip corner passes the gear's tip circle at the angles δ₁, δ₂ from the line of centres; it is clear
         of the gear's tip corner where z₁ (inv φ_a₁ + δ₁) − z₂ (inv φ_a₂ + δ₂) + (z₂ − z₁) inv φ_w ≥ 0 (Colbourne, The
-        Geometry of Involute Gears, 1987, ch. 8). With few teeth of difference it is the limit of planetary rings.
+        Geometry of Involute Gears, 1987, ch. 8; trochoid interference in SDP/SI, Elements of Metric Gear Technology,
+        eq. 5-6). With few teeth of difference it is the limit of planetary rings.
         """
         if not self.gear.internal:
             return False
@@ -324,6 +325,36 @@ class Mesh:
         gear_flank = involute(math.acos(self.gear.base_radius / gear_tip))
         room = self.pinion.teeth * (flank + at_pinion) - self.gear.teeth * (gear_flank + at_gear)
         return room + (self.gear.teeth - self.pinion.teeth) * involute(self.pressure_angle) < 0.0
+
+    @property
+    def trims(self) -> bool:
+        """Whether an internal pair cannot be brought together radially, only along its axes; external pairs always can.
+
+        A pinion that is moved in towards the ring's teeth, or the cutter that shapes them, passes their tips where
+        θ₁ + inv φ_a₁ − inv φ_w ≥ (z₂/z₁)(θ₂ + inv φ_a₂ − inv φ_w) with sin² θ₁ = (1 − (cos φ_a₁/cos φ_a₂)²)/(1 −
+        (z₁/z₂)²) and sin² θ₂ = ((cos φ_a₂/cos φ_a₁)² − 1)/((z₂/z₁)² − 1) (SDP/SI, Elements of Metric Gear Technology,
+        eq. 5-9, 5-10: trimming). It is no fault of gears that run: planets are put in along their axes. A ring whose
+        tips lie below its base circle has no involute there; such a pair is taken to trim.
+        """
+        if not self.gear.internal:
+            return False
+        tips = [gear.base_radius / gear.tip_radius for gear in (self.pinion, self.gear)]
+        if tips[1] > 1.0:
+            return True
+        if tips[0] >= tips[1]:
+            # The room between the tips shrinks all the way in; it is there where the pair runs.
+            return False
+        teeth = self.gear.teeth / self.pinion.teeth
+        quotient = tips[1] / tips[0]
+        squares = (1.0 - 1.0 / quotient**2) / (1.0 - 1.0 / teeth**2), (quotient**2 - 1.0) / (teeth**2 - 1.0)
+        if max(squares) > 1.0:
+            # The pinion's tip circle is larger than the ring's.
+            return True
+        one, other = (
+            math.asin(math.sqrt(square)) + involute(math.acos(tip)) - involute(self.pressure_angle)
+            for square, tip in zip(squares, tips, strict=True)
+        )
+        return one < teeth * other
 
     @property
     def clearance(self) -> float:

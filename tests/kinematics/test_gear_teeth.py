@@ -394,3 +394,33 @@ def test_wrong_calls(call: object, name: str) -> None:
     with pytest.raises(DimensionError) as caught:
         call()
     assert caught.value.name == name
+
+
+TRIMMING = {
+    15: 34, 16: 34, 17: 35, 18: 36, 19: 37, 20: 38, 21: 39, 22: 40, 24: 42, 25: 43, 27: 45, 28: 46, 30: 48, 31: 49,
+    32: 50, 38: 56, 40: 58, 42: 60, 48: 66, 50: 68, 56: 74, 60: 78, 66: 84, 80: 98, 96: 114, 100: 118,
+}  # fmt: skip
+"""Fewest teeth of a standard ring that a pinion cutter of so many teeth does not trim at 20° (SDP/SI, Elements of
+Metric Gear Technology, Table 5-3a). The cutter's addendum is 1.25 modules."""
+
+
+@pytest.mark.parametrize(("cutter", "ring"), TRIMMING.items())
+def test_trimming(cutter: int, ring: int) -> None:
+    def trims(teeth: int) -> bool:
+        return Mesh(Gear(cutter, 1.0, addendum=1.25), Gear(teeth, 1.0, internal=True)).trims
+
+    assert not any(trims(teeth) for teeth in (ring, ring + 1, ring + 10, 3 * ring))
+    # With so few teeth of difference that the cutter is larger than the hole there is no other answer.
+    assert all(trims(teeth) for teeth in range(cutter + 1, ring))
+
+
+@pytest.mark.parametrize("pinion", [20, 30, 40, 60, 100])
+def test_tips_pass_from_nine_teeth_of_difference_on(pinion: int) -> None:
+    """Standard gears at 20° have no trochoid interference above 9 (the same source, Sec. 5.2)."""
+
+    def foul(difference: int) -> bool:
+        gear = Gear(pinion + difference, 1.0, internal=True)
+        return gear.tip_radius >= gear.base_radius and Mesh(Gear(pinion, 1.0), gear).tips_foul
+
+    assert not any(foul(difference) for difference in range(10, 40))
+    assert all(foul(difference) for difference in (4, 5, 6, 7) if pinion >= 40)
