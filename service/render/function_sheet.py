@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
+from kinematics.linkage.mechanism import Mechanism
 from service.render import blocks
 from service.render.blocks import Block
 from service.render.diagrams import ticks
@@ -85,9 +86,12 @@ def function_sheet(design: FunctionDesign, problem: FunctionProblem, title: str)
     height = min(max(wanted, HEIGHTS[0]), HEIGHTS[1])
     view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + math.floor(height)), 50.0, 26.0)
     below = view.panel.high + 14.0
+    # Pairs that are met have no error to be drawn.
+    met = problem.function is None and problem.aim == "precision"
+    diagram = _output_diagram if met else _error_diagram
     parts = [
         _drawing(design, joints, valid, view, problem.length_unit),
-        _error_diagram(design, problem, Box(EDGE, below, EDGE + width, below + DIAGRAM)),
+        diagram(design, problem, Box(EDGE, below, EDGE + width, below + DIAGRAM)),
     ]
     y = TOP - 6.0
     for block in _tables(design, problem):
@@ -108,9 +112,18 @@ def function_sheet(design: FunctionDesign, problem: FunctionProblem, title: str)
     )
 
 
+def _mechanism(design: FunctionDesign) -> Mechanism:
+    return _GIVEN.validate_python(design.mechanism.model_dump(exclude={"skeleton"})).mechanism()
+
+
+def _slide_angle(design: FunctionDesign) -> float:
+    """Angle of the slide's line, degrees; 0 where there is none."""
+    return design.mechanism.slide.angle if design.mechanism.type == "slider_crank" else 0.0
+
+
 def _joints(design: FunctionDesign) -> tuple[dict[str, NDArray[np.complex128]], NDArray[np.bool_]]:
     """Joints at the targets that are drawn, shape (n,), and where there are any."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump(exclude={"skeleton"})).mechanism()
+    mechanism = _mechanism(design)
     targets = design.targets
     chosen = np.unique(np.linspace(0, len(targets) - 1, min(SHOWN, len(targets))).astype(int))
     motion = drive(mechanism, np.radians([targets[k].input_angle for k in chosen]), order=0)
@@ -138,7 +151,7 @@ def _drawing(
         data_view="main",
     )
     labels = Labels(panel.grown(-3.0))
-    tilt = math.radians(design.mechanism.slide.angle) if design.mechanism.type == "slider_crank" else 0.0
+    tilt = math.radians(_slide_angle(design))
     if "O4" not in joints:
         group.add(_rail(design, joints["B"], view))
     else:
@@ -189,8 +202,7 @@ def _configuration(at: dict[str, complex], k: int, tilt: float, labels: Labels) 
 def _rail(design: FunctionDesign, places: NDArray[np.complex128], view: Viewport) -> Element:
     """The slide's line over all places of its block."""
     known = places[np.isfinite(places)]
-    assert design.mechanism.type == "slider_crank"
-    along = cmath.exp(1j * math.radians(design.mechanism.slide.angle))
+    along = cmath.exp(1j * math.radians(_slide_angle(design)))
     way = ((known - known[0]) * along.conjugate()).real
     beyond = RAIL * max(float(np.ptp(way)), view.panel.width / view.scale)
     ends = [view.point(complex(known[0] + along * t)) for t in (float(way.min()) - beyond, float(way.max()) + beyond)]
@@ -209,67 +221,98 @@ def _range_arc(design: FunctionDesign, view: Viewport, pivot: complex, crank: fl
 
 
 def _error_diagram(design: FunctionDesign, problem: FunctionProblem, box: Box) -> Element:
-    """Structural error over the values of the input, with its extremes, and the pairs or precision points."""
+    """Structural error over the values of the input, with its extremes, and the precision points."""
     error = design.structural_error
-    curve = error.curve
-    frame = Box(box.left + 74.0, box.low + 24.0, box.right - 8.0, box.high - 36.0)
-    x, e = np.array(curve.input), np.array(curve.error)
-    targets = [(t.input, t.error) for t in design.targets] if problem.aim == "precision" else []
-    marks = ticks([*e, *(extreme.error for extreme in error.extremes), 0.0])
-    low, high = marks[0], marks[-1]
-    first, last = float(x.min()), float(x.max())
-
-    def at(value: float, error: float) -> complex:
-        across = (value - first) / (last - first)
-        return complex(
-            frame.left + frame.width * across, frame.high - frame.height * (error - low) / ((high - low) or 1.0)
-        )
-
+    x, e = np.array(error.curve.input), np.array(error.curve.error)
     unit = "degrees" if error.unit == "degrees" else problem.length_unit
-    group = element("g", data_diagram="structural_error")
     heading = f"Structural error, {unit}, over {'the input of the pairs' if problem.function is None else 'x'}"
-    group.add(text(frame.left, box.low + 15.0, heading, 11.5, font_weight="bold", fill=INK))
-    for mark in marks:
-        y = at(first, mark).imag
-        ends = complex(frame.left, y), complex(frame.right, y)
-        group.add(line(*ends, stroke=PALE, stroke_width=1.0 if mark == 0.0 else 0.4))
-        words = length(mark, high - low, digits=4)
-        group.add(text(frame.left - 5.0, y + 3.5, words, 10.0, text_anchor="end", fill=GREY))
-    for value in ticks([first, last]):
-        if first - 1e-9 * (last - first) <= value <= last + 1e-9 * (last - first):
-            foot = complex(at(value, low).real, frame.high)
-            group.add(line(foot, foot + 4j, stroke=GREY, stroke_width=1.0))
-            words = length(value, last - first, digits=5)
-            group.add(text(foot.real, foot.imag + 15.0, words, 10.0, text_anchor="middle", fill=GREY))
-    group.add(
-        element(
-            "rect",
-            x=frame.left,
-            y=frame.low,
-            width=frame.width,
-            height=frame.height,
-            fill="none",
-            stroke=GREY,
-            stroke_width=0.8,
-        )
-    )
-    points = np.array([at(float(v), float(d)) for v, d in zip(x, e, strict=True)])
+    values = [*e, *(extreme.error for extreme in error.extremes), 0.0]
+    axes = _Axes(box, (float(x.min()), float(x.max())), values)
+    group = axes.drawn(heading, "structural_error")
+    points = axes.at(x, e)
     if problem.function is not None:
         group.add(path([points], stroke=CURVE, stroke_width=1.6, stroke_linejoin="round", data_curve="error"))
         for extreme in error.extremes:
-            group.add(circle(at(extreme.input, extreme.error), 2.6, fill=CURVE, data_extreme=repr(extreme.input)))
-    else:
-        for point in points:
-            group.add(line(complex(point.real, at(first, 0.0).imag), complex(point), stroke=CURVE, stroke_width=1.6))
-            group.add(circle(complex(point), 2.6, fill=CURVE))
-    for value, _ in targets:
-        group.add(circle(at(value, 0.0), 4.5, fill="none", stroke=DEMANDED, stroke_width=1.5, data_target=repr(value)))
+            place = complex(axes.at(np.array(extreme.input), np.array(extreme.error)))
+            group.add(circle(place, 2.6, fill=CURVE, data_extreme=repr(extreme.input)))
+        met = [target.input for target in design.targets] if problem.aim == "precision" else []
+        for value in met:
+            place = complex(axes.at(np.array(value), np.array(0.0)))
+            group.add(circle(place, 4.5, fill="none", stroke=DEMANDED, stroke_width=1.5, data_target=repr(value)))
+        return group
+    feet = axes.at(x, np.zeros_like(e))
+    for foot, point in zip(feet, points, strict=True):
+        group.add(line(complex(foot), complex(point), stroke=CURVE, stroke_width=1.6))
+        group.add(circle(complex(point), 2.6, fill=CURVE))
     return group
+
+
+def _output_diagram(design: FunctionDesign, problem: FunctionProblem, box: Box) -> Element:
+    """The value of the output over that of the input, as the driven linkage gives it, and the pairs that it meets."""
+    dials = design.dials
+    inputs = np.array([target.input for target in design.targets])
+    x = np.linspace(inputs.min(), inputs.max(), 181)
+    angles = np.radians(dials.input.place + dials.input.scale * (x - dials.input.at))
+    motion = drive(_mechanism(design), angles, order=0)
+    if problem.slides:
+        along = cmath.exp(-1j * math.radians(_slide_angle(design)))
+        places = ((motion.joints["B"][0] - motion.joints["O2"][0]) * along).real
+    else:
+        places = np.degrees(motion.angles["output"][0])
+        places[motion.valid] = np.unwrap(places[motion.valid], period=360.0)
+    y = dials.output.at + (places - dials.output.place) / dials.output.scale
+    pairs = np.array([target.output for target in design.targets])
+    if not problem.slides:
+        turn = 360.0 / dials.output.scale
+        y -= turn * np.round((y[np.abs(x - inputs[0]).argmin()] - pairs[0]) / turn)
+    known = np.isfinite(y)
+    axes = _Axes(box, (float(x[0]), float(x[-1])), [*y[known], *pairs])
+    group = axes.drawn("Output over input, and the pairs", "output")
+    group.add(path([axes.at(x[known], y[known])], stroke=CURVE, stroke_width=1.6, data_curve="output"))
+    for value, place in zip(inputs, axes.at(inputs, pairs), strict=True):
+        group.add(circle(complex(place), 4.5, fill="none", stroke=DEMANDED, stroke_width=1.5, data_target=repr(value)))
+    return group
+
+
+class _Axes:
+    """Frame and ticks of a diagram over the values of the input."""
+
+    def __init__(self, box: Box, interval: tuple[float, float], values: list[float]) -> None:
+        self.box, self.interval = box, interval
+        self.frame = Box(box.left + 74.0, box.low + 24.0, box.right - 8.0, box.high - 36.0)
+        self.marks = ticks(values)
+
+    def at(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.complex128]:
+        """Places on the sheet."""
+        (first, last), low, high, frame = self.interval, self.marks[0], self.marks[-1], self.frame
+        across = frame.left + frame.width * (x - first) / (last - first)
+        return np.asarray(across + 1j * (frame.high - frame.height * (y - low) / ((high - low) or 1.0)))
+
+    def drawn(self, heading: str, name: str) -> Element:
+        """The empty diagram."""
+        (first, last), frame, marks = self.interval, self.frame, self.marks
+        group = element("g", data_diagram=name)
+        group.add(text(frame.left, self.box.low + 15.0, heading, 11.5, font_weight="bold", fill=INK))
+        for mark in marks:
+            y = self.at(np.array(first), np.array(mark)).imag
+            ends = complex(frame.left, float(y)), complex(frame.right, float(y))
+            group.add(line(*ends, stroke=PALE, stroke_width=1.0 if mark == 0.0 else 0.4))
+            words = length(mark, marks[-1] - marks[0], digits=4)
+            group.add(text(frame.left - 5.0, float(y) + 3.5, words, 10.0, text_anchor="end", fill=GREY))
+        for value in ticks([first, last]):
+            if first - 1e-9 * (last - first) <= value <= last + 1e-9 * (last - first):
+                foot = complex(float(self.at(np.array(value), np.array(marks[0])).real), frame.high)
+                group.add(line(foot, foot + 4j, stroke=GREY, stroke_width=1.0))
+                words = length(value, last - first, digits=5)
+                group.add(text(foot.real, foot.imag + 15.0, words, 10.0, text_anchor="middle", fill=GREY))
+        size = {"x": frame.left, "y": frame.low, "width": frame.width, "height": frame.height}
+        return group.add(element("rect", **size, fill="none", stroke=GREY, stroke_width=0.8))
 
 
 def _written(design: FunctionDesign, value: float, unit: str) -> str:
     """A structural error with its unit."""
-    return f"{length(value, digits=4)}°" if design.structural_error.unit == "degrees" else f"{length(value)} {unit}"
+    digits = length(value, digits=4)
+    return f"{digits}°" if design.structural_error.unit == "degrees" else f"{digits} {unit}"
 
 
 def _tables(design: FunctionDesign, problem: FunctionProblem) -> list[Block]:

@@ -81,9 +81,8 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
     zeros = problem.stated_zeros
     radians = math.pi / 180.0
     if problem.pairs is not None:
-        moved = [pair.output for pair in problem.pairs]
-        unit = max(moved) - min(moved) if problem.slides else 1.0
-        given = np.array([[pair.input, pair.output] for pair in problem.pairs])
+        given = problem.values
+        unit = float(np.ptp(given[:, 1])) if problem.slides else 1.0
         # Of an open zero only differences count, and small numbers are kept exact.
         given -= np.where([zero is None for zero in zeros], given[0], 0.0)
         inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)

@@ -82,6 +82,11 @@ class FunctionConstraints(Constraints):
     )
 
 
+def _one_way(values: Real) -> bool:
+    steps = np.diff(values)
+    return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+
+
 class FunctionProblem(LinkageProblem):
     """Function generation: the output of a fourbar or slider-crank follows its input.
 
@@ -231,12 +236,25 @@ class FunctionProblem(LinkageProblem):
             return None, 1.0
         return (1.0, None) if beyond == 1 else (None, None)
 
+    @property
+    def values(self) -> Real:
+        """The pairs as numbers, shape (n, 2), where angles go on from 360 with 0 without the jump.
+
+        Inputs go the shorter way from pair to pair if that is one way round, and angles of the output in any case.
+        """
+        assert self.pairs is not None
+        values = np.array([[pair.input, pair.output] for pair in self.pairs])
+        onward = np.unwrap(values[:, 0], period=FULL_TURN)
+        if not _one_way(values[:, 0]) and _one_way(onward):
+            values[:, 0] = onward
+        if not self.slides:
+            values[:, 1] = np.unwrap(values[:, 1], period=FULL_TURN)
+        return values
+
     def open_scale(self, side: int) -> tuple[float, float]:
         """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""
         low, high = self.scale_limits
-        assert self.pairs is not None
-        values = [(pair.input, pair.output)[side] for pair in self.pairs]
-        most = MOST_TURNED / (max(values) - min(values))
+        most = MOST_TURNED / float(np.ptp(self.values[:, side]))
         return low, max(min(high, most), low)
 
     @property
@@ -281,21 +299,21 @@ class FunctionProblem(LinkageProblem):
             yield from self._faults_of_ranges()
 
     def _faults_of_pairs(self, pairs: list[Pair]) -> Iterator[Contradiction]:
-        turned = [pair.input for pair in pairs]
+        turned = [float(value) for value in self.values[:, 0]]
+        for k, later in enumerate(turned):
+            for j, earlier in enumerate(turned[:k]):
+                if abs(math.remainder(later - earlier, FULL_TURN)) <= EQUAL_INPUTS:
+                    yield Contradiction(f"/pairs/{k}/input", f"equal to that of pair {j}; inputs must differ")
+                    return
         if max(turned) - min(turned) > MOST_TURNED:
             yield Contradiction("/pairs", "the inputs cover a full turn or more")
             return
-        for k, later in enumerate(turned):
-            for j, earlier in enumerate(turned[:k]):
-                if abs(later - earlier) <= EQUAL_INPUTS:
-                    yield Contradiction(f"/pairs/{k}/input", f"equal to that of pair {j}; inputs must differ")
-                    return
         steps = np.sign(np.diff(turned))
         wrong = np.flatnonzero(steps != steps[0])
         if self.constraints.in_order and len(wrong):
             detail = "inputs must rise, or fall, from pair to pair, or in_order be false"
             yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
-        moved = [pair.output for pair in pairs]
+        moved = [float(value) for value in self.values[:, 1]]
         if not self.slides and max(moved) - min(moved) > MOST_TURNED:
             yield Contradiction("/pairs", "the outputs cover a full turn or more")
         if max(moved) - min(moved) <= EQUAL_INPUTS * (max(map(abs, moved)) if self.slides else 1.0):

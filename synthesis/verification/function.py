@@ -56,7 +56,7 @@ DRIVEN = 2001
 CLOSER, LOOKS = 17, 6
 """Places in each closer look at an extreme, and the number of looks: 8⁶ times finer than the first."""
 
-SHOWN = 181
+SHOWN = 201
 """Places of the error curve that are returned."""
 
 SHOWN_TARGETS = 9
@@ -278,7 +278,7 @@ def verify_function(
 def _target_values(problem: FunctionProblem) -> Real:
     """Values of the input at the targets."""
     if problem.pairs is not None:
-        return np.array([pair.input for pair in problem.pairs])
+        return problem.values[:, 0]
     assert problem.function is not None
     low, high = problem.function.interval
     shares = problem.precision_shares if problem.aim == "precision" else np.linspace(0.0, 1.0, SHOWN_TARGETS)
@@ -288,7 +288,7 @@ def _target_values(problem: FunctionProblem) -> Real:
 def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: _Drive) -> _Wanted:
     """What the dials ask for at values of the input: pairs, or x of the function."""
     if problem.pairs is not None:
-        outputs = np.array([pair.output for pair in problem.pairs])
+        outputs = problem.values[:, 1]
     else:
         assert problem.function is not None
         outputs = problem.function.values(values)

@@ -11,9 +11,14 @@ from synthesis.kinds import examples
 EXAMPLES = examples("function")
 
 
+def solved(server, problem):
+    """The finished job of a problem; the first one of its kind loads what it needs."""
+    return server.reaches(server.post(problem=problem, wait=30)["id"], "succeeded", 90.0)
+
+
 @pytest.fixture(scope="module")
 def jobs(server):
-    return [server.post(problem=example, wait=30) for example in EXAMPLES]
+    return [solved(server, example) for example in EXAMPLES]
 
 
 def test_examples_run(jobs):
@@ -29,7 +34,8 @@ def test_designs_are_drawn_and_tabled(server, jobs):
         place = f"/v1/jobs/{job['id']}/designs/0"
         drawing = server.client.get(f"{place}.svg")
         assert drawing.status_code == 200, drawing.text
-        assert 'data-diagram="structural_error"' in drawing.text
+        met = "pairs" in job["problem"] and job["problem"]["pairs"] is not None
+        assert f'data-diagram="{"output" if met else "structural_error"}"' in drawing.text
         design = job["result"]["designs"][0]
         assert drawing.text.count('data-configuration="') == min(12, len(design["targets"]))
         table = server.client.get(f"{place}.csv").text.splitlines()
@@ -75,3 +81,18 @@ def test_a_refusal_names_the_field(server, change, path):
 def test_no_expression_reaches_the_answer(server, jobs):
     drawing = server.client.get(f"/v1/jobs/{jobs[0]['id']}/designs/0.svg").text
     assert not re.search(r"<script|NaN", drawing)
+
+
+def test_a_design_that_breaks_a_check_is_drawn_too(server):
+    pairs = [(0.0, 0.0), (40.0, 60.0), (70.0, 10.0), (100.0, 80.0), (140.0, 5.0)]
+    problem = {
+        "kind": "function",
+        "pairs": [{"input": x, "output": y} for x, y in pairs],
+        "include_failed": True,
+    }
+    job = solved(server, problem)
+    designs = job["result"]["designs"]
+    assert designs
+    assert not designs[0]["verification"]["passed"]
+    for n in range(len(designs)):
+        assert server.client.get(f"/v1/jobs/{job['id']}/designs/{n}.svg").status_code == 200

@@ -165,6 +165,18 @@ class TestPrecisionPoints:
         assert stated.designs == []
         assert stated.search.rejected == {"reversed_link": 1}
 
+    @pytest.mark.parametrize("count", [3, 5, 7])
+    def test_angles_may_go_on_from_360_with_0(self, count):
+        rng = np.random.default_rng(30 + count)
+        for _ in range(3):
+            lengths, inputs, outputs = planted_fourbar(rng, count)
+            middle = inputs[count // 2], outputs[count // 2]
+            shifted = np.mod(inputs - middle[0], 360.0), np.mod(outputs - middle[1], 360.0)
+            zeros = {"input": middle[0], "output": middle[1]} if count == 3 else None
+            for order in (slice(None), slice(None, None, -1)):
+                stated = pairs_of(shifted[0][order], shifted[1][order])
+                assert holds(solved(pairs=stated, zeros=zeros, constraints=UNBOUNDED), lengths, 1e-5)
+
     def test_slider_cranks_come_back(self):
         rng = np.random.default_rng(3)
         for count in (3, 4, 5):
