@@ -19,6 +19,8 @@ from typing import Any, ParamSpec, TypeVar
 
 import structlog
 
+from service.loading import IMPORTS
+
 THREADS = 2
 """Analyses that run at once. They hold the interpreter most of the time; more of them would only delay all others."""
 
@@ -104,7 +106,8 @@ class Analyst:
 
 def warm_up() -> None:
     """Compile the kernels of the analysis core, or load them from their cache, by an analysis of each sort."""
-    from synthesis.analyses import families, parse_request
+    with IMPORTS:
+        from synthesis.analyses import families, parse_request
 
     for family in families():
         family.request.example().answer()

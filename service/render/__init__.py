@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any, Literal
 
+from service.loading import IMPORTS
+
 __all__ = ["Form", "NoSuchExport", "exported"]
 
 Form = Literal["svg", "gif", "dxf", "csv"]
@@ -114,5 +116,7 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     if form not in forms:
         raise NoSuchExport(design.mechanism.type, form)
     module, function = forms[form].split(":")
-    file: str | bytes = getattr(import_module(module), function)(design, problem, title)
+    with IMPORTS:
+        make = getattr(import_module(module), function)
+    file: str | bytes = make(design, problem, title)
     return file

@@ -1,0 +1,30 @@
+"""Threads of the server import one after the other."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from service import analyst, render
+from service.loading import IMPORTS
+from synthesis.dispatch import solve
+from synthesis.kinds import example, parse_problem
+
+
+def drawn() -> None:
+    problem = parse_problem(example("quick_return"))
+    design = solve(problem, lambda fraction, message: None).designs[0]
+    assert render.exported(design, problem, "", "svg")
+
+
+@pytest.mark.parametrize("work", [drawn, analyst.warm_up], ids=["drawing", "analyst"])
+def test_who_imports_waits_for_another_import(work) -> None:
+    work()
+    thread = threading.Thread(target=work, daemon=True)
+    with IMPORTS:
+        thread.start()
+        thread.join(1.0)
+        assert thread.is_alive()
+    thread.join(60.0)
+    assert not thread.is_alive()
