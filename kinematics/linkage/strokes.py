@@ -24,6 +24,10 @@ GRID = 1440
 """Inputs at which reversals are looked for, a quarter of a degree apart."""
 
 
+EQUAL = 1e-10
+"""Radians by which rotations of strokes may differ and count as equal: what rounding leaves of equal ones."""
+
+
 class Reversals(NamedTuple):
     """Limit positions of an output over one turn of the input, in the order of the input.
 
@@ -65,7 +69,7 @@ class Strokes(NamedTuple):
     @property
     def time_ratio(self) -> float:
         """Time of the slow stroke over that of the fast one, the input at constant speed."""
-        return self.slow / self.fast
+        return max(self.slow, self.fast) / min(self.slow, self.fast)
 
 
 def reversals(mechanism: Mechanism, output: str) -> Reversals:
@@ -121,7 +125,15 @@ def strokes(mechanism: Mechanism, output: str) -> Strokes | None:
         return None
     between = float(inputs[1] - inputs[0])
     travel = float(abs(outputs[1] - outputs[0]))
-    if between >= np.pi:
-        return Strokes(inputs, outputs, between, 2.0 * np.pi - between, travel)
-    inputs = np.array([inputs[1], inputs[0] + 2.0 * np.pi])
-    return Strokes(inputs, outputs[::-1].copy(), 2.0 * np.pi - between, between, travel)
+    order = between >= np.pi
+    if abs(between - np.pi) <= EQUAL:
+        # Equal strokes: the first is the one that begins nearer to the reference.
+        near = np.abs(np.exp(1j * (inputs - float(mechanism.reference_input))) - 1.0)
+        order = bool(near[0] <= near[1])
+    if not order:
+        inputs, outputs, between = (
+            np.array([inputs[1], inputs[0] + 2.0 * np.pi]),
+            outputs[::-1].copy(),
+            2.0 * np.pi - between,
+        )
+    return Strokes(inputs, outputs, between, 2.0 * np.pi - between, travel)

@@ -44,7 +44,7 @@ from synthesis.problems.planetary_train import (
     PlanetaryTeeth,
     ToothRange,
 )
-from synthesis.problems.quick_return import QuickReturnProblem
+from synthesis.problems.quick_return import QuickReturnProblem, RockerPosition
 from synthesis.problems.steering import ArmLimits, SteeringProblem
 from synthesis.problems.straight_line import StraightLineProblem
 
@@ -82,6 +82,7 @@ __all__ = [
     "PositiveNumber",
     "QuickReturnProblem",
     "Region",
+    "RockerPosition",
     "StatedProblem",
     "Statement",
     "SteeringProblem",

@@ -157,7 +157,7 @@ def families(time_ratio: float, swing: float) -> list[Family]:
 
 def reachable(problem: QuickReturnProblem) -> RatioRange:
     """The time ratios of crank-rockers with the stated swing."""
-    swing = problem.swing or 0.0
+    swing = problem.swing_angle or 0.0
     greatest = (540.0 + swing) / (180.0 - swing) if swing < 180.0 else 1.0
     reaches = bool(families(problem.time_ratio, math.radians(swing)))
     if swing >= 180.0:
@@ -171,11 +171,11 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
 
 def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
     """The best of each family within the limit of the link ratio, and some with shorter links."""
-    assert problem.swing is not None
+    assert problem.swing_angle is not None
     limit = problem.link_ratio_limit
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     found = []
-    for family in families(problem.time_ratio, math.radians(problem.swing)):
+    for family in families(problem.time_ratio, math.radians(problem.swing_angle)):
         best = family.near_best(demanded)
         chosen = [best if limit is None else min(best, family.longest(limit * (1.0 - SLACK)))]
         if chosen[0] <= 1.0:
@@ -196,17 +196,26 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
     # Crank along +x in the position of extension; B goes from 1 + ρ to −(ρ − 1) e^{iφ}.
     b1, b2 = complex(rho + 1.0), (1.0 - rho) * overlap
     o4 = (b2 - b1 * turn) / (1.0 - turn)
-    at_b, at_a = (b1, 1.0 + 0j) if family.phi >= math.pi else (b2, overlap)
+    extended = family.phi >= math.pi
+    at_b, at_a = (b1, 1.0 + 0j) if extended else (b2, overlap)
     scale = problem.scaled(1.0, max(b, c, d), c)
     angle = math.radians(problem.ground_angle)
     place = scale * complex(math.cos(angle), math.sin(angle)) * o4.conjugate() / abs(o4)
-    o2 = complex(*problem.crank_pivot)
+    ground = scale * d * complex(math.cos(angle), math.sin(angle))
+    pole = problem.pole
+    o2 = problem.o2 if pole is None else pole - ground
     joints = {
         "O2": o2,
-        "O4": o2 + scale * d * complex(math.cos(angle), math.sin(angle)),
+        "O4": o2 + ground if pole is None else pole,
         "A": o2 + place * at_a,
         "B": o2 + place * at_b,
     }
+    body: dict[str, complex] = {}
+    standing = None
+    if problem.positions is not None:
+        # The rocker turns counter-clockwise from extension to overlap.
+        standing = problem.positions[0 if extended == (problem.rotation > 0.0) else 1]
+        body = {"C": standing.point}
     diagonal, coupler = o4 - at_a, at_b - at_a
     return FourbarMechanism(
         fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(joints["O4"])),
@@ -214,13 +223,14 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
         coupler_point=CouplerPoint(distance=0.0, angle=0.0),
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(place * at_a)),
+        reference_body_angle=None if standing is None else standing.angle,
         skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in joints.items()},
+            joints={name: to_point(z) for name, z in (joints | body).items()},
             links=[
                 Link(name="ground", joints=["O2", "O4"]),
                 Link(name="input", joints=["O2", "A"]),
                 Link(name="coupler", joints=["A", "B"]),
-                Link(name="output", joints=["O4", "B"]),
+                Link(name="output", joints=["O4", "B", *body]),
             ],
             input_link="input",
         ),

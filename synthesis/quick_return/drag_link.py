@@ -262,7 +262,7 @@ def _mechanism(
     o6: complex | None,
 ) -> DragLinkMechanism:
     """The sixbar at the beginning of its slow stroke; places in grounds, from O2 with the ground along +x."""
-    o2 = complex(*problem.crank_pivot)
+    o2 = problem.o2
     local = {
         "O2": 0j,
         "O4": 1.0 + 0j,

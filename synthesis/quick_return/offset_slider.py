@@ -99,7 +99,7 @@ def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMe
     a = x * b
     e = b * (1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w)
     along = cmath.exp(1j * math.radians(problem.ground_angle))
-    o2 = complex(*problem.crank_pivot)
+    o2 = problem.o2
     far = complex(math.sqrt((a + b - e) * (a + b + e)), e) * along
     pin_a = o2 + a * far / abs(far)
     made = slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.ground_angle), pin_a)

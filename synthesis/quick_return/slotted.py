@@ -105,7 +105,7 @@ def _mechanism(
 ) -> QuickReturnMechanism:
     """The mechanism with its ram at a height over O4 along the stated direction, O2 over O4; crank angle from there."""
     turn = math.radians(problem.ground_angle)
-    o2 = complex(*problem.crank_pivot)
+    o2 = problem.o2
     up = 1j * cmath.exp(1j * turn)
     o4 = o2 - ground * up
     line = o4 + height * up

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, barker_class
 from kinematics.linkage.classification import BarkerClass
+from kinematics.linkage.drive import drive
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.strokes import Strokes, strokes
@@ -27,7 +28,7 @@ from synthesis.designs import (
 )
 from synthesis.designs.quick_return import DragLinkMechanism, QuickReturnMechanisms
 from synthesis.mechanisms import GivenMechanism, MechanismError
-from synthesis.problems import QuickReturnProblem
+from synthesis.problems import QuickReturnProblem, RockerPosition
 from synthesis.ranking import quality
 from synthesis.verification.checks import at_least, at_most
 from synthesis.verification.turning import turn_of
@@ -37,6 +38,9 @@ RATIO_MET = 1e-9
 
 SWING_MET = 1e-9
 """Degrees by which the measured swing may differ."""
+
+BODY_MET = 1e-9
+"""Share of its distance from the rocker's pivot, and radians, by which a body on the rocker may miss its positions."""
 
 STROKE_MET = 1e-9
 """Share by which the measured stroke may differ."""
@@ -103,7 +107,11 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
         size=turn.size,
         quality=quality(math.sin(least), max(lengths) / task, ratio),
     )
-    checks = [*_task_checks(problem, metrics), *_constraint_checks(problem, mechanism, lengths, metrics)]
+    checks = [
+        *_task_checks(problem, metrics),
+        *_body_checks(problem, design, measured),
+        *_constraint_checks(problem, mechanism, lengths, metrics),
+    ]
     return QuickReturnDesign(
         mechanism=design,
         targets=_limits(measured, float(mechanism.reference_input), swings=swings),
@@ -128,13 +136,38 @@ def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> li
         Check(name="crank_turns", passed=metrics.full_rotation),
         Check(name="time_ratio", passed=off <= RATIO_MET, value=off, limit=RATIO_MET),
     ]
-    if problem.swing is not None:
-        off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing)
+    if problem.swing_angle is not None:
+        off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing_angle)
         checks.append(Check(name="swing", passed=off <= SWING_MET, value=off, limit=SWING_MET))
     if problem.stroke is not None:
         off = math.inf if metrics.stroke is None else abs(metrics.stroke / problem.stroke - 1.0)
         checks.append(Check(name="stroke", passed=off <= STROKE_MET, value=off, limit=STROKE_MET))
     return checks
+
+
+def _body_checks(problem: QuickReturnProblem, design: QuickReturnMechanisms, measured: Strokes) -> list[Check]:
+    """The body on the rocker stands at its two positions when the driven rocker is at its limits.
+
+    The skeleton says where the body is fixed on the rocker; nothing else does.
+    """
+    if problem.positions is None:
+        return []
+    assert isinstance(design, FourbarMechanism)
+    mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
+    motion = drive(mechanism, measured.inputs, order=0)
+    points = motion.joints["C"][0]
+    turned = motion.angles["output"][0] - mechanism.link_angle("output")
+    angles = (design.reference_body_angle or 0.0) + np.degrees(turned)
+    size = max(abs(position.point - complex(*design.fixed_pivots.output)) for position in problem.positions)
+    size = max(size, design.links.output)
+
+    def missed(k: int, position: RockerPosition) -> float:
+        turn = math.radians(math.remainder(angles[k] - position.angle, 360.0))
+        return max(float(abs(points[k] - position.point)) / size, abs(turn))
+
+    first, second = problem.positions
+    worst = min(max(missed(k, first), missed(1 - k, second)) for k in (0, 1))
+    return [Check(name="reaches_targets", passed=worst <= BODY_MET, value=worst, limit=BODY_MET)]
 
 
 def _constraint_checks(

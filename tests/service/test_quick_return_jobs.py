@@ -22,7 +22,7 @@ def solved(client, problem):
     return job
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example["mechanism"])
+@pytest.mark.parametrize("example", EXAMPLES, ids=("fourbar", "auto", "positions"))
 def test_examples_are_solved_drawn_and_driven(client, example):
     job = solved(client, example)
     designs = job["result"]["designs"]
