@@ -57,6 +57,7 @@ from synthesis.designs.path import (
     PathDesign,
     PathMetrics,
     PathResult,
+    TimedDyads,
 )
 from synthesis.designs.planetary_train import (
     MeshContact,
@@ -173,5 +174,6 @@ __all__ = [
     "StraightLineMetrics",
     "StraightLineResult",
     "Target",
+    "TimedDyads",
     "Verification",
 ]

@@ -66,6 +66,14 @@ class FamilySearch(Answer):
     met: int = Field(description="Of these, the ones that came to meet all points, and the pivots that are demanded.")
 
 
+class TimedDyads(Answer):
+    """What was computed of the fourbars through five points at their crank angles; for both directions, if asked."""
+
+    inputs: int = Field(description="Real input dyads: four at most for each direction.")
+    fourbars: int = Field(description="Real fourbars: twelve at most for each direction.")
+    sliders: int = Field(description="Dyads with a pivot at infinity.")
+
+
 class CurveSweep(Answer):
     """What a match of whole curves has looked at."""
 
@@ -90,4 +98,7 @@ class PathResult(Result[PathDesign]):
     )
     family: FamilySearch | None = Field(
         default=None, exclude_if=nothing, description="For fewer than nine points with demands."
+    )
+    timed: TimedDyads | None = Field(
+        default=None, exclude_if=nothing, description="For five points at their crank angles."
     )

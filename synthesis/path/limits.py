@@ -7,7 +7,7 @@ linkage. What is not limited is infinite, and costs nothing.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -48,7 +48,18 @@ INSIDE = 1e-10
 """Limits are drawn in by this share, so that what rounding leaves lies on their right side."""
 
 
-def setting_of(problem: PathProblem, origin: complex, size: float, *, sign: float, shortest: int) -> Real:
+class Usable(NamedTuple):
+    """What makes a linkage usable where a client does not say: least transmission angle (degrees), link ratio, and the
+    longest link in task sizes."""
+
+    transmission: float
+    ratio: float
+    longest: float
+
+
+def setting_of(
+    problem: PathProblem, origin: complex, size: float, *, sign: float, shortest: int, usable: Usable | None = None
+) -> Real:
     """A problem's limits for one class of fourbars and one assembly, with ``origin`` at 0 and ``size`` at 1."""
     limits = problem.constraints
     out = np.full(SETTING, math.inf)
@@ -60,9 +71,13 @@ def setting_of(problem: PathProblem, origin: complex, size: float, *, sign: floa
     if limits.link_length is not None:
         least = max(limits.link_length.min / size, SHORTEST_SHARE)
         most = LONGEST if limits.link_length.max is None else limits.link_length.max / size
+    if usable is not None:
+        most = min(most, max(usable.longest, 2.0 * least))
+        out[RATIO] = usable.ratio
+        out[COSINE] = math.cos(math.radians(usable.transmission))
     out[LINKS], out[LINKS + 1] = least * (1.0 + INSIDE), most * (1.0 - INSIDE)
     if limits.max_link_ratio is not None:
-        out[RATIO] = limits.max_link_ratio * (1.0 - INSIDE)
+        out[RATIO] = min(out[RATIO], limits.max_link_ratio * (1.0 - INSIDE))
     out[O2_BOX : O2_BOX + 4] = _box([limits.fixed_pivot_region, limits.input_pivot_region], origin, size)
     out[O4_BOX : O4_BOX + 4] = _box([limits.fixed_pivot_region], origin, size)
     out[POINT_BOX : POINT_BOX + 4] = -math.inf, math.inf, -math.inf, math.inf
@@ -71,7 +86,7 @@ def setting_of(problem: PathProblem, origin: complex, size: float, *, sign: floa
             if interval is not None:
                 out[POINT_BOX + 2 * k : POINT_BOX + 2 * k + 2] = interval[0] / size, interval[1] / size
     if limits.min_transmission_angle is not None:
-        out[COSINE] = math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - INSIDE)
+        out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - INSIDE))
     out[GIVEN:] = math.nan
     for k, pivot in enumerate((problem.fixed_pivots.input, problem.fixed_pivots.output)):
         x, y = pivot or (None, None)

@@ -9,21 +9,21 @@ and limits are met by multipliers (:mod:`synthesis.numerics.levenberg`): neither
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.designs import FourbarMechanism, PathDesign, PathResult, Search
+from synthesis.designs import FourbarMechanism, PathDesign, PathResult
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.path.coupler_curve import ANY, PHASE, POINT, UNKNOWNS, closure, lengths_of
-from synthesis.path.limits import LIMITS, SHORTEST, SIGN, setting_of
+from synthesis.path.harvest import Harvest
+from synthesis.path.limits import LIMITS, SHORTEST, SIGN, Usable, setting_of
 from synthesis.path.point_rows import HELD, descend_each, hold, path_rows
 from synthesis.path.point_starts import COUPLER, DRAWS, FAR_DYAD, OUTPUT, SAME, along, free_starts, kicked, timed_starts
 from synthesis.problems import PathProblem
-from synthesis.ranking import distinct, ranked
+from synthesis.ranking import distinct
 from synthesis.verification.path import verify_path
 
 Real = NDArray[np.float64]
@@ -69,9 +69,8 @@ SOFT, FIRM = 10.0, 1e3
 SAME_FIT = 1e-2
 """Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
 
-REASONS = {"same_circuit": "circuit_defect", "same_branch": "branch_defect", "visits_in_order": "order_defect",
-           "shortest_link": "link_length", "longest_link": "link_length"}  # fmt: skip
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+AS_GOOD_AS_EXACT = 1e-9
+"""Root mean square distance, in task sizes, below which fits are equally near."""
 
 _CLASSES = {"double_crank": [0], "crank_rocker": [1], "double_rocker": [2], "non_grashof": [ANY]}
 
@@ -118,15 +117,16 @@ def classes(problem: PathProblem) -> list[int]:
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     """Fit fourbars to the points of a problem."""
     task = point_task(problem)
-    run = _Run(problem)
+    fits = _Fits(problem)
     found = fitted(problem, task, np.random.default_rng(problem.seed), progress)
     for n, candidate in enumerate(found):
-        if len(run.passed) >= max(2 * problem.max_designs, LEAST_DRIVEN):
+        if len(fits.passed) >= max(2 * problem.max_designs, LEAST_DRIVEN):
             break
         progress(0.9 + 0.1 * n / len(found), f"driving linkage {n + 1} of {len(found)}")
-        run.add(candidate, task)
+        mechanism = mechanism_of(candidate, task)
+        fits.add(None if mechanism is None else verify_path(problem, mechanism))
     progress(1.0, "verified")
-    return run.result()
+    return fits.result("least_squares", complete=False, summary=fits.summary())
 
 
 def warm_up() -> None:
@@ -146,13 +146,22 @@ def warm_up() -> None:
                 verify_path(problem, mechanism)
 
 
-def fitted(problem: PathProblem, task: PointTask, rng: np.random.Generator, progress: Progress) -> list[Candidate]:
-    """Minima within the limits, least first."""
+def fitted(
+    problem: PathProblem,
+    task: PointTask,
+    rng: np.random.Generator,
+    progress: Progress,
+    *,
+    finalists: int = FINALISTS,
+    usable: Usable | None = None,
+) -> list[Candidate]:
+    """Minima within the limits, least first: ``finalists`` of them at most, within limits of our own too if stated."""
     thinned = _thinned(task)
     ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
     cases = [(way, shortest, sign) for way in ways for shortest in classes(problem) for sign in (1.0, -1.0)]
     settings = [
-        setting_of(problem, task.origin, task.size, sign=sign, shortest=shortest) for _, shortest, sign in cases
+        setting_of(problem, task.origin, task.size, sign=sign, shortest=shortest, usable=usable)
+        for _, shortest, sign in cases
     ]
     flocks = []
     for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
@@ -169,10 +178,10 @@ def fitted(problem: PathProblem, task: PointTask, rng: np.random.Generator, prog
     pool = [
         Candidate(x, state, float(cost), setting, way)
         for (way, _, _), setting, flock in zip(cases, settings, flocks, strict=True)
-        for x, state, cost in zip(*_different(_best(flock, len(flock.costs)), FINALISTS), strict=True)
+        for x, state, cost in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
     ]
     pool.sort(key=lambda candidate: candidate.cost)
-    chosen = _distinct(pool, FINALISTS if len(task.rows) <= MANY else OF_MANY)
+    chosen = _distinct(pool, finalists if len(task.rows) <= MANY else OF_MANY)
     found = []
     for n, candidate in enumerate(chosen):
         progress(0.6 + 0.3 * n / len(chosen), f"refining fit {n + 1} of {len(chosen)}")
@@ -327,63 +336,28 @@ def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | No
     return fourbar_mechanism(FourbarConfiguration(*(complex(z) for z in task.origin + task.size * joints)))
 
 
-class _Run:
+class _Fits(Harvest):
     """What becomes of the fits."""
 
-    def __init__(self, problem: PathProblem) -> None:
-        self.problem = problem
-        self.passed: list[PathDesign] = []
-        self.failed: list[PathDesign] = []
-        self.rejected: Counter[str] = Counter()
-        self.count = 0
+    def shown(self) -> list[PathDesign]:
+        """Nearest first unless another order is asked for; among answers that are equally near, quality decides."""
+        designs = super().shown()
+        if self.problem.rank_by == "quality":
+            designs.sort(key=lambda d: (not d.verification.passed, max(d.metrics.rms_residual, AS_GOOD_AS_EXACT)))
+        return designs
 
-    def add(self, candidate: Candidate, task: PointTask) -> None:
-        """Verify the linkage of a fit."""
-        self.count += 1
-        mechanism = mechanism_of(candidate, task)
-        design = None if mechanism is None else verify_path(self.problem, mechanism)
-        if design is None:
-            self.rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            self.passed.append(design)
-        else:
-            self.failed.append(design)
-            name = next(check.name for check in design.verification.checks if not check.passed)
-            self.rejected[REASONS.get(name, name)] += 1
-
-    def result(self) -> PathResult:
-        """The answer, nearest first unless another order is asked for."""
-        problem = self.problem
-        shown = ranked(self.passed, problem.rank_by)
-        if problem.include_failed:
-            shown += ranked(self.failed, problem.rank_by)
-        if problem.rank_by == "quality":
-            # A fit is asked to be near; among answers that are equally near, quality decides.
-            shown.sort(key=lambda d: (not d.verification.passed, max(d.metrics.rms_residual, 1e-9)))
-        return PathResult(
-            designs=shown[: problem.max_designs],
-            search=Search(
-                method="least_squares",
-                complete=False,
-                candidates=self.count,
-                accepted=len(self.passed),
-                rejected=dict(self.rejected),
-                seed=problem.seed,
-            ),
-            summary=self._summary(),
-        )
-
-    def _summary(self) -> str:
+    def summary(self) -> str:
+        """The answer in words."""
         n, unit = len(self.problem.points), self.problem.length_unit
         timing = "at their crank angles" if self.problem.prescribed else "in order"
         if self.passed:
             best = min(self.passed, key=lambda d: d.metrics.sum_of_squares).metrics
             text = (
-                f"{len(self.passed)} of {self.count} fitted linkages satisfy all demands; the best passes the {n} "
+                f"{len(self.passed)} of {self.candidates} fitted linkages satisfy all demands; the best passes the {n} "
                 f"points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
                 f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
             )
         else:
-            listed = ", ".join(f"{name.replace('_', ' ')} {k}" for name, k in self.rejected.items())
-            text = f"None of {self.count} fitted linkages satisfies all demands (rejected: {listed or 'none'})."
+            rejected = self.listed() or "none"
+            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."

@@ -8,20 +8,18 @@ verified, and what each was rejected for is counted.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from synthesis.designs import CognateTriples, PathDesign, PathResult, Search
+from synthesis.designs import CognateTriples, PathResult
 from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.continuation import follow, refine
 from synthesis.path import curve_match
 from synthesis.path.family_search import solve_family
 from synthesis.path.given_pivots import all_are_found, solve_given_pivots
+from synthesis.path.harvest import Harvest
 from synthesis.path.nine_point import Triples, all_triples
 from synthesis.path.nine_point_start import start
 from synthesis.path.nine_point_system import (
@@ -34,8 +32,8 @@ from synthesis.path.nine_point_system import (
 )
 from synthesis.path.point_fit import fit_points
 from synthesis.path.point_fit import warm_up as warm_up_fits
+from synthesis.path.timed import solve_timed
 from synthesis.problems import PathProblem
-from synthesis.ranking import distinct, ranked
 from synthesis.verification.path import verify_path
 
 Complex = NDArray[np.complex128]
@@ -54,19 +52,6 @@ FIRST_PART = 0.5
 SHORTEST_LINK = 1e-9
 """Links shorter than this share of the longest are no links."""
 
-SAME_DESIGN = 1e-6
-"""Designs whose joints agree to this share of the task's size are one and the same."""
-
-_REASONS = {
-    "reaches_targets": "residual",
-    "same_circuit": "circuit_defect",
-    "same_branch": "branch_defect",
-    "visits_in_order": "order_defect",
-    "shortest_link": "link_length",
-    "longest_link": "link_length",
-}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
-
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation."""
@@ -76,7 +61,9 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
         return solve_given_pivots(problem, progress)
     if problem.fitted:
         return fit_points(problem, progress)
-    if len(problem.points) < NINE and not problem.prescribed:
+    if problem.prescribed:
+        return solve_timed(problem, progress)
+    if len(problem.points) < NINE:
         near = solve_family(problem, lambda share, message: progress(FIRST_PART * share, message))
         if near.search.accepted:
             progress(1.0, "verified")
@@ -90,7 +77,7 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
-    harvest = _Harvest(problem)
+    harvest = _Triples(problem)
     found: list[Triples] = []
     for n in range(rounds):
 
@@ -112,7 +99,9 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
         largest_residual=max(triples.largest_residual for triples in found),
         closed_under_conjugation=all(triples.self_conjugate for triples in found),
     )
-    return harvest.result(counts, complete)
+    method = "nine_point_continuation" if len(given) == NINE else "nine_point_family"
+    result = harvest.result(method, complete=complete, summary=harvest.summary(counts, complete=complete))
+    return result.model_copy(update={"triples": counts})
 
 
 def warm_up() -> None:
@@ -139,15 +128,12 @@ def _nine(given: Complex, rng: np.random.Generator) -> Complex:
     return np.concatenate([given, np.asarray(curve(drawn)) + off])
 
 
-class _Harvest:
-    """The designs of the real triples, verified, and what became of them."""
+class _Triples(Harvest):
+    """The designs of the real triples."""
 
     def __init__(self, problem: PathProblem) -> None:
-        self.problem = problem
-        self.passed: list[PathDesign] = []
-        self.failed: list[PathDesign] = []
-        self.rejected: Counter[str] = Counter()
-        self.candidates = self.on_one_circuit = 0
+        super().__init__(problem)
+        self.on_one_circuit = 0
 
     def gather(self, triples: Triples) -> None:
         """Verify all six designs of every triple."""
@@ -161,45 +147,18 @@ class _Harvest:
 
     def _verify(self, joints: FourbarConfiguration) -> bool:
         """Put a design where it belongs; returns whether it has all points on one circuit."""
-        self.candidates += 1
         lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
         if min(*lengths, abs(joints.o4 - joints.o2)) <= SHORTEST_LINK * max(lengths):
-            self.rejected["degenerate"] += 1
+            self.degenerate()
             return False
         design = verify_path(self.problem, fourbar_mechanism(joints))
-        if design is None:
-            self.rejected["cannot_be_driven"] += 1
-            return False
-        checks = design.verification.checks
-        if design.verification.passed:
-            self.passed.append(design)
-        else:
-            self.failed.append(design)
-            name = next(check.name for check in checks if not check.passed)
-            self.rejected[_REASONS.get(name, name)] += 1
-        return all(check.passed for check in checks if check.name in ("reaches_targets", "same_circuit"))
-
-    def result(self, counts: CognateTriples, complete: bool) -> PathResult:
-        """The answer, best first."""
-        problem = self.problem
-        shown = ranked(self.passed, problem.rank_by)
-        if problem.include_failed:
-            shown += ranked(self.failed, problem.rank_by)
-        return PathResult(
-            designs=_different(shown, problem.task_size)[: problem.max_designs],
-            search=Search(
-                method="nine_point_continuation" if len(problem.points) == NINE else "nine_point_family",
-                complete=complete,
-                candidates=self.candidates,
-                accepted=len(self.passed),
-                rejected=dict(self.rejected),
-                seed=problem.seed,
-            ),
-            summary=self._summary(counts, complete),
-            triples=counts,
+        self.add(design)
+        return design is not None and all(
+            check.passed for check in design.verification.checks if check.name in ("reaches_targets", "same_circuit")
         )
 
-    def _summary(self, counts: CognateTriples, complete: bool) -> str:
+    def summary(self, counts: CognateTriples, *, complete: bool) -> str:
+        """The answer in words."""
         expected = ORBITS * counts.rounds
         text = (
             f"{counts.computed} of {expected} triples of cognate fourbars were computed; {counts.real} are real, "
@@ -207,21 +166,7 @@ class _Harvest:
             f"and {len(self.passed)} of {self.candidates} designs satisfy all demands."
         )
         if self.rejected:
-            text += f" Rejected: {_listed(self.rejected)}."
+            text += f" Rejected: {self.listed()}."
         if not self.passed:
             text += " These are all fourbars, so no design exists." if complete else " Others may exist."
         return text
-
-
-def _different(designs: list[PathDesign], size: float) -> list[PathDesign]:
-    """The designs without repetitions, in their order."""
-    if not designs:
-        return []
-    joints = np.array(
-        [[complex(*design.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4")] for design in designs]
-    )
-    return [designs[n] for n in distinct(joints, len(designs), SAME_DESIGN * size)]
-
-
-def _listed(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items())

@@ -301,8 +301,6 @@ class PathProblem(LinkageProblem):
             timing = "with prescribed timing" if self.prescribed else "with free timing"
             detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"
             return [Contradiction("/method", detail)]
-        if self.prescribed and not self.fitted:
-            return [Contradiction("/method", "exact points of prescribed timing are not solved; use least_squares")]
         return []
 
     def _pivots(self) -> list[Contradiction]:

@@ -96,9 +96,24 @@ def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
     return passed
 
 
-def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real) -> Passages | None:
-    """Where P is when the input has turned by ``turns`` (radians) from its reference; None where it cannot turn so."""
-    return _driven(fourbar, points, fourbar.reference + turns, run=True)
+def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: bool) -> Passages | None:
+    """Where P is when the input has turned by ``turns`` (radians) from its reference; None where it cannot turn so.
+
+    With ``both`` a point that the other assembly meets, and the reference's does not, counts as met there.
+    """
+    angles = fourbar.reference + turns
+    own = _driven(fourbar, points, angles, run=True)
+    if not both or (own is not None and own.misses.max() <= MET * np.abs(points - points[0]).max()):
+        return own
+    signs = np.array([fourbar.assembly, -fourbar.assembly])
+    at = positions(fourbar.linkage, angles, signs)
+    misses = np.where(at.valid, np.abs(at.p - points), np.inf)
+    # The first target is met by the reference itself.
+    misses[1, 0] = np.inf
+    best = misses.argmin(axis=0), np.arange(len(points))
+    if not np.all(np.isfinite(misses[best])):
+        return None
+    return Passages(angles, np.asarray(signs[best[0]]), at.a[best], at.b[best], at.p[best], misses[best])
 
 
 def in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:

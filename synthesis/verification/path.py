@@ -128,7 +128,9 @@ def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> 
     if problem.prescribed:
         turns = np.array(problem.crank_turns)
         ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
-        found = [passed for way in ways if (passed := at_angles(fourbar, points, way)) is not None]
+        found = [
+            passed for way in ways if (passed := at_angles(fourbar, points, way, both=not problem.fitted)) is not None
+        ]
         return min(found, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
     if not problem.fitted:
         return at_points(fourbar, points)

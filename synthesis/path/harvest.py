@@ -1,0 +1,88 @@
+"""What becomes of linkages that were found: verified designs, why others were rejected, and the answer made of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from synthesis.designs import PathDesign, PathResult, Search
+from synthesis.problems import PathProblem
+from synthesis.ranking import distinct, ranked
+
+SAME_DESIGN = 1e-6
+"""Designs whose joints agree to this share of the task's size are one and the same."""
+
+APART = 0.05
+"""The same where there is a family of them: nearer ones are variants of one design."""
+
+_REASONS = {
+    "reaches_targets": "residual",
+    "same_circuit": "circuit_defect",
+    "same_branch": "branch_defect",
+    "visits_in_order": "order_defect",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+class Harvest:
+    """Designs that satisfy all demands of a problem, those that do not, and the reasons."""
+
+    def __init__(self, problem: PathProblem, *, apart: float = SAME_DESIGN) -> None:
+        self.problem, self.apart = problem, apart
+        self.passed: list[PathDesign] = []
+        self.failed: list[PathDesign] = []
+        self.rejected: Counter[str] = Counter()
+        self.candidates = 0
+
+    def degenerate(self) -> None:
+        """A solution has a link without length: it is no linkage."""
+        self.candidates += 1
+        self.rejected["degenerate"] += 1
+
+    def add(self, design: PathDesign | None) -> None:
+        """Put a verified design where it belongs; None is one that could not be driven."""
+        self.candidates += 1
+        if design is None:
+            self.rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            self.passed.append(design)
+        else:
+            self.failed.append(design)
+            name = next(check.name for check in design.verification.checks if not check.passed)
+            self.rejected[_REASONS.get(name, name)] += 1
+
+    def listed(self) -> str:
+        """The reasons in words."""
+        return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in self.rejected.items() if n)
+
+    def shown(self) -> list[PathDesign]:
+        """Designs in the order asked for, each once; those that failed after the others, where they are wanted."""
+        problem = self.problem
+        designs = ranked(self.passed, problem.rank_by)
+        if problem.include_failed:
+            designs += ranked(self.failed, problem.rank_by)
+        if not designs:
+            return []
+        joints = np.array(
+            [[complex(*one.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4")] for one in designs]
+        )
+        return [designs[n] for n in distinct(joints, len(designs), self.apart * problem.task_size)]
+
+    def result(self, method: str, *, complete: bool, summary: str) -> PathResult:
+        """The answer."""
+        problem = self.problem
+        return PathResult(
+            designs=self.shown()[: problem.max_designs],
+            search=Search(
+                method=method,
+                complete=complete,
+                candidates=self.candidates,
+                accepted=len(self.passed),
+                rejected={name: n for name, n in self.rejected.items() if n},
+                seed=problem.seed,
+            ),
+            summary=summary,
+        )
