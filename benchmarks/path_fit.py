@@ -63,9 +63,9 @@ def statement(row: dict[str, Any], seed: int = 0) -> dict[str, Any]:
 
 
 def best_published(row: dict[str, Any]) -> float | None:
-    """The least sum of squares that is printed for a row."""
+    """The least sum of squares that is printed for a row, and what the printed digits leave open added to it."""
     values = [
-        entry["value"] ** 2 if entry["metric"] == "sqrt_sse" else entry["value"]
+        (entry["value"] * (1.0 + entry.get("tol", 0.0))) ** (2.0 if entry["metric"] == "sqrt_sse" else 1.0)
         for entry in row["published"]
         if entry["value"] is not None and entry["metric"] in ("sse", "sqrt_sse")
     ]

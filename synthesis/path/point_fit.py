@@ -30,7 +30,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Progress = Callable[[float, str], None]
 
-TIMED_STARTS, FREE_STARTS = 6000, 1200
+TIMED_STARTS, FREE_STARTS = 6000, 1300
 """Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more."""
 
 TIMED_SHARE = 0.15
@@ -49,10 +49,16 @@ SAME_COST = 1e-4
 FLIP_KICK = 0.1
 """The same for those that are turned inside out."""
 
+SPREAD = 0.8
+"""Standard deviation of the logarithm of that standard deviation: some changes are small and some are great."""
+
 KICK_THINNING = ((1.0, 10, 1e-3), (0.25, 60, 1e-6))
 
 FINALISTS = 24
 """Minima that are refined within the limits and verified, at most."""
+
+RETURNS, AGAIN = 1, 10
+"""How often minima within the limits are changed once more, and how many of what comes out are refined at most."""
 
 MANY, OF_MANY = 100, 6
 """With more points than that, minima that are refined and verified, at most: each takes longer."""
@@ -181,14 +187,46 @@ def fitted(
         for x, state, cost in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
     ]
     pool.sort(key=lambda candidate: candidate.cost)
-    chosen = _distinct(pool, finalists if len(task.rows) <= MANY else OF_MANY)
+    most = finalists if len(task.rows) <= MANY else OF_MANY
+    found = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
+    for _ in range(RETURNS if thinned is task else 0):
+        # What has come to its limits may lie next to something better beyond them.
+        again: list[Candidate] = []
+        for n, (way, shortest, sign) in enumerate(cases):
+            progress(0.8 + 0.1 * n / len(cases), "changing the best fits")
+            held = _flock_of(found, (way, shortest, sign)), _flock_of(found, (way, shortest, -sign))
+            flock = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
+            again += [
+                Candidate(x, state, float(cost), settings[n], way)
+                for x, state, cost in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
+            ]
+        again.sort(key=lambda candidate: candidate.cost)
+        found += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
+    return sorted(found, key=lambda candidate: candidate.cost)
+
+
+def _all_held(
+    chosen: list[Candidate], task: PointTask, thinned: PointTask, told: Callable[[float], None]
+) -> list[Candidate]:
+    """Candidates brought to minima within their limits, without those that cannot be."""
     found = []
     for n, candidate in enumerate(chosen):
-        progress(0.6 + 0.3 * n / len(chosen), f"refining fit {n + 1} of {len(chosen)}")
+        told(n / len(chosen))
         held = _held(candidate, task, thinned)
         if held is not None:
             found.append(held)
-    return sorted(found, key=lambda candidate: candidate.cost)
+    return found
+
+
+def _flock_of(found: list[Candidate], case: tuple[int, int, float]) -> _Flock:
+    """The best distinct ones of a case: the crank's direction, the shortest link and the assembly."""
+    way, shortest, sign = case
+    own = [c for c in found if c.way == way and c.setting[SHORTEST] == shortest and c.setting[SIGN] == sign]
+    own.sort(key=lambda candidate: candidate.cost)
+    if not own:
+        return _empty(0, 9, 0)
+    flock = _Flock(*(np.array(column) for column in list(zip(*own, strict=True))[:3]))
+    return _different(flock, KICKED)
 
 
 def _thinned(task: PointTask) -> PointTask:
@@ -241,7 +279,8 @@ def _kicked(
         part = _empty(size, base.starts.shape[1], n)
         runs = np.ascontiguousarray(base.states[:, :n])
         part.states[:, :n] = runs[np.arange(size) % len(runs)]
-        draws = (KICK if flip == SAME else FLIP_KICK) * rng.normal(size=(size, 4))
+        reach = (KICK if flip == SAME else FLIP_KICK) * np.exp(SPREAD * rng.normal(size=(size, 1)))
+        draws = reach * rng.normal(size=(size, 4))
         kicked(base.starts, part.states, its_sign, flip, draws, rows, setting, part.starts, part.costs)
         parts.append(part)
     near = _joined(parts) if parts else _empty(0, 9, n)
