@@ -21,7 +21,7 @@ from synthesis.verification.path import verify_path
 
 Progress = Callable[[float, str], None]
 
-ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), None)
+ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 20.0), None)
 """What is asked of the linkages beyond the client's limits, round by round."""
 
 DRAWN = 40

@@ -124,7 +124,7 @@ def test_fewer_timed_points_leave_a_choice(count, changes):
     result = timed(points, ANGLES[:count], **changes)
     assert not result.search.complete
     assert len(result.designs) == 10
-    assert max(design.metrics.min_transmission_angle for design in result.designs) > 20.0
+    assert max(design.metrics.min_transmission_angle for design in result.designs) > 12.0
     for design in result.designs:
         assert design.verification.passed
         assert measured_at_angles(design, points, ANGLES[:count]) < 1e-18 * size**2
