@@ -15,7 +15,7 @@ import time
 from typing import Any
 
 from synthesis.designs import GearTrainResult
-from synthesis.dispatch import solve, warm_up, warm_up_rest
+from synthesis.dispatch import solve, warm_up_kind
 from synthesis.kinds import parse_problem
 
 WIDE, NARROW = {"min": 12, "max": 100}, {"min": 12, "max": 60}
@@ -73,8 +73,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--repeats", type=int, default=5)
     repeats = parser.parse_args().repeats
-    warm_up()
-    warm_up_rest()
+    warm_up_kind("gear_train")
     print(f"{'task':38} {'CPU s':>8} {'limit':>6} {'covered':>9} {'ties':>7} {'pareto':>6} {'error':>9}  best")
     for name, (limit, statement) in TASKS.items():
         seconds, result = timed(statement, repeats)

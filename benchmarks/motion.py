@@ -21,7 +21,7 @@ import numpy as np
 
 from benchmarks.four_positions import brute_force
 from synthesis.designs import MotionResult
-from synthesis.dispatch import solve, warm_up, warm_up_rest
+from synthesis.dispatch import solve, warm_up_kind
 from synthesis.kinds import parse_problem
 from synthesis.problems import MotionProblem
 from tests.cases import search_tasks
@@ -138,8 +138,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--tasks", type=int, default=100, help="random tasks per row")
     tasks = parser.parse_args().tasks
-    warm_up()
-    warm_up_rest()
+    warm_up_kind("motion")
     exact_table()
     print(f"\n{'search over free choices':<50}{'median s':>11}{'worst s':>9}{'≥ 1, %':>10}{'≥ 5, %':>10}")
     search_row("4 positions, the tasks of tests/cases", stated(4))

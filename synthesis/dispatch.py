@@ -10,7 +10,7 @@ from synthesis.designs import Result
 from synthesis.kinds import KINDS, Progress, example, examples, parse_problem
 from synthesis.problems import StatedProblem
 
-__all__ = ["Progress", "solve", "warm_up", "warm_up_rest"]
+__all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
 
 
 def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
@@ -41,18 +41,23 @@ def warm_up() -> None:
 
 
 def warm_up_rest() -> None:
-    """Compile or load everything else: the analysis core, and what the solvers of all kinds need.
+    """Compile or load everything else: the analysis core, and what the solvers of all kinds need."""
+    linkage.warm_up()
+    for name in KINDS:
+        warm_up_kind(name)
+
+
+def warm_up_kind(name: str) -> None:
+    """Compile or load what the solver of one kind needs.
 
     A solver's module that has a ``warm_up`` of its own is warmed by that, any other by the examples of its kind.
     """
-    linkage.warm_up()
-    for name, kind in KINDS.items():
-        module = import_module(kind.solver.split(":")[0])
-        if hasattr(module, "warm_up"):
-            module.warm_up()
-            continue
-        for one in examples(name):
-            solve(parse_problem(one), _silent)
+    module = import_module(KINDS[name].solver.split(":")[0])
+    if hasattr(module, "warm_up"):
+        module.warm_up()
+        return
+    for one in examples(name):
+        solve(parse_problem(one), _silent)
 
 
 def _silent(_fraction: float, _message: str) -> None:
