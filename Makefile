@@ -45,6 +45,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.function
 	$(BIN)/python -m benchmarks.path_fit
 	$(BIN)/python -m benchmarks.straight_line
+	$(BIN)/python -m benchmarks.dwell
 	$(BIN)/python -m benchmarks.quick_return
 	$(BIN)/python -m benchmarks.curve_match
 	$(BIN)/python -m benchmarks.gear_train

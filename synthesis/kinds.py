@@ -12,6 +12,7 @@ from pydantic import Discriminator, Tag, TypeAdapter
 
 from synthesis.designs import (
     CamResult,
+    DwellResult,
     FunctionResult,
     GearboxResult,
     GearTrainResult,
@@ -26,6 +27,7 @@ from synthesis.designs import (
 )
 from synthesis.problems import (
     CamProblem,
+    DwellProblem,
     FunctionProblem,
     GearboxProblem,
     GearTrainProblem,
@@ -59,6 +61,7 @@ KINDS: dict[str, Kind] = {
         StraightLineProblem, StraightLineResult, "synthesis.straight_line.solver:solve_straight_line"
     ),
     "steering": Kind(SteeringProblem, SteeringResult, "synthesis.steering.solver:solve_steering"),
+    "dwell": Kind(DwellProblem, DwellResult, "synthesis.dwell.solver:solve_dwell"),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

@@ -79,6 +79,7 @@ EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
     "quick_return": {"svg": "service.render.stroke_sheet:stroke_sheet"},
     "steering": {"svg": "service.render.steering_sheet:steering_sheet"},
     "straight_line": {"svg": "service.render.line_sheet:line_sheet"},
+    "dwell": {"svg": "service.render.dwell_sheet:dwell_sheet"},
 }
 """The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""
 

@@ -6,6 +6,7 @@ is the designs and how they were found. One module a kind of problem, and one fo
 
 from synthesis.designs.base import Answer, Check, Point, Result, Search, Verification
 from synthesis.designs.cam import CamDesign, CamResult
+from synthesis.designs.dwell import DwellDesign, DwellMechanism, DwellMetrics, DwellResult, Rest
 from synthesis.designs.function import FunctionDesign, FunctionResult
 from synthesis.designs.gear_train import (
     GearTrainDesign,
@@ -106,6 +107,10 @@ __all__ = [
     "CurveSweep",
     "DavisMechanism",
     "DragLinkMechanism",
+    "DwellDesign",
+    "DwellMechanism",
+    "DwellMetrics",
+    "DwellResult",
     "ExactLineMechanism",
     "FamilySearch",
     "FixedPivots",
@@ -157,6 +162,7 @@ __all__ = [
     "QuickReturnResult",
     "Ratio",
     "RatioRange",
+    "Rest",
     "Result",
     "Search",
     "SixbarMechanism",

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide
-from synthesis.mechanisms.base import AGREES, BODY, MechanismError, StatedLine
+from synthesis.mechanisms.base import AGREES, BODY, MechanismError, StatedCouplerPoint, StatedLine
 from synthesis.problems import Number, Point, PositiveNumber, Statement
 
 MOST_SHOWN = 6
@@ -105,6 +105,12 @@ class GivenSkeleton(Statement):
     fixed_pivots: dict[str, Point] = Field(
         default={}, max_length=20, description="Each is a joint of the skeleton's ground, by any name."
     )
+    coupler_point: StatedCouplerPoint | None = Field(
+        default=None, description="P of a coupler with the pins A and B; it must be the skeleton's own."
+    )
+    reference_input_angle: Number | None = Field(
+        default=None, description="Angle of the input link in the skeleton, absolute, degrees; it must be its own."
+    )
     reference_body_angle: Number | None = Field(default=None, description=BODY)
 
     def mechanism(self) -> Mechanism:
@@ -128,7 +134,27 @@ class GivenSkeleton(Statement):
             ground = [complex(made.joints[joint]) for joint in made.links[GROUND]]
             if not any(abs(complex(*pivot) - z) <= AGREES * size for z in ground):
                 raise MechanismError(f"/fixed_pivots/{name}", "no joint of the skeleton's ground lies there")
+        self._agree(made)
         return made
+
+    def _agree(self, made: Mechanism) -> None:
+        """Refuse a coupler point or an input angle that is not the skeleton's."""
+        if self.coupler_point is not None:
+            missing = [name for name in ("A", "B", "P") if name not in made.joints]
+            if missing:
+                raise MechanismError("/coupler_point", f"the skeleton has no joint {missing[0]}")
+            a, b, p = (complex(made.joints[name]) for name in ("A", "B", "P"))
+            found = a + self.coupler_point.vector * (b - a) / abs(b - a)
+            if abs(found - p) > AGREES * max(abs(p - a), abs(b - a)):
+                raise MechanismError(
+                    "/coupler_point", "the skeleton has P elsewhere; leave the field out or correct it"
+                )
+        if self.reference_input_angle is not None:
+            if made.driven_by_slide:
+                raise MechanismError("/reference_input_angle", "a slide drives this; leave the field out")
+            off = math.remainder(math.degrees(float(made.reference_input)) - self.reference_input_angle, 360.0)
+            if abs(off) > AGREES * 360.0:
+                raise MechanismError("/reference_input_angle", "the skeleton's input link stands at another angle")
 
 
 class GivenByDimensions(Statement, ABC):

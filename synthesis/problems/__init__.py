@@ -21,6 +21,7 @@ from synthesis.problems.base import (
     Statement,
 )
 from synthesis.problems.cam import CamProblem
+from synthesis.problems.dwell import DwellProblem
 from synthesis.problems.function import FunctionProblem
 from synthesis.problems.gear_train import GearTrainProblem, StockedGear, TeethRange
 from synthesis.problems.gearbox import (
@@ -58,6 +59,7 @@ __all__ = [
     "CouplerPointLimits",
     "CouplerVector",
     "DriverDyad",
+    "DwellProblem",
     "DyadChoices",
     "Flag",
     "FunctionProblem",

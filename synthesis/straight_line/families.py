@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar, coupler_motion, positions
+from synthesis.numerics.narrowing import Values
 from synthesis.problems.straight_line import LineMechanism
-from synthesis.straight_line.narrowing import Values
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -23,6 +23,7 @@ from synthesis.designs import (
 )
 from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism, to_point
+from synthesis.numerics.narrowing import merits, narrowest
 from synthesis.problems import StraightLineProblem
 from synthesis.problems.straight_line import LineMechanism
 from synthesis.straight_line.exact import ExactLine, hart, peaucellier, scott_russell
@@ -36,7 +37,6 @@ from synthesis.straight_line.families import (
     configuration,
     values_of,
 )
-from synthesis.straight_line.narrowing import merits, narrowest
 from synthesis.verification.straight_line import verify_straight_line
 
 Real = NDArray[np.float64]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -33,14 +32,12 @@ from synthesis.problems import StraightLineProblem
 from synthesis.problems.straight_line import LineMechanism
 from synthesis.ranking import quality
 from synthesis.verification.checks import at_most, constraint_checks
+from synthesis.verification.closer import extremes_of, least_of, sine_at
 
 Real = NDArray[np.float64]
 
 GRID = 1441
 """Inputs along the line that are looked at first."""
-
-CLOSER, LOOKS = 17, 6
-"""Inputs in each closer look at an extreme, and the number of looks: 8⁶ times finer than the grid."""
 
 REACHED = 1e-9
 """How far P may be from the ends of the line, along it, and from an exact line: a share of the length."""
@@ -196,44 +193,15 @@ def _measured(mechanism: Mechanism, inputs: Real, start: complex, along: complex
         return np.asarray(sense * (found.joints["P"][1] * along.conjugate()).real)
 
     local = (motion.joints["P"][0] - start) * along.conjugate()
-    sines = {link: _least(mechanism, inputs, _sine(link)(motion), _sine(link)) for link in motion.sines}
+    sines = {link: least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)) for link in motion.sines}
     return _Along(
-        _extremes(mechanism, inputs, motion, across),
-        _extremes(mechanism, inputs, motion, velocity),
+        extremes_of(mechanism, inputs, across(motion), across),
+        extremes_of(mechanism, inputs, velocity(motion), velocity),
         (complex(local[0]), complex(local[-1])),
         float(velocity(motion)[GRID // 2]),
         sines,
         np.concatenate([jet[0] for jet in motion.joints.values()]),
     )
-
-
-Quantity = Callable[[MechanismMotion], Real]
-
-
-def _sine(link: str) -> Quantity:
-    """Magnitude of the sine of the transmission angle at a closure."""
-    return lambda found: np.abs(found.sines[link])
-
-
-def _extremes(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, of: Quantity) -> tuple[float, float]:
-    values = of(motion)
-    least = _least(mechanism, inputs, values, of)
-    return least, -_least(mechanism, inputs, -values, lambda found: -of(found))
-
-
-def _least(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
-    """The least of a quantity between the first input and the last, which has been looked at on a grid."""
-    n = int(values.argmin())
-    at, step, least = inputs[n], abs(inputs[1] - inputs[0]), float(values[n])
-    low, high = sorted((inputs[0], inputs[-1]))
-    for _ in range(LOOKS):
-        closer = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
-        found = of(drive(mechanism, closer, order=1))
-        if not np.isfinite(found).all():
-            return least
-        at, least = closer[int(found.argmin())], min(least, float(found.min()))
-        step *= 2.0 / (CLOSER - 1)
-    return least
 
 
 def _whole_turn(mechanism: Mechanism) -> float | None:
@@ -242,7 +210,7 @@ def _whole_turn(mechanism: Mechanism) -> float | None:
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
-    least = min(_least(mechanism, inputs, _sine(link)(motion), _sine(link)) for link in motion.sines)
+    least = min(least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)) for link in motion.sines)
     closed = all(abs(jet[0, -1] - jet[0, 0]) <= REACHED * np.abs(jet[0]).max() for jet in motion.joints.values())
     return math.degrees(math.asin(min(least, 1.0))) if closed and least > NO_TOGGLE else None
 

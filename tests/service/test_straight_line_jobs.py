@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -11,12 +12,19 @@ from synthesis.problems.straight_line import LINE_MECHANISMS
 from tests.service.test_analyses import assert_as_documented, joint
 
 
+def finished(client, problem):
+    """The job of a problem, when it has ended."""
+    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
+    while job["status"] in ("queued", "running"):
+        time.sleep(0.2)
+        job = client.get(f"/v1/jobs/{job['id']}").json()
+    return job
+
+
 @pytest.mark.parametrize("mechanism", LINE_MECHANISMS)
 def test_every_type_is_solved_drawn_and_driven(client, mechanism):
     problem = {"kind": "straight_line", "length": 80.0, "mechanism": mechanism, "direction": 90.0}
-    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"})
-    assert job.status_code == 200, job.text
-    body = job.json()
+    body = finished(client, problem)
     assert body["status"] == "succeeded"
     design = body["result"]["designs"][0]
     assert design["verification"]["passed"]

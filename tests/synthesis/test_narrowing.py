@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from synthesis.straight_line.narrowing import Values, narrowest
+from synthesis.numerics.narrowing import Values, narrowest
 
 NODES = -np.cos(np.pi * np.arange(401) / 400)
 

@@ -1,0 +1,1 @@
+"""Dwells: sixbars whose output rests while the crank turns on."""

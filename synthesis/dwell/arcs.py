@@ -1,0 +1,81 @@
+"""Arcs and lines that pieces of coupler curves come close to, for many curves at once.
+
+For every piece of a closed curve, a given number of samples long, the circle is fitted for which Σ (|z − c|² − r²)² is
+least (Kåsa, IEEE Trans. Instrum. Meas. 25 (1976) 8, doi:10.1109/TIM.1976.6312298): linear in c and r² − |c|². About the
+piece's mean, with moments S of x and y,
+
+    [Sxx Sxy; Sxy Syy] c = ½ [Sx(x²+y²); Sy(x²+y²)],        r² = |c|² + (Sxx + Syy) / n.
+
+The line is that of least squared distances, along the main axis of the same moments.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real) -> None:
+    """Circle of every piece of ``length`` samples: centre, radius and the largest distance from it, shape (m, N)."""
+    count, n = curves.shape
+    for row in range(count):
+        curve = curves[row]
+        for start in range(n):
+            mean = 0j
+            for k in range(length):
+                mean += curve[(start + k) % n]
+            mean /= length
+            sxx = syy = sxy = sxz = syz = 0.0
+            for k in range(length):
+                z = curve[(start + k) % n] - mean
+                square = z.real * z.real + z.imag * z.imag
+                sxx += z.real * z.real
+                syy += z.imag * z.imag
+                sxy += z.real * z.imag
+                sxz += z.real * square
+                syz += z.imag * square
+            determinant = sxx * syy - sxy * sxy
+            x = 0.5 * (sxz * syy - syz * sxy) / determinant
+            y = 0.5 * (syz * sxx - sxz * sxy) / determinant
+            centre = complex(x, y)
+            radius = math.sqrt(x * x + y * y + (sxx + syy) / length)
+            farthest = 0.0
+            for k in range(length):
+                farthest = max(farthest, abs(abs(curve[(start + k) % n] - mean - centre) - radius))
+            centres[row, start] = mean + centre
+            radii[row, start] = radius
+            off[row, start] = farthest
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def lines(curves: Complex, length: int, points: Complex, directions: Real, off: Real) -> None:
+    """Line of every piece of ``length`` samples: a point, the angle, and the largest distance from it, shape (m, N)."""
+    count, n = curves.shape
+    for row in range(count):
+        curve = curves[row]
+        for start in range(n):
+            mean = 0j
+            for k in range(length):
+                mean += curve[(start + k) % n]
+            mean /= length
+            sxx = syy = sxy = 0.0
+            for k in range(length):
+                z = curve[(start + k) % n] - mean
+                sxx += z.real * z.real
+                syy += z.imag * z.imag
+                sxy += z.real * z.imag
+            angle = 0.5 * math.atan2(2.0 * sxy, sxx - syy)
+            farthest = 0.0
+            for k in range(length):
+                z = curve[(start + k) % n] - mean
+                farthest = max(farthest, abs(z.imag * math.cos(angle) - z.real * math.sin(angle)))
+            points[row, start] = mean
+            directions[row, start] = angle
+            off[row, start] = farthest

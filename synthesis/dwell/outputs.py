@@ -1,0 +1,168 @@
+"""The output of a dwell sixbar over the turn of its crank, for many shapes at once.
+
+A shape is a row of numbers in a frame with the crank's pivot O2 at the origin, a crank of 1 and O4 on the real axis:
+
+    b, c, d, x, y        coupler, rocker, ground, and P in the coupler's frame; B to the left of A → O4
+    rocker               R = P D, O6 (x, y), O6 D
+    slider               R = P D, the line's distance from O2 to its left, its angle
+    slot                 O6 (x, y)
+    θ for each dwell     the crank's angle where it begins
+
+With r = |P − O6| the rocker's pin D lies at the angle ±arccos((c6² + r² − R²) / 2 c6 r) from the line O6 → P; on a
+slide with unit vector u the place of D is Re(P ū) ± √(R² − y²), y being P's distance from the line; a slotted link
+points from O6 to P.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage import OPEN, Fourbar, coupler_points
+from synthesis.numerics.narrowing import Values
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+Kind = Literal["rocker", "slider", "slot"]
+
+DIMENSIONS: dict[Kind, int] = {"rocker": 9, "slider": 8, "slot": 7}
+"""Numbers of a shape before the dwells' angles."""
+
+CYCLE = 72
+"""Crank angles of the turn at which the output is looked at."""
+
+RESTING = 21
+"""Crank angles of a dwell, in Chebyshev's spacing."""
+
+SPARSE = 2
+"""Transmission angles are kept at every other of the turn's crank angles."""
+
+AT_END = 0.03
+"""How far the dwell's mean may lie from the end of the way, as a share of it."""
+
+SPARE = 0.02
+"""The crank is this much shorter at least than Grashof's condition asks."""
+
+LEAST_STROKE = 0.3
+"""Least stroke of a slider in units of the ground link."""
+
+NEAREST = 0.3
+"""Least distance of P from the pivot of a slotted link, in crank lengths: nearer, the link is thrown round."""
+
+
+class Task(NamedTuple):
+    """What a shape is for: kind of output, sign of its assembly, dwell (radians), ends (+1: greatest, −1: least).
+
+    ``way`` is the swing in radians, or NaN for a slider, whose size comes after. ``transmission`` is a sine.
+    """
+
+    kind: Kind
+    sign: int
+    dwell: float
+    ends: tuple[int, ...]
+    way: float
+    transmission: float
+    link_ratio: float
+
+
+def fourbars(shapes: Real) -> Fourbar:
+    """The fourbars of shapes (m, ...)."""
+    ones = np.ones(len(shapes))
+    return Fourbar.from_lengths(ones, shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4])
+
+
+def output(kind: Kind, sign: int, shapes: Real, p: Complex) -> tuple[Real, Real]:
+    """Output (radians from a mean direction, or place along the slide) and sine of its transmission angle, (m, N).
+
+    NaN where the links do not reach; the sine of a slotted link is P's distance from its pivot, up to 1.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if kind == "slider":
+            along = np.exp(1j * shapes[:, 7, None])
+            across = (p * along.conj()).imag - shapes[:, 6, None]
+            sine = np.sqrt(1.0 - (across / shapes[:, 5, None]) ** 2)
+            return (p * along.conj()).real + sign * shapes[:, 5, None] * sine, sine
+        if kind == "slot":
+            arm = p - (shapes[:, 5] + 1j * shapes[:, 6])[:, None]
+            return _turned(arm / np.abs(arm)), np.minimum(np.abs(arm) / NEAREST, 1.0)
+        arm = p - (shapes[:, 6] + 1j * shapes[:, 7])[:, None]
+        link, rocker, reach = shapes[:, 5, None], shapes[:, 8, None], np.abs(arm)
+        cosine = (rocker**2 + reach**2 - link**2) / (2.0 * rocker * reach)
+        lean = cosine + 1j * sign * np.sqrt(1.0 - cosine**2)
+        at_pin = (rocker**2 + link**2 - reach**2) / (2.0 * rocker * link)
+        return _turned(arm / reach * lean), np.sqrt(1.0 - at_pin**2)
+
+
+def _turned(directions: Complex) -> Real:
+    """Angles from a mean direction: the output turns by less than half a turn."""
+    mean = np.where(np.isfinite(directions), directions, 0.0).sum(axis=1, keepdims=True)
+    return np.asarray(np.angle(directions * np.conj(mean)))
+
+
+def extremes(values: Real) -> tuple[Real, Real]:
+    """Least and greatest of periodic samples (m, N), by the parabola through the neighbours of each."""
+    found = []
+    for sign in (-1.0, 1.0):
+        signed = sign * values
+        rows, top = np.arange(len(values)), signed.argmax(axis=1)
+        before, at, after = (signed[rows, (top + k) % values.shape[1]] for k in (-1, 0, 1))
+        bend = before - 2.0 * at + after
+        with np.errstate(invalid="ignore", divide="ignore"):
+            peak = at - 0.125 * np.where(bend < 0.0, (after - before) ** 2 / bend, 0.0)
+        found.append(sign * peak)
+    return found[0], found[1]
+
+
+def crank_angles(shapes: Real, task: Task, nodes: Real) -> Real:
+    """Crank angles of the dwells, (m, nodes · dwells), and after them those of the turn; ``nodes`` in [0, 1]."""
+    dwells = len(task.ends)
+    resting = [shapes[:, -dwells + k, None] + task.dwell * nodes for k in range(dwells)]
+    turn = np.broadcast_to(np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False), (len(shapes), CYCLE))
+    return np.concatenate([*resting, turn], axis=1)
+
+
+def judged(task: Task, nodes: Real, shapes: Real) -> Values:
+    """What is minimised, the output's way during the dwells as a share of the whole, and what is kept."""
+    theta = crank_angles(shapes, task, nodes)
+    linkage = fourbars(shapes)
+    p = coupler_points(linkage, theta, np.full(len(shapes), OPEN)).p
+    out, sine = output(task.kind, task.sign, shapes, p)
+    turn = out[:, -CYCLE:]
+    low, high = extremes(turn)
+    way = high - low
+    count = len(nodes)
+    banded, at_end = [], []
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for k, end in enumerate(task.ends):
+            resting = out[:, k * count : (k + 1) * count]
+            level = resting.mean(axis=1)
+            banded.append((resting - level[:, None]) / way[:, None])
+            at_end.append(AT_END - (high - level if end > 0 else level - low) / way)
+        if math.isnan(task.way):
+            # A slide has any stroke in a unit frame, but one that is small beside the linkage makes that large.
+            swing = [way / shapes[:, 2] - LEAST_STROKE]
+        else:
+            swing = [way / task.way - 1.0, 1.0 - way / task.way]
+        positive = np.concatenate(
+            [
+                np.stack([*at_end, *swing], axis=1),
+                sine[:, ::SPARSE] ** 2 - task.transmission**2,
+                _fourbar_kept(shapes, task),
+            ],
+            axis=1,
+        )
+    return Values(np.concatenate(banded, axis=1), np.empty((len(shapes), 0)), positive)
+
+
+def _fourbar_kept(shapes: Real, task: Task) -> Real:
+    """Grashof's conditions, sin² of the transmission angle where it is least and greatest, and the link ratio."""
+    b, c, d = shapes[:, 0], shapes[:, 1], shapes[:, 2]
+    sines = [1.0 - ((b * b + c * c - (d + k) ** 2) / (2.0 * b * c)) ** 2 - task.transmission**2 for k in (-1.0, 1.0)]
+    lengths = [b, c, d, *(shapes[:, k] for k in {"rocker": (5, 8), "slider": (5,), "slot": ()}[task.kind])]
+    uneven = [task.link_ratio / length - 1.0 for length in lengths] + [length - 1.0 for length in lengths]
+    grashof = [b + c - d - 1.0 - SPARE, c + d - b - 1.0 - SPARE, b + d - c - 1.0 - SPARE]
+    return np.stack([*sines, *grashof, *uneven], axis=1)

@@ -1,0 +1,266 @@
+"""Dwells: the whole sixbar followed by its constraints alone, and what was measured held against that."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from synthesis.designs import DwellDesign, DwellResult
+from synthesis.dispatch import solve
+from synthesis.dwell.arcs import arcs, lines
+from synthesis.kinds import parse_problem
+from synthesis.problems import DwellProblem
+from synthesis.problems.base import ContradictionError
+from synthesis.verification.dwell import _means, _ranges, verify_dwell
+from tests.cases import Case, cases
+from tests.oracles.positions import meet
+from tests.synthesis.driving import constraints_of
+
+
+def stated(**fields) -> DwellProblem:
+    problem = parse_problem({"kind": "dwell", "output": rocker(90.0), "dwell_angle": 60.0, **fields})
+    assert isinstance(problem, DwellProblem)
+    return problem
+
+
+def rocker(swing: float) -> dict[str, object]:
+    return {"type": "rocker", "swing": swing}
+
+
+def slider(stroke: float) -> dict[str, object]:
+    return {"type": "slider", "stroke": stroke}
+
+
+def solved(problem: DwellProblem) -> DwellResult:
+    told: list[float] = []
+    result = solve(problem, lambda fraction, message: told.append(fraction))
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert isinstance(result, DwellResult)
+    assert not result.search.complete
+    return result
+
+
+def output_over_a_turn(design: DwellDesign, steps: int) -> np.ndarray:
+    """Output (degrees, or length) from the lengths alone: pins by Newton's iteration, the slot by an angle."""
+    mechanism = design.mechanism
+    joints = {name: complex(*z) for name, z in mechanism.skeleton.joints.items()}
+    start = np.angle(joints["A"] - joints["O2"])
+    links, point = mechanism.links, mechanism.coupler_point
+    a = joints["O2"] + links["input"] * np.exp(1j * (start + np.linspace(0.0, 2.0 * np.pi, steps)))
+
+    def side(one: str, other: str, pin: str) -> int:
+        base, arm = joints[other] - joints[one], joints[pin] - joints[one]
+        return 1 if (base.conjugate() * arm).imag > 0.0 else -1
+
+    b = meet(a, joints["O4"], links["coupler"], links["rocker"], side("A", "O4", "B"))
+    p = a + point.distance * np.exp(1j * math.radians(point.angle)) * (b - a) / links["coupler"]
+    assert np.isfinite(p).all()
+    if mechanism.type == "dwell_slot":
+        return np.degrees(np.unwrap(np.angle(p - joints["O6"])))
+    if mechanism.type == "dwell_rocker":
+        d = meet(p, joints["O6"], links["link_5"], links["output"], side("P", "O6", "D"))
+        return np.degrees(np.unwrap(np.angle(d - joints["O6"])))
+    (slide,) = mechanism.skeleton.slides
+    along = np.exp(1j * math.radians(slide.angle))
+    local = (p - complex(*slide.point)) * along.conjugate()
+    at = (joints["P"] - complex(*slide.point)) * along.conjugate()
+    sign = 1.0 if at.real < 0.0 else -1.0
+    return local.real + sign * np.sqrt(links["link_5"] ** 2 - local.imag**2)
+
+
+def assert_measured(problem: DwellProblem, design: DwellDesign) -> None:
+    """Way, jitter, widths and accelerations of a design against another route to its motion."""
+    assert design.verification.passed
+    steps = 7201
+    out = output_over_a_turn(design, steps)
+    assert abs(out[-1] - out[0]) < 1e-6 * problem.way
+    assert np.isclose(np.ptp(out), problem.way, rtol=1e-5)
+    per = (steps - 1) / 360.0
+    start = design.mechanism.reference_input_angle
+    periodic = np.concatenate([out[:-1], out[:-1]])
+    for rest in design.targets:
+        first = round(((rest.input_angle - start) % 360.0) * per)
+        held = periodic[first : first + round(problem.dwell_angle * per) + 1]
+        assert np.ptp(held) <= problem.allowed
+        assert np.isclose(np.ptp(held), rest.jitter, rtol=0.02, atol=1e-9 * problem.way)
+        assert rest.width >= problem.dwell_angle - 0.2
+        assert rest.off_end <= 0.05
+    second = np.diff(out, 2) / math.radians(1.0 / per) ** 2
+    second = np.radians(second) if problem.output.type == "rocker" else second
+    assert np.isclose(np.abs(second).max(), design.metrics.peak_acceleration, rtol=1e-2)
+    assert design.metrics.full_rotation
+    assert design.metrics.grashof == "crank_rocker"
+
+
+TASKS = [
+    {"mechanism": "pseudo_arc"},
+    {"mechanism": "straight_slot", "dwell_angle": 50.0, "output": rocker(60.0)},
+    {"dwell_angle": 90.0, "output": slider(50.0)},
+    {"mechanism": "pseudo_arc", "output": rocker(50.0), "count": 2},
+    {"mechanism": "straight_slot", "dwell_angle": 40.0, "output": rocker(50.0), "count": 2, "tolerance": 1.0},
+    {"output": slider(0.02), "count": 2, "dwell_angle": 50.0, "length_unit": "m"},
+]
+
+
+@pytest.mark.parametrize(
+    "fields", TASKS, ids=lambda fields: f"{fields.get('mechanism', 'slider')}-{fields.get('count', 1)}"
+)
+def test_dwells_are_what_was_measured(fields) -> None:
+    problem = stated(**fields)
+    designs = solved(problem).designs
+    assert designs
+    for design in designs[:3]:
+        assert_measured(problem, design)
+        assert len(design.targets) == problem.count
+    qualities = [design.metrics.quality for design in designs]
+    assert qualities == sorted(qualities, reverse=True)
+
+
+@pytest.mark.parametrize("case", cases("dwell"))
+def test_norton_example_3_13(case: Case) -> None:
+    """A rocker of 90° over 300° of the crank that rests for 60°, found instead of read off an atlas."""
+    given = case.inputs
+    rest = given["segments_deg"][1]
+    case.check(total=sum(given["segments_deg"]), atlas_dashes=[rest / 5.0])
+    problem = stated(dwell_angle=float(rest), output=rocker(float(given["output_deg"])), mechanism="pseudo_arc")
+    for design in solved(problem).designs[:2]:
+        assert_measured(problem, design)
+        assert design.metrics.jitter < 0.005 * given["output_deg"]
+
+
+@pytest.mark.parametrize("fields", [TASKS[0], TASKS[1], TASKS[2]], ids=["rocker", "slot", "slider"])
+def test_the_crank_turns_through_by_the_constraints_alone(fields) -> None:
+    """Rigid lengths and slides, stepped along the crank's turn: no toggle comes, and the turn closes."""
+    design = solved(stated(**fields)).designs[0]
+    constraints = constraints_of(design)
+    trace = constraints.follow(constraints.start(), 1.0, limit=2.0 * math.pi, to_toggle=True)[0]
+    assert trace.ended in ("limit", "closed")
+
+
+def test_the_sizes_that_are_asked_for() -> None:
+    problem = stated(crank=3.0, pivot=[100.0, -50.0], mechanism="pseudo_arc")
+    for design in solved(problem).designs:
+        assert np.isclose(design.mechanism.links["input"], 3.0)
+        assert np.allclose(design.mechanism.fixed_pivots["O2"], (100.0, -50.0))
+
+
+def test_limits_of_the_client_are_kept() -> None:
+    problem = stated(mechanism="pseudo_arc", constraints={"min_transmission_angle": 40.0, "max_link_ratio": 6.0})
+    designs = solved(problem).designs
+    assert designs
+    for design in designs:
+        assert design.metrics.min_transmission_angle >= 40.0
+        assert design.metrics.link_ratio <= 6.0 * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e6])
+def test_size_does_not_matter(size: float) -> None:
+    one = solved(stated(output=slider(1.0))).designs[0]
+    other = solved(stated(output=slider(size))).designs[0]
+    assert np.isclose(other.metrics.size, size * one.metrics.size)
+    assert np.isclose(other.metrics.jitter, size * one.metrics.jitter, rtol=1e-3)
+
+
+def test_the_same_problem_has_the_same_answer() -> None:
+    one, other = (solved(stated(mechanism="straight_slot")).model_dump() for _ in range(2))
+    assert one == other
+    assert solved(stated(mechanism="straight_slot", seed=1)).model_dump() != one
+
+
+@pytest.mark.parametrize(
+    "fields", [{"dwell_angle": 300.0, "output": rocker(170.0)}, {"dwell_angle": 170.0, "count": 2}]
+)
+def test_what_is_not_found_is_not_claimed_to_be_impossible(fields) -> None:
+    result = solved(stated(**fields))
+    assert result.designs == []
+    assert "not proven" in result.summary
+    assert sum(result.search.rejected.values()) == result.search.candidates
+
+
+def test_verification_notices_a_wrong_length() -> None:
+    problem = stated(mechanism="pseudo_arc")
+    design = solved(problem).designs[0]
+    joints = dict(design.mechanism.skeleton.joints)
+    joints["O6"] = tuple(1.01 * z for z in joints["O6"])
+    skeleton = design.mechanism.skeleton.model_copy(update={"joints": joints})
+    spoilt = design.mechanism.model_copy(
+        update={
+            "skeleton": skeleton,
+            "links": {},
+            "fixed_pivots": {**design.mechanism.fixed_pivots, "O6": joints["O6"]},
+        }
+    )
+    again = verify_dwell(problem, spoilt)
+    assert again is None or not again.verification.passed
+    # Dimensions that the skeleton does not have are refused.
+    assert verify_dwell(problem, design.mechanism.model_copy(update={"skeleton": skeleton})) is None
+    sound = verify_dwell(problem, design.mechanism)
+    assert sound is not None
+    assert sound.verification.passed
+
+
+@pytest.mark.parametrize("window", [2, 7, 8, 31])
+def test_windows_of_a_turn(window: int) -> None:
+    values = np.random.default_rng(1).normal(size=60)
+    around = np.concatenate([values, values])
+    pieces = [around[k : k + window] for k in range(60)]
+    assert np.allclose(_ranges(values, window), [np.ptp(piece) for piece in pieces])
+    assert np.allclose(_means(values, window), [piece.mean() for piece in pieces])
+
+
+def test_arcs_and_lines_of_pieces() -> None:
+    """Of a curve that is a circle for one half and a straight line for the other, the pieces are found exactly."""
+    turn = np.linspace(0.0, np.pi, 20)
+    curve = np.concatenate([3.0 + 2.0j + 1.5 * np.exp(1j * turn), np.linspace(1.5 + 2.0j, -4.0 - 1.0j, 20)])[None]
+    centres, radii, off = np.empty_like(curve), np.empty(curve.shape), np.empty(curve.shape)
+    arcs(curve, 8, centres, radii, off)
+    assert np.allclose(centres[0, :12], 3.0 + 2.0j)
+    assert np.allclose(radii[0, :12], 1.5)
+    assert off[0, :12].max() < 1e-12
+    angles = np.empty(curve.shape)
+    lines(curve, 8, centres, angles, off)
+    assert np.allclose(np.tan(angles[0, 20:32]), 3.0 / 5.5)
+    assert off[0, 20:32].max() < 1e-12
+    assert off[0, :12].min() > 1e-2
+
+
+@pytest.mark.parametrize(
+    ("fields", "place"),
+    [
+        ({"dwell_angle": 0.0}, "dwell_angle"),
+        ({"dwell_angle": 360.0}, "dwell_angle"),
+        ({"dwell_angle": math.nan}, "dwell_angle"),
+        ({"output": rocker(0.0)}, "swing"),
+        ({"output": rocker(180.0)}, "swing"),
+        ({"output": slider(-1.0)}, "stroke"),
+        ({"output": {"type": "cam", "swing": 3.0}}, "output"),
+        ({"count": 3}, "count"),
+        ({"count": 0}, "count"),
+        ({"tolerance": 0.0}, "tolerance"),
+        ({"mechanism": "geneva"}, "mechanism"),
+    ],
+)
+def test_ill_formed_statements_are_refused_at_their_field(fields, place) -> None:
+    with pytest.raises(ValidationError) as caught:
+        stated(**fields)
+    assert place in {str(part) for error in caught.value.errors() for part in error["loc"]}
+
+
+@pytest.mark.parametrize(
+    ("fields", "path"),
+    [
+        ({"dwell_angle": 180.0, "count": 2}, "/dwell_angle"),
+        ({"output": slider(10.0), "mechanism": "straight_slot"}, "/mechanism"),
+        ({"output": slider(10.0), "crank": 5.0}, "/crank"),
+        ({"tolerance": 90.0}, "/tolerance"),
+        ({"constraints": {"grashof": "double_crank"}}, "/constraints/grashof"),
+    ],
+)
+def test_contradictions_are_told_by_their_field(fields, path) -> None:
+    with pytest.raises(ContradictionError) as caught:
+        solved(stated(**fields))
+    assert caught.value.contradiction.path == path
