@@ -1,5 +1,6 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
 # make test    ruff, mypy, import-linter and the whole pytest suite
+# make test-faults  what becomes of jobs when processes are killed, with figures
 # make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make lock    resolve the dependencies of pyproject.toml anew
@@ -14,7 +15,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test campaign demo check quick bench lock clean
+.PHONY: serve test test-faults campaign demo check quick bench lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -23,10 +24,14 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest -m "not campaign" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not faults" $(SPREAD)
 
 campaign: $(STAMP)
 	$(BIN)/pytest -m campaign $(SPREAD)
+
+# Processes are killed at random and at every write, and what became of the jobs is printed. Ten to twenty minutes.
+test-faults: $(STAMP)
+	$(BIN)/pytest -m faults -s -q tests/faults
 
 check: $(STAMP)
 	$(BIN)/ruff check .
@@ -36,7 +41,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not faults" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

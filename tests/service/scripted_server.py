@@ -13,7 +13,10 @@ from pathlib import Path
 from synthesis import dispatch
 from synthesis.designs import Result, Search
 
-INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS = range(100, 107)
+INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS, PYTHON, NUMBA, LAPACK, CONVEX = range(100, 111)
+BRIEF, TOLD = 10_000, 20_000
+"""From these seeds on a job takes 20 ms; or 250 ms, and tells of its progress."""
+
 FOLDER = Path(os.environ.get("SCRIPTED_FOLDER", "."))
 
 
@@ -40,8 +43,62 @@ def solve(problem, progress):
             while not (FOLDER / "open").exists():
                 time.sleep(0.01)
                 progress(0.25, "a quarter")
+        case 107:
+            begin()
+            while True:
+                pass
+        case 108:
+            spin = compiled_loop()
+            begin()
+            spin(1 << 62)
+        case 109:
+            import numpy as np
+
+            matrix = np.random.default_rng(0).normal(size=(3000, 3000))
+            begin()
+            while True:
+                np.linalg.svd(matrix)
+        case 110:
+            programme = large_programme()
+            begin()
+            programme.solve(solver="CLARABEL")
+        case seed if seed >= TOLD:
+            time.sleep(0.25)
+            progress(0.5, "half")
+        case seed if seed >= BRIEF:
+            time.sleep(0.02)
     search = Search(method="scripted", complete=True, candidates=0, accepted=0, rejected={}, seed=problem.seed)
     return Result(designs=[], search=search, summary="scripted")
+
+
+def begin():
+    """Say that the computation proper begins now."""
+    (FOLDER / "begun").touch()
+
+
+def compiled_loop():
+    import numba
+    import numpy as np
+
+    @numba.njit
+    def spin(n):
+        total = 0.0
+        for k in range(n):
+            total += np.sin(k)
+        return total
+
+    spin(1)
+    return spin
+
+
+def large_programme():
+    import cvxpy as cp
+    import numpy as np
+
+    rng = np.random.default_rng(0)
+    x = cp.Variable(1500)
+    rows = rng.normal(size=(3000, 1500))
+    return cp.Problem(cp.Minimize(cp.sum_squares(rows @ x - 1) + cp.norm1(x)), [cp.norm2(x) <= 1, x >= -1])
 
 
 def warm_up():
@@ -49,11 +106,42 @@ def warm_up():
         raise RuntimeError("told not to start")
 
 
+def crash_points():
+    """Let the process die before or after a write to the store is committed, when a file says so."""
+    from service.jobs.store import JobStore
+
+    def deadly(name):
+        write = getattr(JobStore, name)
+
+        def wrapped(self, *args, **kwargs):
+            die_if_told(f"crash-before-{name}")
+            written = write(self, *args, **kwargs)
+            die_if_told(f"crash-after-{name}")
+            return written
+
+        setattr(JobStore, name, wrapped)
+
+    for name in (
+        "create", "create_once", "claim", "progress", "succeed", "fail", "give_up", "cancel", "delete", "requeue",
+        "requeue_unfinished", "crashed",
+    ):  # fmt: skip
+        deadly(name)
+
+
+def die_if_told(name):
+    try:
+        (FOLDER / name).unlink()
+    except FileNotFoundError:
+        return
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 # The tests import this module for its names only; the server runs it as __main__, its workers as __mp_main__.
 if __name__ in ("__main__", "__mp_main__"):
     dispatch.solve = solve
     dispatch.warm_up = warm_up
     dispatch.warm_up_rest = lambda: None
+    crash_points()
 
 
 def break_lanes():

@@ -5,6 +5,8 @@ import json
 
 import pytest
 
+from synthesis.kinds import KINDS
+from tests.service import hostile
 from tests.service.running import PROBLEM
 
 MIB = 1 << 20
@@ -162,6 +164,15 @@ def test_what_is_large(client, name):
     status, problem = refused(client, ENORMOUS[name])
     assert status == 422
     assert len(json.dumps(problem)) < 20_000
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_every_field_of_every_kind_spoilt(client, kind):
+    bodies = dict(hostile.of_kind(kind))
+    assert len(bodies) >= 12
+    for name, body in bodies.items():
+        status, _ = refused(client, body)
+        assert status in (400, 422), name
 
 
 def test_at_most_twenty_faults_are_listed(client):
