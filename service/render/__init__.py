@@ -35,6 +35,7 @@ EXPORTS: dict[str, dict[Form, str]] = {
     },
     "fourbar": {**_LINKAGE, "svg": "service.render.sheet:fourbar_sheet"},
     "slider_crank": _LINKAGE,
+    "geared_fivebar": _LINKAGE,
     "inverted_slider_crank": _LINKAGE,
     "watt_2": _LINKAGE,
     "stephenson_3": _LINKAGE,

@@ -20,17 +20,19 @@ from service.render.svg import Box, Element, Points, Viewport, circle, element, 
 from service.render.symbols import (
     COUPLER,
     CURVE,
+    DEMANDED,
     INK,
     INPUT,
     OUTPUT,
     PALE,
     bearing,
+    demanded_point,
     demanded_position,
     scale_bar,
 )
 from service.render.symbols import GROUND as GROUND_COLOUR
 from synthesis.analyses.cycle import cycle_of
-from synthesis.problems import Position
+from synthesis.problems import PathPoint, Position
 
 LINK_WIDTH, THIN, JOINT = 5.0, 2.4, 4.5
 """Strokes of the bold and the pale linkage, and the radius of a joint, pixels."""
@@ -51,7 +53,7 @@ class Scene:
     """A linkage at inputs (radians, or lengths along the input slide), and the paths of some joints over its cycle.
 
     ``used``, where a joint is named, is that joint's path from the first input to the last; ``low`` and ``high`` are
-    the ends of the cycle.
+    the ends of the cycle. ``target`` is a curve that is to be drawn as a whole.
     """
 
     def __init__(
@@ -60,9 +62,10 @@ class Scene:
         inputs: NDArray[np.float64],
         traced: Sequence[str],
         used: str | None = None,
-        positions: Sequence[Position] = (),
+        positions: Sequence[Position | PathPoint] = (),
+        target: Points | None = None,
     ) -> None:
-        self.mechanism, self.inputs, self.positions = mechanism, inputs, positions
+        self.mechanism, self.inputs, self.positions, self.target = mechanism, inputs, positions, target
         self.at = self.driven(inputs)
         self.low, self.high = cycle_of(mechanism)
         cycle = self.driven(np.linspace(self.low, self.high, SAMPLES))
@@ -85,6 +88,7 @@ class Scene:
         """What the drawing must show."""
         places = [z for k in range(len(self.inputs)) for z in self.joints(k).values()]
         places += [position.point for position in self.positions]
+        places += [] if self.target is None else list(self.target)
         return Box.around(np.concatenate([np.array(places), self.used, *self.paths]))
 
     def lines(self, k: int) -> list[tuple[str, complex, float]]:
@@ -114,6 +118,11 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
         data_view="main",
     )
     labels = Labels(panel.grown(-3.0))
+    if shown.target is not None:
+        demanded = path(
+            view.shown(shown.target), stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3, data_curve="target"
+        )
+        group.add(demanded)
     for points in shown.paths:
         group.add(path(view.shown(points), stroke=CURVE, stroke_width=0.9))
     group.add(path(view.shown(shown.used), stroke=CURVE, stroke_width=2.2))
@@ -122,7 +131,11 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
     for k in range(len(shown.inputs) - 1, -1, -1):
         group.add(_configuration(shown, view, k, labels))
     for k, position in enumerate(shown.positions):
-        symbol, lines = demanded_position(view.point(position.point), math.radians(position.angle), k + 1)
+        at = view.point(position.point)
+        if isinstance(position, PathPoint):
+            symbol, lines = demanded_point(at, k + 1)
+        else:
+            symbol, lines = demanded_position(at, math.radians(position.angle), k + 1)
         labels.avoid(lines, 1.0)
         group.add(symbol)
     for k, position in enumerate(shown.positions):

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
+from kinematics.linkage.branches import cycle
+from kinematics.linkage.mechanism import Mechanism
 from service.render import blocks, tables
 from service.render.linkage_drawing import Scene, drawing
 from service.render.numbers import angle, length, small
@@ -14,7 +17,7 @@ from service.render.svg import Box, Viewport, clean, document, shortened, text
 from service.render.symbols import GREY, INK
 from synthesis.designs import LinkageDesign
 from synthesis.mechanisms import GivenMechanism
-from synthesis.problems import MotionProblem
+from synthesis.problems import MotionProblem, PathProblem
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
 """Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
@@ -22,8 +25,12 @@ WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
 HEIGHTS = (460.0, 860.0)
 """Least and greatest height of the drawing, pixels."""
 
+MOST_ROWS = 12
+"""Targets that are listed."""
+
 NAMES = {
     "slider_crank": "Slider-crank",
+    "geared_fivebar": "Geared fivebar",
     "inverted_slider_crank": "Inverted slider-crank",
     "watt_2": "Fourbar with a driver dyad (Watt's sixbar)",
     "stephenson_3": "Fourbar with a driver dyad on its coupler (Stephenson's sixbar)",
@@ -33,12 +40,12 @@ NAMES = {
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
-def linkage_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> str:
+def linkage_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, title: str) -> str:
     """The drawing of a linkage design as a complete SVG document."""
     mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
     stated = np.array([target.input_angle for target in design.targets])
     inputs = stated if mechanism.driven_by_slide else np.radians(stated)
-    shown = Scene(mechanism, inputs, ["P"], "P", problem.positions)
+    shown = _scene(mechanism, inputs, problem)
     heading = clean(title) or NAMES[design.mechanism.type]
     width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
     box = shown.box()
@@ -64,23 +71,41 @@ def linkage_sheet(design: LinkageDesign, problem: MotionProblem, title: str) -> 
     )
 
 
-def _tables(design: LinkageDesign, problem: MotionProblem, size: float) -> list[blocks.Block]:
+def _scene(mechanism: Mechanism, inputs: NDArray[np.float64], problem: MotionProblem | PathProblem) -> Scene:
+    """The linkage at its targets; along a curve that is drawn as a whole, at its first and last point."""
+    if isinstance(problem, MotionProblem):
+        return Scene(mechanism, inputs, ["P"], "P", problem.positions)
+    if not problem.matched:
+        return Scene(mechanism, inputs, ["P"], "P", problem.points)
+    target = np.array([point.point for point in problem.points])
+    last = inputs[-1]
+    if problem.closed:
+        target, last = np.append(target, target[0]), inputs[0] + cycle(mechanism)
+    return Scene(mechanism, np.array([inputs[0], last]), ["P"], "P", problem.points[:1], target)
+
+
+def _tables(design: LinkageDesign, problem: MotionProblem | PathProblem, size: float) -> list[blocks.Block]:
     unit = problem.length_unit
     links = design.mechanism.links
     lengths = links if isinstance(links, dict) else links.model_dump()
     rows = [(name.replace("_", " "), length(value)) for name, value in lengths.items()]
     for name, (x, y) in design.mechanism.skeleton.joints.items():
         rows.append((f"{name} at the first target", f"({length(x, size)}, {length(y, size)})"))
+    for gear in design.mechanism.skeleton.gears:
+        rows.append((f"gear ratio {' : '.join(reversed(gear.links))}", f"{gear.ratio:g}"))
     for slide in design.mechanism.skeleton.slides:
         rows.append((f"slide of {slide.joint} on {slide.link}", angle(slide.angle)))
     slides = design.mechanism.skeleton.input_link in design.mechanism.skeleton.joints
     met = [
         (
             f"{target.index + 1}: input {length(target.input_angle) if slides else angle(target.input_angle, 2)}",
-            f"off by {small(target.point_residual)} {unit}, {angle(target.angle_residual or 0.0, 2)}",
+            f"off by {small(target.point_residual)} {unit}"
+            + ("" if target.angle_residual is None else f", {angle(target.angle_residual, 2)}"),
         )
-        for target in design.targets
+        for target in design.targets[:MOST_ROWS]
     ]
+    if len(design.targets) > MOST_ROWS:
+        met.append((f"and {len(design.targets) - MOST_ROWS} more", ""))
     least = [
         (f"transmission at {link.replace('_', ' ')}", angle(value, 2))
         for link, value in design.metrics.transmission_angles.items()

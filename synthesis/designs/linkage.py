@@ -159,6 +159,36 @@ class InvertedSliderCrankMechanism(Answer):
     skeleton: Skeleton
 
 
+class FivebarLinks(Answer):
+    """Link lengths of a geared fivebar; ``output`` is the geared crank at the other fixed pivot."""
+
+    ground: float
+    input: float
+    coupler_1: float
+    coupler_2: float
+    output: float
+
+
+class GearedFivebarMechanism(Answer):
+    """A geared fivebar: cranks O2–A and O5–B, geared to one another, and couplers A–C (with P) and B–C.
+
+    ``open``: C lies to the left of the directed line from A to B.
+    """
+
+    type: Literal["geared_fivebar"] = "geared_fivebar"
+    fixed_pivots: FixedPivots = Field(description="O2 (input) and O5 (output).")
+    links: FivebarLinks
+    gear_ratio: float = Field(description="Rotation of the output over that of the input.")
+    phase: float = Field(description="Output angle from the ground line when the input lies along it, degrees.")
+    coupler_point: CouplerPoint = Field(description="P on coupler 1: its angle is from the line A → C.")
+    assembly: Literal["open", "crossed"]
+    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: float | None = Field(
+        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
+    )
+    skeleton: Skeleton
+
+
 class SixbarMechanism(Answer):
     """A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link.
 
@@ -180,7 +210,8 @@ class SixbarMechanism(Answer):
 
 
 LinkageMechanism = Annotated[
-    FourbarMechanism | SliderCrankMechanism | InvertedSliderCrankMechanism | SixbarMechanism, Discriminator("type")
+    FourbarMechanism | SliderCrankMechanism | InvertedSliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism,
+    Discriminator("type"),
 ]
 """Any linkage that an answer may hold; the field ``type`` tells which."""
 

@@ -30,6 +30,7 @@ from synthesis.path.nine_point_system import (
     nine_point_system_extended,
     orbit_keys,
 )
+from synthesis.path.other_linkages import solve_other
 from synthesis.path.point_fit import fit_points
 from synthesis.path.point_fit import warm_up as warm_up_fits
 from synthesis.path.timed import solve_timed
@@ -55,6 +56,8 @@ SHORTEST_LINK = 1e-9
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation."""
+    if problem.mechanism != "fourbar":
+        return solve_other(problem, progress)
     if problem.matched:
         return curve_match.solve_curve_match(problem, progress)
     if all_are_found(problem):

@@ -18,8 +18,11 @@ EQUAL_POINTS = 1e-9
 EQUAL_ANGLES = 1e-9
 """Crank angles closer than this, in degrees modulo full turns, are one angle."""
 
-MOST_FREE = 9
-"""Points that a fourbar can meet exactly, in general: it has nine dimensions."""
+MOST_FREE = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
+"""Points that a linkage can meet exactly, in general: as many as it has dimensions, its gear ratio apart."""
+
+GEAR_TURNS = 60
+"""Turns of the crank within which a geared fivebar must come round, so that its whole motion can be driven."""
 
 MOST_POINTS = 1000
 """Points that are taken; a curve that needs more is oversampled."""
@@ -150,7 +153,12 @@ class PathProblem(LinkageProblem):
         description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
         "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be.",
     )
-    mechanism: Literal["fourbar"] = "fourbar"
+    mechanism: Literal["fourbar", "slider_crank", "geared_fivebar"] = "fourbar"
+    gear_ratio: Number | None = Field(
+        default=None,
+        description="For geared fivebars: rotation of the output over that of the input. Left out: 1, -1, 2 and -2 are "
+        "tried.",
+    )
     fixed_pivots: PathPivots = PathPivots()
     constraints: PathConstraints = PathConstraints()
     rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
@@ -172,7 +180,7 @@ class PathProblem(LinkageProblem):
     @property
     def most_exact(self) -> int:
         """How many points can be met exactly, in general: as many as there are freedoms for."""
-        free = MOST_FREE - self.fixed_pivots.given()
+        free = MOST_FREE[self.mechanism] - self.fixed_pivots.given()
         return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
 
     @property
@@ -220,6 +228,7 @@ class PathProblem(LinkageProblem):
             *self._equal_points(),
             *self._method(),
             *self._pivots(),
+            *self._mechanism(),
             *self._closed(),
             *self.constraints.contradictions(),
         ]
@@ -318,6 +327,30 @@ class PathProblem(LinkageProblem):
                 )
                 if not region.contains(at):
                     found.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
+        return found
+
+    def _mechanism(self) -> list[Contradiction]:
+        """What only fourbars can be asked, and the gear ratio."""
+        found = []
+        if self.gear_ratio is not None:
+            turns = self.gear_ratio * np.arange(1.0, GEAR_TURNS + 1.0)
+            if self.mechanism != "geared_fivebar":
+                found.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
+            elif self.gear_ratio == 0.0:
+                found.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
+            elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
+                detail = f"the gears do not come round within {GEAR_TURNS} turns; state a ratio of whole teeth"
+                found.append(Contradiction("/gear_ratio", detail))
+        if self.mechanism == "fourbar":
+            return found
+        if self.prescribed:
+            found.append(Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free"))
+        if self.constraints.grashof != "any":
+            found.append(Contradiction("/constraints/grashof", f"classifies fourbars; a {self.mechanism} has no class"))
+        if self.constraints.coupler_point is not None:
+            found.append(Contradiction("/constraints/coupler_point", "is for fourbars"))
+        if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
+            found.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
         return found
 
     def _closed(self) -> list[Contradiction]:

@@ -15,6 +15,7 @@ which dynamic programming finds the least sum of squares; closer and closer look
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -162,33 +163,67 @@ def _branch(fourbar: DrivenFourbar) -> tuple[float, float]:
     return at - float(below.min()), at + float(above.min())
 
 
+def _place(fourbar: DrivenFourbar) -> Callable[[Real], Complex]:
+    """P at inputs of any shape on the reference's assembly; NaN where there is no position."""
+
+    def place(inputs: Real) -> Complex:
+        at = positions(fourbar.linkage, inputs.ravel(), fourbar.assembly)
+        return np.where(at.valid, at.p, np.nan).reshape(inputs.shape)
+
+    return place
+
+
 def _squares(fourbar: DrivenFourbar, points: Complex, inputs: Real) -> Real:
     """Squared distances at inputs of shape (n, m) from points (n,); infinite where there is no position."""
-    at = positions(fourbar.linkage, inputs.ravel(), fourbar.assembly)
-    gaps = at.p.reshape(inputs.shape) - points[:, None]
-    return np.where(at.valid.reshape(inputs.shape), gaps.real**2 + gaps.imag**2, np.inf)
+    return _gaps(_place(fourbar)(inputs), points)
+
+
+def _gaps(places: Complex, points: Complex) -> Real:
+    gaps = places - points[:, None]
+    return np.where(np.isfinite(gaps), gaps.real**2 + gaps.imag**2, np.inf)
 
 
 def _ordered(fourbar: DrivenFourbar, points: Complex, way: float) -> tuple[Real, float]:
-    """The run of the input, turning one way, with the least sum of squares, and that sum."""
     low, high = _branch(fourbar)
-    crank = bool(full_rotation(fourbar.linkage))
+    period = math.tau if full_rotation(fourbar.linkage) else None
+    return ordered_run(_place(fourbar), points, low, high, period, way)
+
+
+def ordered_run(
+    place: Callable[[Real], Complex], points: Complex, low: float, high: float, period: float | None, way: float
+) -> tuple[Real, float]:
+    """The run of the input, turning one way, with the least sum of squared distances, and that sum.
+
+    Parameters
+    ----------
+    place : callable
+        P at inputs of any shape; NaN where there is no position.
+    points : complex, shape (n,)
+        What is to be met, in order.
+    low, high : float
+        The branch's inputs; ``high - low`` is the period where there is one.
+    period : float or None
+        Rotation after which P is where it was, for an input that turns through.
+    way : float
+        +1 or −1: which way the input turns.
+    """
+    count = GRID * max(1, round((high - low) / math.tau))
     if way < 0.0:
         low, high = high, low
-    grid = np.linspace(low, high, GRID + 1)
-    squares = np.minimum(_squares(fourbar, points, np.broadcast_to(grid, (len(points), GRID + 1))), OUT_OF_REACH)
-    step = abs(high - low) / GRID
-    columns = _round(squares[:, :-1].copy()) if crank else _along(squares)
+    grid = np.linspace(low, high, count + 1)
+    squares = np.minimum(_gaps(place(grid)[None], points), OUT_OF_REACH)
+    step = abs(high - low) / count
+    columns = _round(squares[:, :-1].copy()) if period is not None else _along(squares)
     run = np.asarray(low + way * step * columns, np.float64)
-    longest = math.tau if crank else math.inf
+    longest = math.inf if period is None else period
     for _ in range(LOOKS):
         tried: Real = run[:, None] + way * step * np.linspace(-1.0, 1.0, SPREAD)
-        if not crank:
+        if period is None:
             tried = np.clip(tried, min(low, high), max(low, high))
-        found = np.minimum(_squares(fourbar, points, tried), OUT_OF_REACH)
+        found = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
         run = way * _chosen(found, way * tried, longest)
         step *= CLOSER
-    return run, float(_squares(fourbar, points, run[:, None]).sum())
+    return run, float(_gaps(place(run[:, None]), points).sum())
 
 
 @njit(cache=True, nogil=True)

@@ -58,3 +58,40 @@ def test_what_no_curve_match_can_keep_is_refused_with_its_place(client):
     refused = client.post("/v1/jobs", json={"problem": nowhere})
     assert refused.status_code == 422
     assert "/problem/points" in [error["path"] for error in refused.json()["errors"]]
+
+
+def test_a_geared_fivebar_is_fitted_drawn_and_driven(client):
+    """The curve of a linkage of gear ratio −1: its design comes back, and its motion passes the points."""
+    points = [
+        (3.2, 0.6),
+        (2.9, 1.3),
+        (2.2, 1.9),
+        (1.3, 2.2),
+        (0.5, 2.1),
+        (0.1, 1.6),
+        (0.3, 1.0),
+        (1.0, 0.5),
+        (2.0, 0.3),
+    ]
+    problem = {
+        "kind": "path",
+        "method": "least_squares",
+        "closed": True,
+        "mechanism": "geared_fivebar",
+        "gear_ratio": -1.0,
+        "points": [{"x": x, "y": y} for x, y in points],
+    }
+    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
+    while job["status"] in ("queued", "running"):
+        job = client.get(f"/v1/jobs/{job['id']}").json()
+    assert job["status"] == "succeeded"
+    best = job["result"]["designs"][0]
+    assert best["mechanism"]["type"] == "geared_fivebar"
+    assert best["mechanism"]["skeleton"]["gears"] == [{"links": ["input", "output"], "ratio": -1.0}]
+    motion = client.get(f"/v1/jobs/{job['id']}/designs/0/motion", params={"steps": 720}).json()
+    traced = np.array(motion["joints"]["P"]["x"], float) + 1j * np.array(motion["joints"]["P"]["y"], float)
+    off = [np.nanmin(np.abs(traced - complex(x, y))) for x, y in points]
+    assert math.sqrt(np.mean(np.square(off))) < best["metrics"]["rms_distance"] + 0.02
+    drawing = client.get(f"/v1/jobs/{job['id']}/designs/0.svg")
+    assert drawing.status_code == 200
+    assert "gear ratio" in drawing.text
