@@ -13,11 +13,9 @@ SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = next(example for example in examples("path") if example.get("method") == "curve_match")
 
 
-def test_a_drawn_curve_is_matched_drawn_and_driven(client):
+def test_a_drawn_curve_is_matched_drawn_and_driven(server, client):
     job = client.post("/v1/jobs", json={"problem": DRAWN}, headers={"Prefer": "wait=30"}).json()
-    while job["status"] in ("queued", "running"):
-        job = client.get(f"/v1/jobs/{job['id']}").json()
-    assert job["status"] == "succeeded"
+    job = server.reaches(job["id"], "succeeded", seconds=110.0)
     result = job["result"]
     assert result["search"]["method"] == "curve_match"
     assert not result["search"]["complete"]
@@ -60,7 +58,7 @@ def test_what_no_curve_match_can_keep_is_refused_with_its_place(client):
     assert "/problem/points" in [error["path"] for error in refused.json()["errors"]]
 
 
-def test_a_geared_fivebar_is_fitted_drawn_and_driven(client):
+def test_a_geared_fivebar_is_fitted_drawn_and_driven(server, client):
     """The curve of a linkage of gear ratio −1: its design comes back, and its motion passes the points."""
     points = [
         (3.2, 0.6),
@@ -82,9 +80,7 @@ def test_a_geared_fivebar_is_fitted_drawn_and_driven(client):
         "points": [{"x": x, "y": y} for x, y in points],
     }
     job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
-    while job["status"] in ("queued", "running"):
-        job = client.get(f"/v1/jobs/{job['id']}").json()
-    assert job["status"] == "succeeded"
+    job = server.reaches(job["id"], "succeeded", seconds=110.0)
     best = job["result"]["designs"][0]
     assert best["mechanism"]["type"] == "geared_fivebar"
     assert best["mechanism"]["skeleton"]["gears"] == [{"links": ["input", "output"], "ratio": -1.0}]
