@@ -139,7 +139,7 @@ def problem_table() -> None:
     examples = extra["examples"]
     assert isinstance(examples, list)
     for name, example in zip(
-        ("double dwell", "rise-fall-dwell", "critical path motion", "engine valve"), examples, strict=True
+        ("double dwell", "rise-fall-dwell", "critical path motion", "engine valve", "barrel"), examples, strict=True
     ):
         problem = parse_problem(example)
         result, seconds = timed(lambda p=problem: solve(p, lambda fraction, message: None))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,10 +50,8 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     barrel = BarrelCam(program, size.radius, roller)
     progress(0.7, "verifying")
 
-    def wall(at: Real) -> NDArray[np.complex128]:
-        return barrel.wall(at, -1)
-
-    angle = profile_angles(program, wall, roller, problem.profile_points)
+    walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
+    angle = max((profile_angles(program, wall, roller, problem.profile_points) for wall in walls), key=len)
     mechanism = barrel_mechanism(barrel, problem.rotation, angle)
     verification, measured = verify_barrel(problem, mechanism)
     for _ in range(REFINEMENTS):

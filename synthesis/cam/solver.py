@@ -105,7 +105,9 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return none_of(problem, reason, proven, "size")
     cam, size = sized
     progress(0.7, "verifying")
-    angle = profile_angles(cam.program, cam.profile, cam.roller_radius, problem.profile_points)
+    curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
+    laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
+    angle = max(laid, key=len)
     mechanism = cam_mechanism(cam, angle, problem.closure == "form")
     verification, measured = verify(problem, mechanism)
     for _ in range(REFINEMENTS):

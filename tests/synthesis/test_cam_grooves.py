@@ -20,8 +20,8 @@ FOLLOWERS = [
 ]
 
 
-def designed(follower, rotation="ccw"):
-    statement = copy.deepcopy(GROOVE) | {"follower": follower, "rotation": rotation}
+def designed(follower, rotation="ccw", **changes):
+    statement = copy.deepcopy(GROOVE) | {"follower": follower, "rotation": rotation} | changes
     for segment in statement["segments"]:
         if "lift" in segment:
             segment["lift"] = 12.0
@@ -50,6 +50,14 @@ def test_both_walls_carry_the_roller(follower, rotation):
     for k in range(0, len(centre), 37):
         assert np.abs(outer - centre[k]).min() > 8.0 - 1e-3
     assert design.metrics.forces.wall_changes
+
+
+@pytest.mark.parametrize("radius", [10.5, 11.25, 12.0, 12.75, 13.5, 14.25])
+def test_small_rollers_get_the_points_that_the_outer_wall_needs(radius):
+    """Its chords are longer than the inner wall's, and the roller must span some of either."""
+    follower = {"type": "translating_roller", "roller_radius": radius, "prime_radius": 80.0}
+    _, design = designed(follower, profile_points=180)
+    assert design.verification.passed
 
 
 def test_a_wall_that_was_tampered_with_is_found():
