@@ -2,7 +2,8 @@
 
 Starts are linkages that meet as many precision points as they can, spaced at random about Chebyshev's spacing: the best
 approximation is one of these for some spacing, as its error has a zero between any two of its extremes. Members of the
-families through fewer points are added. All are judged at once; the best that differ are improved.
+families through fewer points are added. All are judged at once; the errors of the best are levelled
+(:mod:`synthesis.function.levelling`), and the best that differ are improved under all limits.
 
 Minimax: sequential linear programs. With the errors e and limits g linearized in a step δ of the generator,
 
@@ -25,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 
+from synthesis.function.levelling import levelled
 from synthesis.function.limits import Limits
 from synthesis.function.precision import family, many_exact
 from synthesis.function.structural_error import ERROR, STEPS, Generators
@@ -45,11 +47,21 @@ SAME_START = 0.12
 DRAWN, TURNING_KEPT, WIDEST = 40_000, 4000, 100.0
 """Random lengths where a link must turn through, those kept of them, and their widest link ratio."""
 
-STARTS, KEPT = 14, 6
-"""Starts that are improved a little, and those of them that are improved to the end."""
+LEVELLED = 60
+"""Starts whose errors are levelled, the best ones."""
 
-FIRST_ROUNDS, ROUNDS = 6, 40
-"""Steps for the former and the latter at most."""
+
+class Effort(NamedTuple):
+    """How many starts are improved a little and how many of them to the end, and steps for both at most."""
+
+    starts: int
+    first_rounds: int
+    kept: int
+    rounds: int
+
+
+FEW, MANY = Effort(6, 4, 3, 12), Effort(14, 6, 6, 60)
+"""Where no limit is in the way of the best, and where one is."""
 
 TRUST = 0.3
 """First bound on a step: a third in length, 17 degrees."""
@@ -92,27 +104,36 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
     progress(0.2, f"{len(pool)} starts")
     if not len(pool):
         return Found([], 0, 0)
-    chosen = _best_distinct(descent, pool, signs)
+    nearest = np.argsort(descent.sizes(pool, signs))[:LEVELLED]
+    level, theirs = levelled(task, pool[nearest], signs[nearest])
+    judged = len(pool)
+    pool, signs = limits.contained(np.concatenate([pool, level])), np.concatenate([signs, theirs])
+    # The best level error, if no limit touches it, is the answer already; the rest is for others beside it.
+    inside = len(level) > 0 and float(limits.values(level[descent.sizes(level, theirs).argmin()])[0].max()) < 0.0
+    # What is not levelled, or not among the inequalities, may have its best elsewhere.
+    inside &= not task.free[5:].any() and task.problem.constraints.grashof in ("any", "crank_rocker", "double_crank")
+    effort = FEW if inside else MANY
+    chosen = _best_distinct(descent, pool, signs, effort.starts)
     improve = descent.minimax if task.problem.aim == "minimax" else descent.least_squares
     first = []
     for n, j in enumerate(chosen):
         progress(0.2 + 0.3 * n / len(chosen), f"start {n + 1} of {len(chosen)}")
-        first.append(improve(pool[j], float(signs[j]), FIRST_ROUNDS))
+        first.append(improve(pool[j], float(signs[j]), effort.first_rounds))
     first.sort(key=lambda one: one.error)
     optima: list[Approximation] = []
-    for n, one in enumerate(first[:KEPT]):
-        progress(0.5 + 0.4 * n / KEPT, f"candidate {n + 1}")
-        better = improve(one.generator, one.sign, ROUNDS)
-        if not any(_same(better, other) for other in optima):
-            optima.append(better)
+    for n, one in enumerate(first[: effort.kept]):
+        progress(0.5 + 0.4 * n / effort.kept, f"candidate {n + 1}")
+        refined = improve(one.generator, one.sign, effort.rounds)
+        if not any(_same(refined, other) for other in optima):
+            optima.append(refined)
     optima.sort(key=lambda one: one.error)
-    return Found([one for one in optima if math.isfinite(one.error)], len(pool), len(chosen))
+    return Found([one for one in optima if math.isfinite(one.error)], judged, len(chosen))
 
 
 def _same(one: Approximation, other: Approximation) -> bool:
-    """Whether two optima are one; angles without full turns."""
+    """Whether two optima are one; angles without full turns, which a slider's position is never near to."""
     gaps = one.generator - other.generator
-    gaps[3] -= math.tau * round(gaps[3] / math.tau)
+    gaps[3:5] -= math.tau * np.round(gaps[3:5] / math.tau)
     return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator))))
 
 
@@ -139,7 +160,7 @@ def _starts(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> tup
                 best = least_design_error(task, limits, sum(first) / 2.0, sum(second) / 2.0)
                 if best is not None:
                     found.append(best[None])
-    pool = limits.contained(np.concatenate(found))
+    pool = np.concatenate(found)
     # The assembly that the sampled function lies in, by most of its places.
     signs = np.where(task.samples().signs(pool).sum(axis=1) >= 0.0, 1.0, -1.0)
     if limits.shortest_link is None and not limits.turns_through:
@@ -199,17 +220,18 @@ def _with_scales(found: Real, k: Real, scale: Real) -> Real:
     return np.column_stack([found[:, :5], k[index], scale[index]])
 
 
-def _best_distinct(descent: _Descent, pool: Real, signs: Real) -> list[int]:
+def _best_distinct(descent: _Descent, pool: Real, signs: Real, count: int) -> list[int]:
     """Starts with the least errors that differ from one another."""
     merit = descent.merits(pool, signs)
-    within = np.array([float(descent.limits.values(one)[0].max(initial=0.0)) <= 0.0 for one in pool])
     features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
     chosen: list[int] = []
     # Half of them from within all limits, if there are such: a descent comes into them, but not from everywhere.
-    for order, most in ((np.where(within, merit, np.inf), STARTS // 2), (merit, STARTS)):
-        for j in np.argsort(order)[: 40 * STARTS]:
-            if not math.isfinite(order[j]) or len(chosen) == most:
+    for inside, most in ((True, count // 2), (False, count)):
+        for j in np.argsort(merit):
+            if not math.isfinite(merit[j]) or len(chosen) == most:
                 break
+            if inside and float(descent.limits.values(pool[j])[0].max(initial=0.0)) > 0.0:
+                continue
             gaps = np.abs(features[chosen] - features[j]).max(axis=1) if chosen else np.array([np.inf])
             if gaps.min() > SAME_START:
                 chosen.append(int(j))
@@ -235,16 +257,21 @@ class _Descent:
         self.square = task.problem.aim == "least_squares"
 
     def merits(self, pool: Real, signs: Real) -> Real:
-        """The criterion's error and what limits are broken by, of many generators; infinite beyond use."""
+        """The criterion's error and what the transmission angle lacks, of many generators; infinite beyond use."""
+        size = self.sizes(pool, signs)
+        if self.limits.cosine is not None:
+            short = math.sqrt(max(1.0 - self.limits.cosine**2, 0.0)) - self.limits.transmission(pool)
+            size = size + np.maximum(short, 0.0)
+        return np.asarray(size)
+
+    def sizes(self, pool: Real, signs: Real) -> Real:
+        """The criterion's error of many generators; infinite beyond use."""
         errors = np.abs(self.coarse.errors(pool, signs))
         errors = np.where(np.isfinite(errors), errors, np.inf)
         size = np.sqrt(np.mean(errors**2, axis=1)) if self.square else errors.max(axis=1)
         size = np.where(errors.max(axis=1) < ERROR, size, np.inf)
         if self.relative:
             size = size / np.abs(pool[:, 6])
-        if self.limits.cosine is not None:
-            short = math.sqrt(max(1.0 - self.limits.cosine**2, 0.0)) - self.limits.transmission(pool)
-            size = size + np.maximum(short, 0.0)
         return np.asarray(size)
 
     def _errors(self, generators: Generators, at: Real, sign: float) -> Real:

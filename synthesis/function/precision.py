@@ -138,12 +138,16 @@ def many_exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float
     found : float, shape (k, 6)
         Dimensions, and the index of the set.
     """
-    basis, _ = left_over(equations(closure, inputs, outputs, zeros))
-    points = basis[:, :1] if None not in zeros else on_lines(closure, basis[:, 0], basis[:, 1])[0]
-    found = closure.dimensions(points)
+    found = closure.dimensions(exact_points(closure, inputs, outputs, zeros))
     index = np.broadcast_to(np.arange(len(found), dtype=np.float64)[:, None, None], (*found.shape[:2], 1))
     found = np.concatenate([found, index], axis=-1).reshape(-1, 6)
     return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def exact_points(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
+    """Points of the cubic through many sets of pairs, shape (m, n) each: shape (m, 3 or 1, 7), NaN where not real."""
+    basis, _ = left_over(equations(closure, inputs, outputs, zeros))
+    return basis[:, :1] if None not in zeros else on_lines(closure, basis[:, 0], basis[:, 1])[0]
 
 
 def family(

@@ -11,8 +11,10 @@ import pytest
 
 from kinematics.linkage import Fourbar, SliderCrank, positions, slider_crank
 from synthesis.function.closure import FOURBAR
+from synthesis.function.levelling import levelled
 from synthesis.function.precision import many_exact
 from synthesis.function.solver import solve_function
+from synthesis.function.task import function_task
 from synthesis.problems import FunctionProblem
 
 CASES = json.loads((Path(__file__).parents[1] / "cases" / "function_generation.json").read_text())
@@ -500,3 +502,20 @@ def test_what_is_hard_is_answered_and_verified(fields):
     result = solved(**fields)
     assert all(design.verification.passed for design in result.designs)
     assert result.summary
+
+
+def test_levelling_comes_to_the_least_greatest_error_from_anywhere_near():
+    # From a linkage through badly spaced points; the errors of what is reached are level and the table's optimum.
+    problem = FunctionProblem(kind="function", **task_of(CASES[2]), criterion="minimax")
+    task = function_task(problem)
+    shares = np.array([[0.05, 0.25, 0.45, 0.7, 0.95]])
+    turned = math.radians(90.0)
+    outputs = problem.function.share(90.0 * shares)
+    begun = many_exact(task.closure, turned * shares, turned * outputs, task.zeros)[:, :5]
+    begun = np.column_stack([begun, np.full((len(begun), 2), turned)])
+    signs = task.samples().signs(begun)[:, 0]
+    before = np.degrees(np.abs(task.samples().errors(begun, signs)).max(axis=1).min())
+    reached, theirs = levelled(task, begun, signs)
+    after = np.degrees(np.abs(task.samples().errors(reached, theirs)).max(axis=1).min())
+    assert before > 1.3 * after
+    assert after == pytest.approx(CASES[2]["reference"]["value"], rel=0.005)
