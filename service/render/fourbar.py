@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
 from service.render.svg import Box, Points
-from synthesis.designs import FourbarMechanism, LinkageDesign
+from synthesis.designs import FourbarMechanism, LinkageDesign, PathDesign
 from synthesis.linkages import DrivenFourbar, driven_fourbar
+from synthesis.path.curve_placement import placed
 from synthesis.problems import MotionProblem, PathProblem
 
 Real = NDArray[np.float64]
@@ -135,6 +136,8 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
     """What is drawn of a fourbar design and of the problem that it answers."""
     driven = driven_fourbar(fourbar_of(design))
     linkage = driven.linkage
+    if isinstance(problem, PathProblem) and isinstance(design, PathDesign):
+        problem = placed(problem, design)
     demands = _demands(problem)
     configurations = _configurations(design, driven, demands)
     start = end = driven.reference

@@ -54,6 +54,7 @@ from synthesis.designs.linkage import (
 from synthesis.designs.motion import BurmesterBranch, MotionResult
 from synthesis.designs.path import (
     CognateTriples,
+    CurvePlacement,
     CurveSweep,
     FamilySearch,
     GivenPivotSolutions,
@@ -106,6 +107,7 @@ __all__ = [
     "Check",
     "CognateTriples",
     "CouplerPoint",
+    "CurvePlacement",
     "CurveSweep",
     "DavisMechanism",
     "DragLinkMechanism",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from synthesis.designs.base import Answer, Result
+from synthesis.designs.base import Answer, Point, Result
 from synthesis.designs.linkage import LinkageDesign, LinkageMetrics
 
 
@@ -44,10 +44,23 @@ class PathMetrics(LinkageMetrics):
     )
 
 
+class CurvePlacement(Answer):
+    """Where a matched curve is traced, if not where it was drawn: sized and turned about the origin, then shifted."""
+
+    size: float
+    rotation: float = Field(description="Degrees.")
+    shift: Point
+
+
 class PathDesign(LinkageDesign):
     """A linkage that guides a point, with the proof of what it does."""
 
     metrics: PathMetrics
+    placement: CurvePlacement | None = Field(
+        default=None,
+        exclude_if=nothing,
+        description="For a curve whose place was left free; what is measured, is there.",
+    )
 
 
 class GivenPivotSolutions(Answer):

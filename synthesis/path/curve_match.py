@@ -26,6 +26,7 @@ from synthesis.kinds import Progress
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.path.curve_descent import Descent, descend
 from synthesis.path.curve_limits import Limits, descend_within, settle
+from synthesis.path.curve_placement import moved, placement_of, searched, stated
 from synthesis.path.curve_shapes import SHAPE_POINTS, Starts, alike, equal_steps
 from synthesis.path.traced_curves import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural, place
 from synthesis.problems import PathProblem
@@ -103,7 +104,7 @@ class _Candidate(NamedTuple):
 def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by matching the whole curve."""
     target = _Target(problem)
-    limits = Limits.of(problem, target.centre, target.size)
+    limits = Limits.of(searched(problem), target.centre, target.size)
     families = _families(problem)
     candidates: list[_Candidate] = []
     least = math.inf
@@ -345,12 +346,15 @@ def _verified(
             if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
                 rejected["full_rotation"] += 1
                 continue
-            scaled = (target.centre + target.size * joint for joint in joints)
-            design = verify_curve(problem, fourbar_mechanism(FourbarConfiguration(*scaled)))
+            drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
+            alpha, beta = placement_of(problem, drawn)
+            there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
+            at = stated(alpha, beta)
+            design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
             if design is None:
                 rejected["cannot_be_driven"] += 1
                 continue
-            designs.append(design)
+            designs.append(design if at is None else design.model_copy(update={"placement": at}))
             if not design.verification.passed:
                 rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
     return designs, rejected

@@ -153,6 +153,12 @@ class PathProblem(LinkageProblem):
         description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
         "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be.",
     )
+    placement_free: list[Literal["position", "rotation", "size"]] = Field(
+        default=[],
+        max_length=3,
+        description="For curve_match: what of the drawn curve need not be kept. The linkage is then moved, turned or "
+        "sized with its curve to keep given pivots, regions and limits of lengths.",
+    )
     mechanism: Literal["fourbar", "slider_crank", "geared_fivebar"] = "fourbar"
     gear_ratio: Number | None = Field(
         default=None,
@@ -302,6 +308,8 @@ class PathProblem(LinkageProblem):
         ]
 
     def _method(self) -> list[Contradiction]:
+        if self.placement_free and not (self.matched and self.mechanism == "fourbar"):
+            return [Contradiction("/placement_free", "is for curve_match by fourbars")]
         if self.matched:
             if self.prescribed:
                 return [Contradiction("/timing", "a curve that is matched as a whole has no timing; leave it free")]

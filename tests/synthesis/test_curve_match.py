@@ -341,3 +341,67 @@ def test_noisy_curves_are_recovered_to_their_noise():
         result = matched(curve, True, rank_by="accuracy")
         within += bool(result.designs) and result.designs[0].metrics.rms_distance <= 1.2 * sigma
     assert within >= 11
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [0.3, 40.0])
+def test_a_curve_of_free_place_stands_on_given_pivots(size):
+    """With position, rotation and size free both pivots are hit, and the curve keeps its shape."""
+    target = curve_of(EGG, 50) * size
+    pivots = {"input": [100.0, 50.0], "output": [130.0, 90.0]}
+    everything = ["position", "rotation", "size"]
+    result = matched(target, True, fixed_pivots=pivots, placement_free=everything)
+    assert result.designs
+    for design in result.designs:
+        assert np.allclose(design.mechanism.fixed_pivots.input, pivots["input"], atol=1e-9)
+        assert np.allclose(design.mechanism.fixed_pivots.output, pivots["output"], atol=1e-9)
+        assert design.verification.passed
+    best = result.designs[0]
+    assert best.metrics.max_distance < 1e-8 * best.placement.size * size
+    # The same with the analysis core alone: the linkage's own curve is the drawn one under the stated placement.
+    links, point = best.mechanism.links, best.mechanism.coupler_point
+    linkage = Fourbar(
+        100.0 + 50.0j,
+        130.0 + 90.0j,
+        links.input,
+        links.coupler,
+        links.output,
+        point.distance * np.exp(1j * math.radians(point.angle)),
+    )
+    inputs = np.radians([one.input_angle for one in best.targets])
+    traced = positions(linkage, inputs, 1 if best.mechanism.assembly == "open" else -1).p
+    spin = best.placement.size * np.exp(1j * math.radians(best.placement.rotation))
+    assert np.abs(traced - (spin * target + complex(*best.placement.shift))).max() < 1e-7 * abs(spin) * size
+
+
+@pytest.mark.slow
+def test_what_is_held_is_kept_and_what_is_free_is_used():
+    target = curve_of(EGG, 40)
+    shifted = matched(target, True, fixed_pivots={"input": [-40.0, 7.0]}, placement_free=["position"])
+    assert shifted.designs
+    for design in shifted.designs:
+        assert np.allclose(design.mechanism.fixed_pivots.input, [-40.0, 7.0])
+        assert design.placement.size == pytest.approx(1.0)
+        assert design.placement.rotation == pytest.approx(0.0)
+    small = matched(target, True, constraints={"link_length": {"max": 3.0}}, placement_free=["size"])
+    assert small.designs
+    for design in small.designs:
+        assert max(design.mechanism.links.model_dump().values()) <= 3.0 * (1.0 + 1e-9)
+    region = {"x": [200.0, 220.0], "y": [-20.0, 0.0]}
+    inside = matched(target, True, constraints={"fixed_pivot_region": region}, placement_free=["position"])
+    assert inside.designs
+    for design in inside.designs:
+        for x, y in (design.mechanism.fixed_pivots.input, design.mechanism.fixed_pivots.output):
+            assert 200.0 - 1e-6 <= x <= 220.0 + 1e-6
+            assert -20.0 - 1e-6 <= y <= 1e-6
+
+
+def test_placement_is_for_whole_curves():
+    problem = parse_problem(
+        {
+            "kind": "path",
+            "placement_free": ["size"],
+            "points": [{"x": float(k), "y": float(k * k)} for k in range(5)],
+        }
+    )
+    assert [fault.path for fault in problem.contradictions()] == ["/placement_free"]
