@@ -52,6 +52,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.straight_line
 	$(BIN)/python -m benchmarks.dwell
 	$(BIN)/python -m benchmarks.quick_return
+	$(BIN)/python -m benchmarks.steering
 	$(BIN)/python -m benchmarks.curve_match
 	$(BIN)/python -m benchmarks.gear_train
 	$(BIN)/python -m benchmarks.planetary

@@ -18,6 +18,9 @@ _LINKAGE: dict[Form, str] = {
     "csv": "service.render.linkage_csv:linkage_table",
 }
 
+_UNDRAWN: dict[Form, str] = {form: maker for form, maker in _LINKAGE.items() if form != "svg"}
+"""Of types whose sheet is that of a kind of problem."""
+
 _MOVING: dict[Form, str] = {"gif": "service.render.linkage_animation:linkage_animation"}
 
 EXPORTS: dict[str, dict[Form, str]] = {
@@ -39,10 +42,11 @@ EXPORTS: dict[str, dict[Form, str]] = {
     "inverted_slider_crank": _LINKAGE,
     "watt_2": _LINKAGE,
     "stephenson_3": _LINKAGE,
-    "crank_shaper": _MOVING,
-    "whitworth": _MOVING,
-    "drag_link_rocker": _MOVING,
-    "drag_link_slider": _MOVING,
+    "crank_shaper": _UNDRAWN,
+    "whitworth": _UNDRAWN,
+    "drag_link_rocker": _UNDRAWN,
+    "drag_link_slider": _UNDRAWN,
+    "davis": _UNDRAWN,
     "peaucellier": _MOVING,
     "hart": _MOVING,
     "scott_russell": _MOVING,

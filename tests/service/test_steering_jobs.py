@@ -34,6 +34,10 @@ def test_designs_are_drawn_and_driven(client, job):
         assert joints == set(design["mechanism"]["skeleton"]["joints"])
         assert len([g for g in root.iter() if g.get("data-configuration")]) == 3
         assert {g.get("data-diagram") for g in root.iter() if g.get("data-diagram")} == {"outer", "error"}
+        for form in ("gif", "dxf", "csv"):
+            file = client.get(f"{place}.{form}")
+            assert file.status_code == 200, file.text
+            assert len(file.content) > 10_000
         motion = client.get(f"{place}/motion?steps=36")
         assert motion.status_code == 200, motion.text
         assert all(motion.json()["valid"])
