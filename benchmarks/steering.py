@@ -19,9 +19,8 @@ VEHICLES = (
 
 def main() -> None:
     solve(parse_problem(example("steering")), lambda fraction, message: None)
-    print(
-        f"{'vehicle':<26}{'lock':>6}{'tie rod':>9}{'arm/pivot':>11}{'arm angle':>11}{'error':>9}{'Davis':>10}{'CPU s':>8}"
-    )
+    heads = f"{'arm/pivot':>11}{'arm angle':>11}{'error':>9}{'Davis':>10}{'CPU s':>8}"
+    print(f"{'vehicle':<26}{'lock':>6}{'tie rod':>9}{heads}")
     for name, wheelbase, pivot, lock in VEHICLES:
         stated = {"kind": "steering", "wheelbase": wheelbase, "pivot_distance": pivot, "lock": lock}
         problem = parse_problem(stated)

@@ -112,9 +112,9 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
     half = math.radians(0.5 * problem.swing)
     sine, rho = math.sin(half), ROCKER_DYAD
-    if math.sin(demanded) < math.cos(half):
-        # cos² μ = sin²(ψ/2) + cos²(ψ/2)/ρ²
-        room = (math.cos(demanded) - sine) * (math.cos(demanded) + sine)
+    # cos² μ = sin²(ψ/2) + cos²(ψ/2)/ρ²
+    room = (math.cos(demanded) - sine) * (math.cos(demanded) + sine)
+    if room > 0.0:
         rho = max(rho, math.cos(half) / math.sqrt(room) * (1.0 + 1e-9))
     found = []
     for drag in _drag_links(problem):
