@@ -187,3 +187,10 @@ def test_a_huge_ratio_is_answered_honestly() -> None:
         assert found.designs == []
         assert not found.search.complete
         assert "No design was found" in found.summary
+
+
+@pytest.mark.parametrize("limits", [{}, {"min_transmission_angle": 89.99}, {"max_link_ratio": 1.0001}])
+def test_a_swing_of_nearly_half_a_turn_is_answered(limits: dict[str, float]) -> None:
+    for kind in ("fourbar", "drag_link_rocker"):
+        found = answer(mechanism=kind, time_ratio=1.0, swing=179.9999999, constraints=limits)
+        assert all(design.verification.passed for design in found.designs)
