@@ -18,6 +18,7 @@ from synthesis.designs import (
     GearTrainResult,
     LayshaftResult,
     MotionResult,
+    ParallelMotionResult,
     PathResult,
     PlanetaryResult,
     QuickReturnResult,
@@ -33,6 +34,7 @@ from synthesis.problems import (
     GearTrainProblem,
     LayshaftProblem,
     MotionProblem,
+    ParallelMotionProblem,
     PathProblem,
     PlanetaryProblem,
     QuickReturnProblem,
@@ -62,6 +64,9 @@ KINDS: dict[str, Kind] = {
     ),
     "steering": Kind(SteeringProblem, SteeringResult, "synthesis.steering.solver:solve_steering"),
     "dwell": Kind(DwellProblem, DwellResult, "synthesis.dwell.solver:solve_dwell"),
+    "parallel_motion": Kind(
+        ParallelMotionProblem, ParallelMotionResult, "synthesis.parallel_motion.solver:solve_parallel_motion"
+    ),
     "gear_train": Kind(GearTrainProblem, GearTrainResult, "synthesis.gear_train.solver:solve_gear_train"),
     "planetary_train": Kind(
         PlanetaryProblem, PlanetaryResult, "synthesis.planetary_train.solver:solve_planetary_train"

@@ -85,6 +85,7 @@ EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
     "steering": {"svg": "service.render.steering_sheet:steering_sheet"},
     "straight_line": {"svg": "service.render.line_sheet:line_sheet"},
     "dwell": {"svg": "service.render.dwell_sheet:dwell_sheet"},
+    "parallel_motion": {"svg": "service.render.parallel_sheet:parallel_sheet"},
 }
 """The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""
 

@@ -52,6 +52,12 @@ from synthesis.designs.linkage import (
     Target,
 )
 from synthesis.designs.motion import BurmesterBranch, MotionResult
+from synthesis.designs.parallel_motion import (
+    ParallelMotionDesign,
+    ParallelMotionMechanism,
+    ParallelMotionMetrics,
+    ParallelMotionResult,
+)
 from synthesis.designs.path import (
     CognateTriples,
     CurvePlacement,
@@ -150,6 +156,10 @@ __all__ = [
     "MeshContact",
     "MeshGeometry",
     "MotionResult",
+    "ParallelMotionDesign",
+    "ParallelMotionMechanism",
+    "ParallelMotionMetrics",
+    "ParallelMotionResult",
     "ParetoPlanetaryTrain",
     "ParetoTrain",
     "PathDesign",

@@ -39,6 +39,7 @@ from synthesis.problems.motion import (
     Tolerance,
     whole_point,
 )
+from synthesis.problems.parallel_motion import ParallelMotionProblem
 from synthesis.problems.path import CouplerPointLimits, PathConstraints, PathPivots, PathPoint, PathProblem
 from synthesis.problems.planetary_train import (
     PlanetaryProblem,
@@ -72,6 +73,7 @@ __all__ = [
     "LinkageProblem",
     "MotionProblem",
     "Number",
+    "ParallelMotionProblem",
     "PartialPoint",
     "PathConstraints",
     "PathPivots",

@@ -1,0 +1,1 @@
+"""Parallel motion: a link that a sixbar carries along a coupler curve without turning it."""
