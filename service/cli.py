@@ -13,8 +13,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from service.jobs.orphans import die_with_parent_from_the_start
+
 if TYPE_CHECKING:
     from service.settings import Settings
+
+die_with_parent_from_the_start()
 
 EXIT_FAILURE = 1
 EXIT_USAGE = 2

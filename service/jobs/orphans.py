@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import multiprocessing
 import os
 import signal
 import sys
@@ -28,6 +29,17 @@ def die_with(parent_pid: int) -> None:
     # The parent may have ended before the kernel was asked; then nobody will send the signal any more.
     if os.getppid() != parent_pid:
         os.kill(os.getpid(), signal.SIGKILL)
+
+
+def die_with_parent_from_the_start() -> None:
+    """The same, at the first line of our own that a spawned process runs; nothing in any other process.
+
+    What a worker imports before it can be told anything takes a second, and ten on a busy machine. A server that is
+    killed meanwhile would leave it behind for so long.
+    """
+    # The mark that multiprocessing itself goes by while it imports the main module again.
+    if sys.platform == "linux" and getattr(multiprocessing.current_process(), "_inheriting", False):
+        die_with(os.getppid())
 
 
 def _watch(parent_pid: int) -> None:

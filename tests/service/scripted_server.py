@@ -10,6 +10,7 @@ import sys
 import time
 from pathlib import Path
 
+from service.cli import main
 from synthesis import dispatch
 from synthesis.designs import Result, Search
 
@@ -142,6 +143,8 @@ if __name__ in ("__main__", "__mp_main__"):
     dispatch.warm_up = warm_up
     dispatch.warm_up_rest = lambda: None
     crash_points()
+if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
+    time.sleep(60)
 
 
 def break_lanes():
@@ -168,7 +171,5 @@ def break_lanes():
 
 
 if __name__ == "__main__":
-    from service.cli import main
-
     break_lanes()
     sys.exit(main())

@@ -12,7 +12,7 @@ import time
 import pytest
 
 from service.jobs.changes import Changes
-from tests.service.running import SCRIPTED, RunningServer, alive, environment, until
+from tests.service.running import SCRIPTED, RunningServer, alive, environment, until, workers_of
 from tests.service.scripted_server import (
     BROKEN,
     CONVEX,
@@ -230,6 +230,21 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
     server.reaches(queued["id"], "succeeded")
     assert stored(tmp_path, running["id"], "attempt") == 2
     assert server.stop() == 0
+
+
+def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path):
+    (tmp_path / "slow-start").touch()
+    with (
+        (tmp_path / "log").open("wb") as log,
+        subprocess.Popen(
+            [sys.executable, *SCRIPTED, "serve"], env=environment(tmp_path, workers=1), stdout=log, stderr=log
+        ) as server,
+    ):
+        (worker,) = until(lambda: workers_of(server.pid), 60.0, "the worker")
+        time.sleep(2.0)  # it has come to the first of our own lines, and is held up in the next ones
+        server.kill()
+        server.wait(10)
+        until(lambda: not alive(worker), 5.0, "the end of the worker")
 
 
 def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
