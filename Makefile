@@ -3,6 +3,7 @@
 # make test-faults  what becomes of jobs when processes are killed, with figures
 # make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
+# make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
 # make lock    resolve the dependencies of pyproject.toml anew
 
 PYTHON ?= python3
@@ -15,7 +16,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test test-faults campaign demo check quick bench lock clean
+.PHONY: serve test test-faults campaign demo check quick bench openapi lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -59,6 +60,10 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.cam_core
 	$(BIN)/python -m benchmarks.cam
 	$(BIN)/python -m benchmarks.service
+
+# Rewrites what the service promises; see the difference before it is committed.
+openapi: $(STAMP)
+	$(BIN)/python -m service.cli openapi docs/openapi.json
 
 # The virtual environment is made without ensurepip, which some systems leave out;
 # the system's pip fills it. Compiling the kernels here keeps that out of the first job.
