@@ -34,6 +34,9 @@ LEVEL = 1e-4
 
 GRID = 241
 
+SPREADS, COPIES, FAMILIES = (0.3, 0.1, 0.03, 0.01), 15, 4
+"""Where scales are open: how far they are moved at a time (in logarithms), to how many values, and of how many."""
+
 
 def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, Real]:
     """Linkages with level extremes, each from one whose error vanishes at as many places as can be met.
@@ -60,6 +63,40 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
     grid = Generators(task.problem.slides, shares, function.share(low + (high - low) * shares))
     places, begun = _zeros(grid.errors(generators, signs), angles, count)
     generators, signs = generators[begun], signs[begun]
+    reached, theirs, places, least = _level(task, grid, angles, generators, signs, places)
+    columns = np.flatnonzero(task.free[5:]) + 5
+    for spread in SPREADS if len(columns) and len(reached) else ():
+        # The best with their scales moved, from the places that they meet.
+        chosen = np.argsort(least / np.abs(reached[:, 6]) if task.free[6] else least)[:FAMILIES]
+        copies, again = np.repeat(reached[chosen], COPIES, axis=0), np.repeat(places[chosen], COPIES, axis=0)
+        factors = np.exp(spread * np.linspace(-1.0, 1.0, COPIES))
+        for n, column in enumerate(columns):
+            # Of two open scales the second is moved in another order, so that both are moved apart from each other.
+            order = np.roll(factors[::-1], n * (COPIES // 3)) if n else factors
+            copies[:, column] = _allowed(task, int(column) - 5, copies[:, column] * np.tile(order, len(chosen)))
+        more = _level(task, grid, angles, copies, np.repeat(theirs[chosen], COPIES), again)
+        reached, theirs = np.concatenate([reached, more[0]]), np.concatenate([theirs, more[1]])
+        places, least = np.concatenate([places, more[2]]), np.concatenate([least, more[3]])
+    return reached, theirs
+
+
+def _allowed(task: FunctionTask, side: int, scales: Real) -> Real:
+    """Scales moved into their limits, each of its own sign's."""
+    for low, high in task.scales[side]:
+        same = scales * low > 0.0
+        scales = np.where(same, np.clip(scales, low, high), scales)
+    return scales
+
+
+def _level(
+    task: FunctionTask, grid: Generators, angles: Real, generators: Real, signs: Real, places: Real
+) -> tuple[Real, Real, Real, Real]:
+    """Generators and signs that were reached from places (k, count), with their places and greatest errors."""
+    function = task.problem.function
+    assert function is not None
+    low, high = function.interval
+    count = places.shape[1]
+    met = places.copy()
     best, least = generators.copy(), np.full(len(generators), np.inf)
     for _ in range(ROUNDS):
         if not len(generators):
@@ -75,7 +112,7 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
         found = found.reshape(len(generators), count + 1, 7)
         greatest = heights[:, 0].max(axis=1)
         better = np.isfinite(greatest) & (greatest < least)
-        best[better], least[better] = found[better, 0], greatest[better]
+        best[better], least[better], met[better] = found[better, 0], greatest[better], places[better]
         with np.errstate(divide="ignore", invalid="ignore"):
             unlevel = np.diff(np.log(heights), axis=2)
         on = np.isfinite(unlevel).all(axis=(1, 2)) & (np.abs(unlevel[:, 0]).max(axis=1) > LEVEL)
@@ -90,18 +127,24 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
         places = places + step / np.maximum(too_far, 1.0)[:, None]
         generators = np.where(on[:, None], found[:, 0], generators)
     reached = np.isfinite(least)
-    return best[reached], signs[reached]
+    return best[reached], signs[reached], met[reached], least[reached]
 
 
 def _zeros(errors: Real, angles: Real, count: int) -> tuple[Real, NDArray[np.int64]]:
-    """Where errors vanish, as angles (m, count), of those that do so at that many places, and which those are."""
+    """Where errors vanish, as angles (m, count), of those that do so at that many places, and which those are.
+
+    One that vanishes at more places stands twice: with the first of them and with the last.
+    """
     finite = np.asarray(np.isfinite(errors).all(axis=1))
     crossed = np.asarray(np.diff(np.sign(np.where(finite[:, None], errors, 1.0)), axis=1) != 0.0)
-    begun = np.flatnonzero(crossed.sum(axis=1) == count)
-    rows, columns = np.nonzero(crossed[begun])
-    before, after = errors[begun[rows], columns], errors[begun[rows], columns + 1]
-    at = angles[columns] + (angles[1] - angles[0]) * before / (before - after)
-    return at.reshape(-1, count), begun
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = errors[:, :-1] / (errors[:, :-1] - errors[:, 1:])
+    at = np.where(crossed, angles[:-1] + (angles[1] - angles[0]) * shares, np.inf)
+    first = np.sort(at, axis=1)[:, :count]
+    last = np.sort(np.where(crossed, at, -np.inf), axis=1)[:, -count:]
+    total = crossed.sum(axis=1)
+    begun = np.concatenate([np.flatnonzero(total >= count), np.flatnonzero(total > count)])
+    return np.concatenate([first[total >= count], last[total > count]]), begun
 
 
 def _nearest(task: FunctionTask, around: Real, inputs: Real, outputs: Real) -> Real:

@@ -401,6 +401,16 @@ class TestApproximations:
             assert 50.0 - 1e-6 <= abs(design.metrics.input_rotation) <= 100.0 + 1e-6
             assert 50.0 - 0.01 <= abs(design.metrics.output_range) <= 100.0 + 0.01
 
+    @pytest.mark.slow
+    def test_an_open_range_is_one_more_free_number(self):
+        result = solved(function={"name": "logarithm", "x": [1.0, 2.0]}, input_range=60.0)
+        best = result.designs[0]
+        given = solved(**{**task_of(CASES[0]), "output_range": best.metrics.output_range}).designs[0]
+        assert best.structural_error.alternations >= 7
+        assert best.structural_error.max <= 1.001 * given.structural_error.max
+        # Better, as a share of its range, than what either direction of 60° allows.
+        assert best.structural_error.max / abs(best.metrics.output_range) < 0.00102 / 60.0
+
     def test_the_same_seed_gives_the_same_answer(self):
         task = {**task_of(CASES[3]), "seed": 5}
         assert solved(**task).model_dump() == solved(**task).model_dump()
