@@ -38,6 +38,9 @@ CURVE_STEP = 0.01
 REFINEMENTS = 5
 """Times that long steps are halved."""
 
+OTHERS = 9
+"""Linkages that are drawn beside the first at most, where only points are demanded."""
+
 SMALL_MOTION, SMALL_PART = 0.15, 0.04
 """All moving joints together, or one group of joints, within this share of the drawing's diagonal get a detail."""
 
@@ -93,6 +96,19 @@ class Scene:
     def guides_a_body(self) -> bool:
         """Whether angles are demanded, and not points only."""
         return any(demand.angle is not None for demand in self.demands)
+
+    @property
+    def others(self) -> list[Configuration]:
+        """The configurations that are drawn beside the first: none where they would hide the path of a point."""
+        others = [c for c in self.configurations if c.index != 0]
+        return others if self.guides_a_body or len(others) <= OTHERS else []
+
+    @property
+    def misses(self) -> bool:
+        """Whether some demanded point is missed."""
+        places = {demand.index: demand.point for demand in self.demands if demand.angle is None}
+        size = max((abs(z - w) for z in places.values() for w in places.values()), default=0.0)
+        return any(c.index in places and abs(c.p - places[c.index]) > MEETS * size for c in self.configurations)
 
     @property
     def o2(self) -> complex:

@@ -131,7 +131,9 @@ def _key(shown: Scene, y: float, width: float) -> Element:
         ("target", "demanded position" if shown.guides_a_body else "demanded point"),
         ("used", "path of P, used"),
         ("rest", "rest of branch"),
-        ("ghost", "other targets") if shown.target is None else ("curve", "demanded curve"),
+        *([("ghost", "other targets")] if shown.others else []),
+        *([("curve", "demanded curve")] if shown.target is not None else []),
+        *([("miss", "missed by")] if shown.misses else []),
     ]
     if shown.limits is not None:
         entries.append(("limit", "input limit"))
@@ -153,6 +155,8 @@ def _sample(kind: str, at: complex, width: float) -> list[Element]:
         return [line(at + 5.0, end, stroke=DEMANDED, stroke_width=3.5, stroke_opacity=0.35), ring]
     if kind == "curve":
         return [line(at, end, stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3)]
+    if kind == "miss":
+        return [line(at, end, stroke=DEMANDED, stroke_width=1.6)]
     if kind == "limit":
         return [line(middle - 7j, middle + 7j, stroke=INPUT, stroke_width=2.0)]
     stroke, weight = {"used": (CURVE, 2.2), "rest": (CURVE, 0.9), "ghost": (PALE, 2.4)}[kind]

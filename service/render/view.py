@@ -68,6 +68,9 @@ TICK = 9.0
 MARGIN, FOOT = 60.0, 22.0
 """Room in a panel around what must be shown, and more of it below for the scale bar, pixels."""
 
+SEEN_MISS = 1.0
+"""A point that is missed by less than so many pixels is seen to be met."""
+
 FRAME_REACH = 12.0
 """Marks this near to the frame of a detail, pixels, are left to the detail."""
 
@@ -134,7 +137,7 @@ class _Panel:
         self._size = self._link_size()
         self._input_circle()
         self._curves()
-        ghosts = [c for c in self._scene.configurations if c is not self._first]
+        ghosts = self._scene.others
         for ghost in reversed(ghosts):
             self._ghost(ghost)
         self._ground()
@@ -143,6 +146,7 @@ class _Panel:
         self._rotation_arc()
         for demand in self._scene.demands:
             self._demand(demand)
+        self._misses()
         if self._first is not None:
             self._joints(self._first)
         for detail, frame in zip(self._details, self._frames, strict=True):
@@ -357,6 +361,18 @@ class _Panel:
                 symbol, lines = demanded_position(at, demand.angle, number)
             self._labels.avoid(lines, 3.0)
             self._root.add(symbol)
+
+    def _misses(self) -> None:
+        """How far P is from the points that are fitted: a line from each to where P passes it."""
+        places = {demand.index: demand.point for demand in self._scene.demands if demand.angle is None}
+        for c in self._scene.configurations:
+            point = places.get(c.index)
+            if point is None or not self._readable(point):
+                continue
+            one, other = self._viewport.point(point), self._viewport.point(c.p)
+            if abs(other - one) >= SEEN_MISS and self._viewport.panel.holds(other):
+                mark = line(one, other, stroke=DEMANDED, stroke_width=1.6, data_miss=f"{c.index + 1}")
+                self._root.add(mark, circle(other, 1.8, fill=DEMANDED))
 
     def _label_linkage(self, c: Configuration) -> None:
         at = self._viewport.point

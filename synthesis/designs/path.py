@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from synthesis.designs.base import Answer, Point, Result
-from synthesis.designs.linkage import LinkageDesign, LinkageMetrics
+from synthesis.designs.linkage import FourbarMechanism, LinkageDesign, LinkageMetrics
 
 
 def nothing(value: object) -> bool:
@@ -52,6 +54,23 @@ class CurvePlacement(Answer):
     shift: Point
 
 
+class PathCognate(Answer):
+    """Another fourbar that traces the same curve (Roberts and Chebyshev), measured where the design meets its targets.
+
+    The left cognate shares the input's fixed pivot with the design, the right one the output's.
+    """
+
+    side: Literal["left", "right"]
+    mechanism: FourbarMechanism
+    grashof: str
+    full_rotation: bool
+    same_timing: bool = Field(description="Its input turns with the design's input, so that crank angles are kept.")
+    same_branch: bool = Field(description="Its own input drives it through all targets without a toggle.")
+    visits_in_order: bool
+    min_transmission_angle: float = Field(description="Over the used range of its own input, degrees.")
+    deviation: float = Field(description="Largest distance of its P from the design's at the targets, length units.")
+
+
 class PathDesign(LinkageDesign):
     """A linkage that guides a point, with the proof of what it does."""
 
@@ -61,6 +80,8 @@ class PathDesign(LinkageDesign):
         exclude_if=nothing,
         description="For a curve whose place was left free; what is measured, is there.",
     )
+    cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
+    cognate_choice: str = Field(default="", description="What speaks for the design or for a cognate of it.")
 
 
 class GivenPivotSolutions(Answer):

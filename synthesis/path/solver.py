@@ -35,6 +35,7 @@ from synthesis.path.point_fit import fit_points
 from synthesis.path.point_fit import warm_up as warm_up_fits
 from synthesis.path.timed import solve_timed
 from synthesis.problems import PathProblem
+from synthesis.verification.cognates import with_cognates
 from synthesis.verification.path import verify_path
 
 Complex = NDArray[np.complex128]
@@ -55,7 +56,12 @@ SHORTEST_LINK = 1e-9
 
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
-    """Solve a problem of path generation."""
+    """Solve a problem of path generation; every design brings its cognates."""
+    result = _solved(problem, progress)
+    return result.model_copy(update={"designs": [with_cognates(design) for design in result.designs]})
+
+
+def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     if problem.mechanism != "fourbar":
         return solve_other(problem, progress)
     if problem.matched:

@@ -106,6 +106,39 @@ class PathProblem(LinkageProblem):
                 },
                 {
                     "kind": "path",
+                    "timing": "prescribed",
+                    "points": [
+                        {"x": -23.0, "y": 34.0, "crank_angle": 0.0},
+                        {"x": -17.0, "y": 32.0, "crank_angle": 40.0},
+                        {"x": -7.0, "y": 40.0, "crank_angle": 80.0},
+                        {"x": 4.0, "y": 55.0, "crank_angle": 120.0},
+                        {"x": 8.0, "y": 66.0, "crank_angle": 160.0},
+                    ],
+                },
+                {
+                    "kind": "path",
+                    "timing": "prescribed",
+                    "closed": True,
+                    "points": [
+                        {"x": 50.0, "y": 110.0, "crank_angle": 0.0},
+                        {"x": 30.0, "y": 110.0, "crank_angle": 40.0},
+                        {"x": 10.0, "y": 90.0, "crank_angle": 80.0},
+                        {"x": 2.0, "y": 60.0, "crank_angle": 120.0},
+                        {"x": 0.0, "y": 40.0, "crank_angle": 160.0},
+                        {"x": 10.0, "y": 25.0, "crank_angle": 200.0},
+                        {"x": 20.0, "y": 30.0, "crank_angle": 240.0},
+                        {"x": 40.0, "y": 50.0, "crank_angle": 280.0},
+                        {"x": 60.0, "y": 90.0, "crank_angle": 320.0},
+                    ],
+                    "constraints": {
+                        "grashof": "crank_rocker",
+                        "link_length": {"min": 10.0, "max": 200.0},
+                        "min_transmission_angle": 30.0,
+                    },
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "path",
                     "method": "curve_match",
                     "closed": True,
                     "points": [

@@ -235,3 +235,22 @@ def test_planted_timed_fits_are_recovered_every_time():
         best = fit(points, angles).designs[0]
         size = np.abs(points[:, None] - points).max()
         assert best.metrics.max_distance < 1e-9 * size
+
+
+def test_cognates_of_an_answer_pass_the_same_points():
+    rng = np.random.default_rng(8)
+    angles = np.linspace(0.0, 330.0, 12)
+    points = positions(CRANK_ROCKER, np.radians(angles), OPEN).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
+    best = fit(points, angles).designs[0]
+    assert {one.side for one in best.cognates} == {"left", "right"}
+    own = coupler_points(best.mechanism, [target.input_angle for target in best.targets])
+    for one in best.cognates:
+        assert one.deviation < 1e-9
+        assert one.side in best.cognate_choice
+        if one.same_timing:
+            turned = one.mechanism.reference_input_angle + angles - angles[0]
+            assert np.abs(coupler_points(one.mechanism, turned) - own).max() < 1e-9
+            assert math.isclose(one.min_transmission_angle, best.metrics.min_transmission_angle, abs_tol=1e-6)
+        if one.full_rotation:
+            swept = coupler_points(one.mechanism, np.linspace(0.0, 360.0, 20001))
+            assert max(np.abs(swept - z).min() for z in own) < 1e-2

@@ -1,0 +1,57 @@
+"""Timed and fitted paths through HTTP: solved, verified, drawn and driven; refusals name the field."""
+
+import copy
+import math
+import re
+
+import pytest
+
+from synthesis.kinds import examples
+
+TIMED = [example for example in examples("path") if example.get("timing") == "prescribed"]
+
+
+@pytest.mark.parametrize("example", TIMED, ids=["exact", "fitted"])
+def test_timed_examples_run_and_are_drawn(client, example):
+    job = client.post("/v1/jobs", json={"problem": example}, headers={"Prefer": "wait=30"})
+    assert job.status_code == 200, job.text
+    body = job.json()
+    assert body["status"] == "succeeded", body["error"]
+    result = body["result"]
+    assert result["designs"]
+    for design in result["designs"]:
+        assert design["verification"]["passed"]
+        assert design["cognate_choice"]
+        targets = design["targets"]
+        given = [point["crank_angle"] for point in example["points"]]
+        turned = [target["input_angle"] - targets[0]["input_angle"] for target in targets]
+        assert all(math.isclose(one, other - given[0], abs_tol=1e-9) for one, other in zip(turned, given, strict=True))
+        total = sum(target["point_residual"] ** 2 for target in targets)
+        assert math.isclose(design["metrics"]["sum_of_squares"], total, rel_tol=1e-9, abs_tol=1e-20)
+    place = f"/v1/jobs/{body['id']}/designs/0"
+    drawing = client.get(f"{place}.svg")
+    assert drawing.status_code == 200, drawing.text
+    fitted = result["search"]["method"] == "least_squares"
+    assert bool(re.search("data-miss", drawing.text)) == fitted
+    # The crank's angles stand in the drawing's table of targets.
+    shown = [float(words.replace("\u2212", "-")) for words in re.findall(r">([\u2212\d.]+)°<", drawing.text)]
+    for target in result["designs"][0]["targets"]:
+        assert min(abs(target["input_angle"] - angle) for angle in shown) < 0.1
+    assert client.get(f"{place}/motion?steps=36").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("change", "path"),
+    [
+        (lambda problem: problem["points"][2].pop("crank_angle"), "/problem/points/2/crank_angle"),
+        (lambda problem: problem["points"][3].update(crank_angle=0.0), "/problem/points/3/crank_angle"),
+        (lambda problem: problem.update(crank_phase="absolute", method="exact"), "/problem/method"),
+        (lambda problem: problem.update(points=problem["points"] * 201), "/problem/points"),
+    ],
+)
+def test_refusals_name_the_field(client, change, path):
+    problem = copy.deepcopy(TIMED[0])
+    change(problem)
+    answer = client.post("/v1/jobs", json={"problem": problem})
+    assert answer.status_code == 422
+    assert path in [error["path"] for error in answer.json()["errors"]]
