@@ -255,3 +255,21 @@ def test_what_is_refused(stated: dict[str, Any], path: str) -> None:
 def test_contradictions_name_their_field(stated: dict[str, Any], path: str) -> None:
     problem = parse_problem({"kind": "quick_return", "time_ratio": 1.2, **stated})
     assert [found.path for found in problem.contradictions()] == [path]
+
+
+def random_pairs(count: int) -> list[tuple[float, float]]:
+    """Swings and time ratios within the range, not near to its end."""
+    rng = np.random.default_rng(17)
+    swings = rng.uniform(5.0, 150.0, count)
+    return [(s, 1.03 + rng.uniform(0.0, 0.5) * ((540.0 + s) / (180.0 - s) - 1.03)) for s in swings.tolist()]
+
+
+@pytest.mark.parametrize(("swing", "ratio"), random_pairs(12))
+def test_demands_on_both_sides_of_the_searched_best(swing: float, ratio: float) -> None:
+    """What a search over all crank-rockers reaches is found; what it misses by a little is said not to exist."""
+    searched = best_by_brute_force(ratio, swing)
+    below, above = ({"min_transmission_angle": searched + by} for by in (-0.02, 0.02))
+    assert crank_rocker(time_ratio=ratio, swing=swing, constraints=below).designs
+    none = crank_rocker(time_ratio=ratio, swing=swing, constraints=above)
+    assert none.designs == []
+    assert none.search.complete
