@@ -51,8 +51,8 @@ FOLLOWED = 150
 REFINED = 20
 """Of these, the best that are refined at the target's own points."""
 
-SETTLED = 300
-"""Steps of that refinement at most."""
+ROUGHLY, SETTLED = 30, 300
+"""Steps of these refinements at most."""
 
 THINNED, ALL = 120, 60
 """More points than this are thinned at first, and all of them then taken for so many steps at most."""
@@ -191,7 +191,7 @@ def _refined(target: _Target, starts: Starts, limits: Limits, least: float) -> t
     if not len(starts.x):
         return [], least
     family, longest = starts.family, limits.longest
-    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest)
+    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGHLY)
     least = min(least, float(rough.cost.min()))
     best = np.argsort(rough.cost, kind="stable")[:REFINED]
     best = best[rough.cost[best] <= HOPELESS * max(least, SHAPE_POINTS * SHAPE_ERROR**2)]

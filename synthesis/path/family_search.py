@@ -56,7 +56,7 @@ SAME_DESIGN = 1e-3
 SHORTEST = 1e-6
 """Links shorter than this share of the task's size are no links."""
 
-DRIVEN = 240
+DRIVEN = 160
 """Members that are driven at most."""
 
 
