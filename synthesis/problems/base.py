@@ -13,6 +13,9 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 ABSURD = 1e9
 """Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
 
+ROUNDED_OFF = 1e-10
+"""Lengths below this share of the coordinates that they lie at have lost most of their digits there."""
+
 Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False)]
 PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False)]
 Flag = Annotated[bool, Field(strict=True)]

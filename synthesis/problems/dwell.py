@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from synthesis.problems.base import Contradiction, Count, Point, PositiveNumber, Statement
+from synthesis.problems.base import ROUNDED_OFF, Contradiction, Count, Point, PositiveNumber, Statement
 from synthesis.problems.linkage import LinkageProblem
 
 DEFAULT_TOLERANCE = 0.01
@@ -121,6 +121,11 @@ class DwellProblem(LinkageProblem):
             found.append(Contradiction("/mechanism", "a slotted output swings; take pseudo_arc or a rocker"))
         if self.output.type == "slider" and self.crank is not None:
             found.append(Contradiction("/crank", "the stroke gives the size; leave the crank out"))
+        size, field = (
+            (self.way, "/output/stroke") if self.output.type == "slider" else (self.crank or DEFAULT_CRANK, "/crank")
+        )
+        if size < ROUNDED_OFF * max(map(abs, self.pivot)):
+            found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
         if self.constraints.grashof not in ("any", "crank_rocker"):

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.problems.base import Contradiction, Number, Point, PositiveNumber, Statement
+from synthesis.problems.base import ROUNDED_OFF, Contradiction, Number, Point, PositiveNumber, Statement
 from synthesis.problems.linkage import LinkageProblem
 from synthesis.problems.path import PathProblem
 
@@ -110,6 +110,10 @@ def _faults(linkage: SourceLinkage) -> list[Contradiction]:
         )
     elif lengths[3] >= sum(lengths[:3]):
         found.append(Contradiction("/linkage/links", "one link is longer than the others together can reach"))
+    far = max(map(abs, (*linkage.fixed_pivots.input, *linkage.fixed_pivots.output)))
+    if min(lengths[0], point.distance) < ROUNDED_OFF * far and ground > 0.0:
+        detail = "too short beside the coordinates of the pivots; move the origin nearer"
+        found.append(Contradiction("/linkage/links", detail))
     vector = cmath.rect(point.distance, math.radians(point.angle))
     if min(abs(vector), abs(vector - links.coupler)) <= AT_PIN * links.coupler:
         detail = "on a pin of the coupler it runs on a circle and has no cognate; a parallelogram carries a body there"

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
-from synthesis.problems.base import Contradiction, Number, Point, PositiveNumber
+from synthesis.problems.base import ROUNDED_OFF, Contradiction, Number, Point, PositiveNumber
 from synthesis.problems.linkage import LinkageProblem
 
 LineMechanism = Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier", "hart", "scott_russell"]
@@ -25,6 +25,9 @@ DEFAULT_RANGE: dict[LineMechanism, float] = {
     "scott_russell": 90.0,
 }
 """Rotation of the input, degrees, where none is stated: what the type is commonly used over."""
+
+LEAST_RANGE = 1e-3
+"""Least rotation of the input, degrees: for less the linkage is 10⁵ times as long as the line."""
 
 MOST_RANGE: dict[LineMechanism, float] = {"scott_russell": 180.0}
 """Ranges that a type stays below; all others stay below a full turn."""
@@ -58,7 +61,7 @@ class StraightLineProblem(LinkageProblem):
 
     kind: Literal["straight_line"]
     length: PositiveNumber = Field(description="Of the line, in length units.")
-    crank_range: Annotated[float, Field(strict=True, gt=0.0, lt=360.0)] | None = Field(
+    crank_range: Annotated[float, Field(strict=True, ge=LEAST_RANGE, lt=360.0)] | None = Field(
         default=None,
         description="Rotation of the input while P runs along the line, degrees. By default what the type is commonly "
         f"used over: {', '.join(f'{name} {value:g}' for name, value in DEFAULT_RANGE.items())}.",
@@ -104,4 +107,8 @@ class StraightLineProblem(LinkageProblem):
             if self.mechanism == name and self.range_of(name) >= most:
                 detail = f"the crank of {name} turns by less than {most:g}°; state less or another mechanism"
                 found.append(Contradiction("/crank_range", detail))
+        if self.length < ROUNDED_OFF * max(map(abs, self.start)):
+            found.append(
+                Contradiction("/length", "too short beside the coordinates of the start; move the origin nearer")
+            )
         return found

@@ -257,6 +257,8 @@ def test_ill_formed_statements_are_refused_at_their_field(fields, place) -> None
         ({"output": slider(10.0), "mechanism": "straight_slot"}, "/mechanism"),
         ({"output": slider(10.0), "crank": 5.0}, "/crank"),
         ({"tolerance": 90.0}, "/tolerance"),
+        ({"crank": 1e-9, "pivot": [1e9, 0.0]}, "/crank"),
+        ({"output": slider(1e-9), "pivot": [0.0, -1e9]}, "/output/stroke"),
         ({"constraints": {"grashof": "double_crank"}}, "/constraints/grashof"),
     ],
 )

@@ -179,6 +179,10 @@ def test_verification_notices_a_wrong_length() -> None:
         ({"links": {"input": 20.0, "coupler": 20.0, "output": 19.0}}, "/linkage/links"),
         ({"coupler_point": {"distance": 70.0, "angle": 0.0}}, "/linkage/coupler_point"),
         ({"fixed_pivots": {"input": [1.0, 1.0], "output": [1.0, 1.0]}}, "/linkage/fixed_pivots/output"),
+        (
+            {"coupler_point": {"distance": 1e-3}, "fixed_pivots": {"input": [1e9, 0.0], "output": [1e9 + 60.0, 0.0]}},
+            "/linkage/links",
+        ),
     ],
 )
 def test_contradictions_are_told_by_their_field(changed, path) -> None:

@@ -297,6 +297,7 @@ def test_verification_notices_a_line_that_is_not_exact() -> None:
         ({"length": 1e10}, "length"),
         ({"crank_range": 0.0}, "crank_range"),
         ({"crank_range": 360.0}, "crank_range"),
+        ({"crank_range": 1e-300}, "crank_range"),
         ({"crank_range": math.inf}, "crank_range"),
         ({"mechanism": "sarrus"}, "mechanism"),
         ({"max_deviation": 0.0}, "max_deviation"),
@@ -309,6 +310,11 @@ def test_ill_formed_statements_are_refused_at_their_field(fields, place) -> None
     with pytest.raises(ValidationError) as caught:
         stated(**fields)
     assert place in {str(part) for error in caught.value.errors() for part in error["loc"]}
+
+
+def test_a_line_that_rounding_leaves_nothing_of() -> None:
+    problem = stated(length=1e-9, start=[1e9, 1e9])
+    assert [fault.path for fault in problem.contradictions()] == ["/length"]
 
 
 def test_a_range_that_a_type_cannot_have() -> None:
