@@ -127,6 +127,13 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
         if not any(_same(refined, other) for other in optima):
             optima.append(refined)
     optima.sort(key=lambda one: one.error)
+    if optima and not optima[0].arrived:
+        # The best is on its way still: on to the end, and from where its errors are level if that is better.
+        best = optima[0]
+        level, theirs = levelled(task, best.generator[None], np.array([best.sign]))
+        onward = [(best.generator, best.sign), *zip(limits.contained(level), theirs, strict=True)]
+        again = [improve(generator, float(sign), MANY.rounds) for generator, sign in onward]
+        optima[0] = min([best, *again], key=lambda one: one.error)
     return Found([one for one in optima if math.isfinite(one.error)], judged, len(chosen))
 
 
