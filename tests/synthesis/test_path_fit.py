@@ -182,6 +182,7 @@ def test_degenerate_points_are_fitted(points):
     assert result.designs[0].metrics.rms_distance < 2e-3 * size
 
 
+@pytest.mark.slow
 def test_a_thousand_points_take_seconds():
     along = np.linspace(0.0, 6.2, 1000)
     points = positions(CRANK_ROCKER, along, OPEN).p
