@@ -180,7 +180,7 @@ def test_verification_notices_a_wrong_length() -> None:
         ({"coupler_point": {"distance": 70.0, "angle": 0.0}}, "/linkage/coupler_point"),
         ({"fixed_pivots": {"input": [1.0, 1.0], "output": [1.0, 1.0]}}, "/linkage/fixed_pivots/output"),
         (
-            {"coupler_point": {"distance": 1e-3}, "fixed_pivots": {"input": [1e9, 0.0], "output": [1e9 + 60.0, 0.0]}},
+            {"coupler_point": {"distance": 1e-3}, "fixed_pivots": {"input": [9e8, 0.0], "output": [9e8 + 60.0, 0.0]}},
             "/linkage/links",
         ),
     ],
