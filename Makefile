@@ -1,6 +1,7 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
 # make test    ruff, mypy, import-linter and the whole pytest suite
 # make test-faults  what becomes of jobs when processes are killed, with figures
+# make test-browser  drive the studio in the system's Chromium (installed where it is missing and we are root)
 # make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
@@ -16,7 +17,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test test-faults campaign demo check quick bench openapi lock clean
+.PHONY: serve test test-faults test-browser campaign demo check quick bench openapi lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -25,7 +26,13 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest -m "not campaign and not faults" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not faults and not browser" $(SPREAD)
+
+test-browser: $(STAMP)
+	@test -x /usr/bin/chromium || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null \
+	    && apt-get update -q && apt-get install -qy --no-install-recommends chromium; } \
+	    || { echo "the browser tests need Debian's chromium: apt-get install chromium"; exit 1; }
+	$(BIN)/pytest -m browser
 
 campaign: $(STAMP)
 	$(BIN)/pytest -m campaign $(SPREAD)
@@ -42,7 +49,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not faults" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not faults and not browser" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

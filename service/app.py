@@ -16,7 +16,7 @@ from starlette.types import Lifespan
 from service.access.gate import Gate
 from service.access.keys import KeyStore
 from service.analyst import Analyst
-from service.api import analyses, docs, errors, events, health, jobs, metrics, problems
+from service.api import analyses, docs, errors, events, health, jobs, metrics, problems, studio
 from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
 from service.jobs.desk import JobDesk
@@ -106,7 +106,15 @@ def _application(lifespan: Lifespan[FastAPI]) -> FastAPI:
     )
     errors.install(app)
     docs.install(app)
-    routers = (jobs.router, events.router, analyses.router, problems.router, health.router, metrics.router)
+    routers = (
+        jobs.router,
+        events.router,
+        analyses.router,
+        problems.router,
+        health.router,
+        metrics.router,
+        studio.router,
+    )
     for router in routers:
         app.include_router(router)
     app.state.routes = [*app.routes, *(route for router in routers for route in router.routes)]

@@ -1,0 +1,147 @@
+/** The public API of the service, and nothing else: all that the studio knows comes through here. */
+
+/** @typedef {{path: string, detail: string}} FieldError */
+/** @typedef {{fraction: number, message: string}} Progress */
+/** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
+/** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
+/** @typedef {{kind: string, title: string, description: string, schema: any, example: any}} Kind */
+
+const KEY = "mechsynth.key";
+const RECONNECT_MS = 1000;
+
+/** An answer that says what went wrong (problem+json). */
+export class Refused extends Error {
+  /** @param {any} problem @param {number} status */
+  constructor(problem, status) {
+    super(problem.detail ?? `The service answered ${status}.`);
+    this.status = status;
+    this.title = problem.title ?? "Error";
+    /** @type {FieldError[]} */
+    this.errors = problem.errors ?? [];
+  }
+}
+
+/** The key is kept for this tab only. */
+export function key() {
+  return sessionStorage.getItem(KEY) ?? "";
+}
+
+/** @param {string} value */
+export function useKey(value) {
+  if (value) sessionStorage.setItem(KEY, value);
+  else sessionStorage.removeItem(KEY);
+}
+
+/**
+ * @param {string} path
+ * @param {RequestInit} [options]
+ */
+async function ask(path, options = {}) {
+  const headers = new Headers(options.headers);
+  if (key()) headers.set("Authorization", `Bearer ${key()}`);
+  const answer = await fetch(path, { ...options, headers });
+  if (!answer.ok) throw new Refused(await answer.json().catch(() => ({})), answer.status);
+  return answer;
+}
+
+/** @param {string} path @param {any} body @param {AbortSignal} [signal] */
+function post(path, body, signal) {
+  const headers = { "Content-Type": "application/json" };
+  return ask(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+}
+
+/** @returns {Promise<Kind[]>} */
+export async function kinds() {
+  return (await (await ask("/v1/problems")).json()).problems;
+}
+
+/** @param {any} problem @param {string | null} label @returns {Promise<Job>} */
+export async function solve(problem, label) {
+  return (await post("/v1/jobs", { problem, label })).json();
+}
+
+/** @param {string} id @returns {Promise<Job>} */
+export async function job(id) {
+  return (await ask(`/v1/jobs/${encodeURIComponent(id)}`)).json();
+}
+
+/** @param {string} kind @param {string | null} cursor @returns {Promise<{jobs: JobItem[], next_cursor: string | null}>} */
+export async function jobs(kind, cursor) {
+  const query = new URLSearchParams({ limit: "20" });
+  if (kind) query.set("kind", kind);
+  if (cursor) query.set("cursor", cursor);
+  return (await ask(`/v1/jobs?${query}`)).json();
+}
+
+/** Cancels an unfinished job and removes a finished one. @param {string} id */
+export async function remove(id) {
+  await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
+}
+
+/** @param {string} id @param {number} design @param {number} steps */
+export async function motion(id, design, steps) {
+  return (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`)).json();
+}
+
+/** @param {any} question @param {AbortSignal} signal */
+export async function analysis(question, signal) {
+  return (await post("/v1/analyses", question, signal)).json();
+}
+
+/**
+ * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
+ * @param {string} id @param {number} design @param {string} form
+ */
+export async function file(id, design, form) {
+  const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}.${form}`);
+  return URL.createObjectURL(await answer.blob());
+}
+
+/**
+ * Follow a job to its end by its server-sent events. They are read from a response and not by `EventSource`, which
+ * cannot send a key; a stream that breaks is taken up again after the last event.
+ *
+ * @param {string} id
+ * @param {(event: string, data: any) => void} tell
+ * @param {AbortSignal} signal
+ */
+export async function follow(id, tell, signal) {
+  let last = "";
+  let ended = false;
+  while (!ended && !signal.aborted) {
+    try {
+      const headers = last ? { "Last-Event-ID": last } : undefined;
+      const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/events`, { headers, signal });
+      if (answer.status === 204 || !answer.body) return;
+      const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+      for (let text = "", part; !(part = await reader.read()).done; ) {
+        text += part.value;
+        const blocks = text.split("\n\n");
+        text = blocks.pop() ?? "";
+        for (const block of blocks) {
+          const event = parsed(block);
+          if (!event) continue;
+          last = event.id || last;
+          ended ||= event.name === "removed" || ["succeeded", "failed", "cancelled"].includes(event.data.status);
+          tell(event.name, event.data);
+        }
+      }
+    } catch (error) {
+      if (signal.aborted) return;
+      if (error instanceof Refused && error.status !== 503) throw error;
+    }
+    if (!ended) await new Promise((done) => setTimeout(done, RECONNECT_MS));
+  }
+}
+
+/** @param {string} block */
+function parsed(block) {
+  const event = { name: "message", id: "", text: "" };
+  for (const line of block.split("\n")) {
+    const [, field, value] = /^(\w+): ?(.*)$/.exec(line) ?? [];
+    if (field === "event") event.name = value;
+    else if (field === "id") event.id = value;
+    else if (field === "data") event.text += value;
+  }
+  return event.text ? { name: event.name, id: event.id, data: JSON.parse(event.text) } : null;
+}

@@ -1,0 +1,132 @@
+/** What a JSON schema says of a field, as far as a form needs to know it. */
+
+/** @typedef {Record<string, any>} Schema */
+
+/**
+ * Of one field: which control states it.
+ * @typedef {object} Kinded
+ * @property {"choice" | "flag" | "number" | "numbers" | "text" | "object" | "union" | "table" | "json" | "fixed"} control
+ * @property {Schema[]} options what the value may be, null apart
+ * @property {boolean} nullable
+ * @property {string[]} [choices]
+ * @property {Schema} [item] schema of the rows of a table
+ */
+
+/** The schema that a reference names. @param {Schema} schema @param {Schema} root @returns {Schema} */
+export function resolved(schema, root) {
+  if (!schema.$ref) return schema;
+  const target = root.$defs[schema.$ref.split("/").pop()];
+  const { $ref, ...more } = schema;
+  return { ...resolved(target, root), ...more };
+}
+
+/** What a value may be, references followed and alternatives opened. @param {Schema} schema @param {Schema} root @returns {Schema[]} */
+export function alternatives(schema, root) {
+  const open = resolved(schema, root);
+  const several = open.anyOf ?? open.oneOf;
+  return several ? several.flatMap((/** @type {Schema} */ one) => alternatives(one, root)) : [open];
+}
+
+/** @param {Schema} schema */
+function numeric(schema) {
+  return schema.type === "number" || schema.type === "integer";
+}
+
+/** A list or tuple of numbers, some of which may be left open. @param {Schema} schema @param {Schema} root */
+function listOfNumbers(schema, root) {
+  if (schema.type !== "array") return false;
+  const parts = schema.prefixItems ?? (schema.items ? [schema.items] : []);
+  return parts.length > 0 && parts.every((/** @type {Schema} */ part) =>
+    alternatives(part, root).every((one) => numeric(one) || one.type === "null"));
+}
+
+/** The name of the property that tells alternatives of an object apart. @param {Schema[]} options */
+export function discriminator(options) {
+  const names = Object.keys(options[0]?.properties ?? {});
+  const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
+    one.properties?.[name]?.const !== undefined || one.properties?.[name]?.enum !== undefined;
+  return names.find((name) => options.every((one) => constant(one, name) && one.required?.includes(name)));
+}
+
+/** The option that a discriminated value belongs to. @param {Schema[]} options @param {any} value */
+export function optionOf(options, value) {
+  const name = discriminator(options);
+  const tag = name && value?.[name];
+  return options.find((one) => name && tagsOf(one, name).includes(tag)) ?? options[0];
+}
+
+/** The values of the discriminating property of an option. @param {Schema} option @param {string} name @returns {string[]} */
+export function tagsOf(option, name) {
+  const property = option.properties[name];
+  return property.enum ?? [property.const];
+}
+
+/** Which control states a field. @param {Schema} schema @param {Schema} root @returns {Kinded} */
+export function kinded(schema, root) {
+  const all = alternatives(schema, root);
+  const options = all.filter((one) => one.type !== "null");
+  const nullable = options.length < all.length;
+  /** @param {Kinded["control"]} control @param {Partial<Kinded>} [more] */
+  const is = (control, more = {}) => ({ control, options, nullable, ...more });
+  if (options.length === 1 && options[0].const !== undefined) return is("fixed");
+  if (options.every((one) => one.enum || one.const !== undefined)) {
+    return is("choice", { choices: options.flatMap((one) => one.enum ?? [one.const]) });
+  }
+  if (options.some((one) => one.type === "boolean")) return is("flag");
+  const lists = options.filter((one) => listOfNumbers(one, root));
+  if (lists.length && options.every((one) => numeric(one) || listOfNumbers(one, root))) return is("numbers");
+  if (options.every(numeric)) return is("number");
+  if (options.every((one) => numeric(one) || one.type === "string")) return is("text");
+  const array = options.find((one) => one.type === "array");
+  if (array?.items && alternatives(array.items, root).every((one) => one.type === "object")) {
+    return is("table", { item: array.items });
+  }
+  const objects = options.filter((one) => one.type === "object" && one.properties);
+  if (objects.length === 1 && options.length === 1) return is("object");
+  if (objects.length === options.length && discriminator(objects)) return is("union");
+  if (options.some(numeric)) return is("number");
+  return is("json");
+}
+
+/** A first value for a field that must be stated. @param {Schema} schema @param {Schema} root @returns {any} */
+export function initial(schema, root) {
+  if (schema.default !== undefined && schema.default !== null) return structuredClone(schema.default);
+  const [option] = alternatives(schema, root).filter((one) => one.type !== "null");
+  if (option.default !== undefined && option.default !== null) return structuredClone(option.default);
+  if (option.const !== undefined) return option.const;
+  if (option.enum) return option.enum[0];
+  if (numeric(option)) return Math.max(option.minimum ?? 0, option.exclusiveMinimum === undefined ? 0 : 1);
+  if (option.type === "array") {
+    if (option.prefixItems) return option.prefixItems.map((/** @type {Schema} */ one) => initial(one, root));
+    return [];
+  }
+  if (option.type === "object") {
+    return Object.fromEntries(
+      (option.required ?? []).map((/** @type {string} */ name) => [name, initial(option.properties[name], root)]));
+  }
+  return option.type === "string" ? "" : false;
+}
+
+/**
+ * Columns of a table: the plain properties of its rows, of all alternatives.
+ * @param {Schema} item @param {Schema} root
+ * @returns {{name: string, schema: Schema, kinded: Kinded, required: boolean}[]}
+ */
+export function columns(item, root) {
+  const options = alternatives(item, root);
+  const tag = options.length > 1 ? discriminator(options) : undefined;
+  const found = new Map();
+  for (const option of options) {
+    for (const [name, schema] of Object.entries(option.properties)) {
+      const here = kinded(schema, root);
+      const required = options.every((one) => one.required?.includes(name));
+      if (name === tag) {
+        const choices = options.flatMap((one) => tagsOf(one, name));
+        found.set(name, { name, schema, required, kinded: { ...here, control: "choice", choices } });
+      } else if (["number", "flag", "choice"].includes(here.control) && !found.has(name)) {
+        found.set(name, { name, schema, required, kinded: here });
+      }
+    }
+  }
+  return [...found.values()];
+}

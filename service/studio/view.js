@@ -1,0 +1,65 @@
+/** From the plane of a mechanism (y up, any unit) to a picture (y down, pixels), and back. */
+
+/** @typedef {[number, number]} Point */
+
+export class View {
+  /**
+   * The view that shows all points, with a margin.
+   * @param {Point[]} points @param {number} width @param {number} height @param {number} [margin] pixels
+   */
+  constructor(points, width, height, margin = 40) {
+    const known = points.filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+    const xs = known.length ? known.map(([x]) => x) : [0];
+    const ys = known.length ? known.map(([, y]) => y) : [0];
+    const [west, east] = [xs.reduce((a, b) => Math.min(a, b)), xs.reduce((a, b) => Math.max(a, b))];
+    const [south, north] = [ys.reduce((a, b) => Math.min(a, b)), ys.reduce((a, b) => Math.max(a, b))];
+    const size = Math.max(east - west, north - south);
+    /** Pixels for a length unit; a single point stands in the middle of a hundred units. */
+    this.scale = size > 0
+      ? Math.min((width - 2 * margin) / Math.max(east - west, 1e-9 * size), (height - 2 * margin) / Math.max(north - south, 1e-9 * size))
+      : (width - 2 * margin) / 100;
+    this.middle = /** @type {Point} */ ([(west + east) / 2, (south + north) / 2]);
+    this.width = width;
+    this.height = height;
+  }
+
+  /** @param {number} x @param {number} y @returns {Point} */
+  at(x, y) {
+    return [this.width / 2 + this.scale * (x - this.middle[0]), this.height / 2 - this.scale * (y - this.middle[1])];
+  }
+
+  /** Where in the plane the pointer is. @param {SVGSVGElement} picture @param {{clientX: number, clientY: number}} pointer @returns {Point} */
+  under(picture, pointer) {
+    const matrix = picture.getScreenCTM();
+    if (!matrix) return [NaN, NaN];
+    const { x, y } = new DOMPoint(pointer.clientX, pointer.clientY).matrixTransform(matrix.inverse());
+    return [this.middle[0] + (x - this.width / 2) / this.scale, this.middle[1] - (y - this.height / 2) / this.scale];
+  }
+
+  /** A round step of about `pixels`. @param {number} pixels */
+  step(pixels) {
+    return 10 ** Math.round(Math.log10(pixels / this.scale));
+  }
+
+  /** A value rounded to what can be told apart on the screen. @param {number} value */
+  rounded(value) {
+    const step = this.step(0.5);
+    return Number((Math.round(value / step) * step).toPrecision(12));
+  }
+
+  /** Points as the data of a path; where one is unknown the line is broken. @param {Point[]} points */
+  path(points) {
+    let pen = "M";
+    let data = "";
+    for (const [x, y] of points) {
+      if (!Number.isFinite(x) || !Number.isFinite(y) || x === null || y === null) {
+        pen = "M";
+        continue;
+      }
+      const [u, v] = this.at(x, y);
+      data += `${pen}${u.toFixed(1)} ${v.toFixed(1)}`;
+      pen = "L";
+    }
+    return data;
+  }
+}

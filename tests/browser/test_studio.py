@@ -1,0 +1,227 @@
+"""A person states a problem, solves it, sees it move and takes it home."""
+
+import csv
+import io
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import ezdxf
+import pytest
+from ezdxf import recover
+from PIL import Image
+
+from synthesis.kinds import KINDS
+from tests.service.running import until
+
+pytestmark = pytest.mark.browser
+
+LINKAGES = {"motion", "path", "function", "quick_return", "straight_line", "steering"}
+
+# Everything is chosen, so that there is one design and nothing to search.
+PLAIN = {
+    "kind": "motion",
+    "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 10.0, "y": 5.0, "angle": 30.0}],
+    "input_side": {"fixed_pivot": [0.0, -20.0], "rotations": [60.0]},
+    "output_side": {"fixed_pivot": [20.0, -20.0], "rotations": [50.0]},
+}
+
+
+def stated(page):
+    return json.loads(page.input_value("#json-text"))
+
+
+def state(page, problem):
+    page.locator("#json").evaluate("details => details.open = true")
+    page.fill("#json-text", json.dumps(problem))
+
+
+def drag(page, selector, by):
+    page.locator(selector).scroll_into_view_if_needed()
+    box = page.locator(selector).bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + by[0] / 2, y + by[1] / 2)
+    page.mouse.move(x + by[0], y + by[1])
+    page.mouse.up()
+
+
+def link_now(page):
+    return page.locator(".moving .link").first.get_attribute("d")
+
+
+def drawn(page):
+    return page.locator(".drawing img").evaluate_all("images => images.some((one) => one.naturalWidth > 0)")
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("light", {"color_scheme": "light"}),
+        ("dark", {"color_scheme": "dark"}),
+        ("phone", {"viewport": {"width": 390, "height": 844}, "has_touch": True}),
+    ],
+)
+def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
+    studio = open_studio(**options)
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    assert page.locator(".card").count() == 1
+    page.wait_for_selector(".moving .link")
+    before = link_now(page)
+    until(lambda: link_now(page) != before, what="another frame")
+    until(lambda: drawn(page), 60, "the drawing")
+    assert page.locator(".checks .good").count() == page.locator(".checks li").count() > 0
+    wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    assert wider <= 0, "the page is wider than the window"
+    studio.screen(f"motion-{name}")
+
+
+def test_the_scrubber_is_worked_by_keys_and_moves_the_marks(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.wait_for_selector(".moving .link")
+    page.focus("#scrub")
+    page.keyboard.press("ArrowRight")
+    first, mark = link_now(page), page.locator(".plots .mark").first.get_attribute("x1")
+    page.keyboard.press("ArrowRight")
+    second, moved = link_now(page), page.locator(".plots .mark").first.get_attribute("x1")
+    assert first != second
+    assert mark != moved
+    page.wait_for_timeout(300)
+    assert link_now(page) == second, "it stands still while it is scrubbed"
+
+
+def test_positions_are_dragged_turned_and_moved_by_keys(studio):
+    page = studio.page
+    state(page, PLAIN)
+    drag(page, ".target:nth-of-type(2) .dot", (60, -40))
+    moved = stated(page)["positions"][1]
+    assert moved["x"] > 10.5
+    assert moved["y"] > 5.5
+    assert moved["angle"] == 30.0
+    assert float(page.input_value('[data-path="/problem/positions/1/x"]')) == moved["x"]
+    drag(page, ".target:nth-of-type(1) .knob", (-40, -40))
+    assert 60.0 < stated(page)["positions"][0]["angle"] < 120.0
+    page.locator(".target").nth(0).focus()
+    page.keyboard.press("ArrowLeft")
+    assert stated(page)["positions"][0]["x"] < 0.0
+    page.locator(".target").nth(1).focus()
+    page.keyboard.press("Delete")
+    assert len(stated(page)["positions"]) == 1
+
+
+def test_a_curve_is_sketched(studio):
+    page = studio.page
+    page.select_option("#kind", "path")
+    page.check("#freehand")
+    box = page.locator("#sketch svg").bounding_box()
+    page.mouse.move(box["x"] + 30, box["y"] + 30)
+    page.mouse.down()
+    for k in range(1, 20):
+        page.mouse.move(box["x"] + 30 + 15 * k, box["y"] + 30 + 0.4 * k * k)
+    page.mouse.up()
+    points = stated(page)["points"]
+    assert len(points) == 24
+    assert points[-1]["x"] > points[0]["x"]
+    assert points[-1]["y"] < points[0]["y"], "y is up"
+
+
+def test_rows_are_pasted_from_a_spreadsheet(studio):
+    page = studio.page
+    state(page, PLAIN)
+    page.locator('[data-path="/problem/positions/0/x"]').evaluate(
+        """cell => {
+          const clipboard = new DataTransfer();
+          clipboard.setData("text/plain", "1,5\\t2\\t10\\n3\\t4.25\\t20\\n5\\t6\\t-30");
+          cell.dispatchEvent(new ClipboardEvent("paste", {clipboardData: clipboard, bubbles: true, cancelable: true}));
+        }"""
+    )
+    assert stated(page)["positions"] == [
+        {"x": 1.5, "y": 2, "angle": 10},
+        {"x": 3, "y": 4.25, "angle": 20},
+        {"x": 5, "y": 6, "angle": -30},
+    ]
+
+
+def test_a_fault_stands_at_its_field(open_studio):
+    studio = open_studio()
+    page = studio.page
+    page.fill('[data-path="/problem/max_designs"]', "0")
+    page.fill('[data-path="/problem/positions/1/angle"]', "1e12")
+    page.click("#solve")
+    page.wait_for_selector('[data-path="/problem/max_designs"][aria-invalid="true"]')
+    field = page.locator(".field", has=page.locator('> [data-path="/problem/max_designs"]'))
+    assert "greater than or equal to 1" in field.locator("> .error").inner_text()
+    assert page.get_attribute('[data-path="/problem/positions/1/angle"]', "aria-invalid") == "true"
+    # The browser itself reports the answer 422; nothing else may have gone wrong.
+    assert [text for text in studio.wrong if "422" not in text] == []
+    studio.wrong.clear()
+    page.fill('[data-path="/problem/max_designs"]', "1")
+    page.fill('[data-path="/problem/positions/1/angle"]', "-25")
+    studio.solve()
+    assert page.locator("[aria-invalid]").count() == 0
+
+
+def test_a_link_restores_a_job(studio):
+    page = studio.page
+    state(page, PLAIN)
+    page.fill("#label", "hinge of a lid")
+    studio.solve()
+    address = page.url
+    assert "#job=" in address
+    page.reload()
+    page.wait_for_selector(".card")
+    assert page.input_value("#label") == "hinge of a lid"
+    assert stated(page)["positions"] == [dict(one, tolerance=None, exact=False) for one in PLAIN["positions"]]
+    page.fill("#job-words", "hinge")
+    shown = page.locator(".jobs li:visible")
+    assert shown.count() == 1
+    assert address.endswith(shown.locator("a").get_attribute("href"))
+
+
+def test_a_job_is_cancelled(studio):
+    page = studio.page
+    problem = KINDS["path"].problem.model_config["json_schema_extra"]["examples"][0]
+    state(page, {**problem, "rounds": 10})
+    page.click("#solve")
+    page.click("#cancel")
+    page.get_by_text("The job was cancelled.").wait_for()
+
+
+def test_every_file_is_taken_home(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.wait_for_selector(".moving .link")
+    taken = {}
+    for form in ("SVG", "DXF", "CSV", "GIF", "JSON"):
+        with page.expect_download() as waiting:
+            page.get_by_role("button", name=form, exact=True).click()
+        taken[form] = Path(waiting.value.path())
+        assert waiting.value.suggested_filename.endswith(form.lower())
+    assert ElementTree.parse(taken["SVG"]).getroot().tag.endswith("svg")
+    document, auditor = recover.readfile(taken["DXF"])
+    assert not auditor.has_errors
+    assert isinstance(document, ezdxf.document.Drawing)
+    rows = list(csv.reader(io.StringIO(taken["CSV"].read_text())))
+    assert len(rows) > 30
+    with Image.open(taken["GIF"]) as gif:
+        assert gif.n_frames == 60
+    assert json.loads(taken["JSON"].read_text())["result"]["designs"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_example_of_each_kind_is_solved_and_shown(studio, kind):
+    page = studio.page
+    page.select_option("#kind", kind)
+    studio.solve()
+    until(lambda: drawn(page), 60, "the drawing")
+    if kind in LINKAGES:
+        page.wait_for_selector(".moving .link")
+        before = link_now(page)
+        until(lambda: link_now(page) != before, what="another frame")
+    studio.screen(f"kind-{kind}")

@@ -1,0 +1,76 @@
+"""The studio's page as it is served: whole, of its type, under its policy, and without a word to another host."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import service
+from service.api.studio import FILES, POLICY
+
+FOLDER = Path(service.__file__).parent / "studio"
+NAMES = sorted(path.name for path in FOLDER.iterdir())
+NAMESPACE = "http://www.w3.org/2000/svg"
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+
+
+def path_of(name):
+    return "/" if name == "index.html" else f"/studio/{name}"
+
+
+def test_every_file_of_the_folder_is_served():
+    assert sorted(FILES) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_file_is_served_with_its_type_and_the_policy(client, name):
+    answer = client.get(path_of(name))
+    assert answer.status_code == 200
+    assert answer.content == (FOLDER / name).read_bytes()
+    assert answer.headers["content-type"].split(";")[0] == TYPES[Path(name).suffix]
+    assert answer.headers["content-security-policy"] == POLICY
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    again = client.get(path_of(name), headers={"If-None-Match": answer.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_the_policy_allows_nothing_inline_and_no_other_host():
+    rules = dict(rule.split(" ", 1) for rule in POLICY.split("; "))
+    assert rules["default-src"] == "'none'"
+    assert rules["script-src"] == rules["style-src"] == rules["connect-src"] == "'self'"
+    assert "unsafe" not in POLICY
+    assert "http" not in POLICY
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_file_names_another_host(name):
+    text = (FOLDER / name).read_text().replace(NAMESPACE, "")
+    assert not re.findall(r"(?:https?:)?//[\w-]+\.\w+", text)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_file_that_is_referred_to_exists(client, name):
+    text = (FOLDER / name).read_text()
+    imported = re.findall(r'from "\./([^"]+)"', text)
+    linked = re.findall(r'(?:src|href)="(/[^"]*)"', text)
+    for target in (*(f"/studio/{one}" for one in imported), *linked):
+        assert client.get(target).status_code == 200, target
+    if name == "index.html":
+        assert linked
+        assert not re.search(r"<style|style=|\son\w+=|<script(?![^>]*src=)", text), "inline code or styles"
+
+
+def test_every_module_is_needed():
+    seen, new = set(), {"studio.js"}
+    while new:
+        seen |= new
+        texts = [(FOLDER / name).read_text() for name in new]
+        new = {one for text in texts for one in re.findall(r'from "\./([^"]+)"', text)} - seen
+    assert seen == {name for name in NAMES if name.endswith(".js")}
+
+
+@pytest.mark.parametrize("path", ["/studio/", "/studio/nope.js", "/studio/index.html", "/studio/..%2fapp.py"])
+def test_nothing_else_is_served(client, path):
+    answer = client.get(path)
+    assert answer.status_code == 404
+    assert answer.headers["content-type"] == "application/problem+json"
