@@ -2,6 +2,7 @@
 
 import * as api from "./api.js";
 import { el, shown, svg, words } from "./dom.js";
+import { Explorer } from "./explorer.js";
 import { Mover } from "./mover.js";
 import { View } from "./view.js";
 
@@ -13,20 +14,29 @@ const FIRST = ["quality", "min_transmission_angle", "rms_residual", "structural_
 
 /** @type {Mover | null} */
 let mover = null;
+/** @type {Explorer | null} */
+let explorer = null;
 /** @type {string[]} */
 let urls = [];
 
 /** Show nothing of the job before. @param {HTMLElement} place */
 export function leave(place) {
-  mover?.stop();
-  mover = null;
+  still();
   for (const url of urls) URL.revokeObjectURL(url);
   urls = [];
   place.replaceChildren();
 }
 
-/** @param {HTMLElement} place @param {api.Job} job */
-export function answer(place, job) {
+/** Nothing moves any more. */
+function still() {
+  mover?.stop();
+  explorer?.stop();
+  mover = null;
+  explorer = null;
+}
+
+/** @param {HTMLElement} place @param {api.Job} job @param {(problem: any) => void} state begins another statement */
+export function answer(place, job, state) {
   leave(place);
   if (!job.result) {
     place.append(el("p", { class: job.status === "failed" ? "error" : "note" },
@@ -37,7 +47,7 @@ export function answer(place, job) {
   const detail = el("div", { id: "design" });
   const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, () => {
     cards.forEach((/** @type {HTMLElement} */ one, /** @type {number} */ k) => one.setAttribute("aria-pressed", String(k === n)));
-    select(detail, job, n);
+    select(detail, job, n, state);
   }));
   place.append(
     el("p", { class: "summary" }, summary),
@@ -92,15 +102,14 @@ function thumbnail(skeleton) {
     }));
 }
 
-/** @param {HTMLElement} place @param {api.Job} job @param {number} n */
-async function select(place, job, n) {
-  mover?.stop();
-  mover = null;
+/** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {(problem: any) => void} state */
+async function select(place, job, n, state) {
+  still();
   const design = job.result.designs[n];
   const moving = el("div", { class: "moving" });
   const drawing = el("figure", { class: "drawing" });
   const downloads = el("p", { class: "row", id: "downloads" }, el("span", {}, "Take home"));
-  place.replaceChildren(el("h3", {}, `Design ${n + 1}: ${words(design.mechanism.type)}`), moving, downloads,
+  place.replaceChildren(el("h3", {}, `Design ${n + 1}: ${words(design.mechanism.type)}`), moving, explored(design, job, state), downloads,
     el("div", { class: "columns" }, checks(design), table("Quantities", figures(design)), dimensions(design)), drawing);
   downloads.append(...FORMS.map((form) => el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
     const button = event.currentTarget;
@@ -133,6 +142,28 @@ async function select(place, job, n) {
     mover = new Mover(moving, design, motion, job.problem);
   };
   await Promise.all([move(), draw()]);
+}
+
+/** The place where a fourbar's pins are dragged. @param {any} design @param {api.Job} job @param {(problem: any) => void} state */
+function explored(design, job, state) {
+  const { type, skeleton } = design.mechanism;
+  if (type !== "fourbar" || !skeleton?.joints.P) return null;
+  const inside = el("div");
+  const details = el("details", { id: "explore", ontoggle: () => {
+    explorer?.stop();
+    explorer = details.open ? new Explorer(inside, design.mechanism, job.problem, (joints) => state(begun(job.problem, joints))) : null;
+  } }, el("summary", {}, "Explore: drag its pins"), inside);
+  return details;
+}
+
+/** The problem with fixed pivots demanded, where its kind can. @param {any} problem @param {Record<string, [number, number]>} joints */
+function begun(problem, { O2, O4 }) {
+  const round = (/** @type {[number, number]} */ at) => at.map((one) => Number(one.toPrecision(6)));
+  if (problem.kind === "motion") {
+    const side = (/** @type {any} */ choices, /** @type {[number, number]} */ at) => ({ dyad: choices.dyad, fixed_pivot: round(at) });
+    return { ...problem, input_side: side(problem.input_side, O2), output_side: side(problem.output_side, O4) };
+  }
+  return "fixed_pivots" in problem ? { ...problem, fixed_pivots: { input: round(O2), output: round(O4) } } : problem;
 }
 
 /** @param {string} url @param {string} name */

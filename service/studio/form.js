@@ -65,7 +65,8 @@ function field(sheet, schema, name, owner, path, required) {
     sheet.changed();
   };
   const value = owner[name];
-  const note = schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
+  const about = schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
+  const note = (about ?? "").split("\n\n")[0].replace(/[`\n]+/g, (/** @type {string} */ one) => (one.includes("`") ? "" : " "));
   const fallback = schema.default ?? null;
   switch (what.control) {
     case "fixed":

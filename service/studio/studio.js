@@ -34,13 +34,19 @@ function kind() {
  * @param {{form?: boolean, sketch?: boolean, json?: boolean}} [parts]
  */
 function show({ form = true, sketch = true, json = true } = {}) {
-  if (form) fill(fields, kind().schema, problem, (rebuilt) => show({ form: rebuilt }));
-  if (sketch) canvas(byId("sketch"), problem, (rebuilt) => show({ form: rebuilt, sketch: rebuilt }));
+  if (form) fill(fields, kind().schema, problem, (rebuilt) => edited({ form: rebuilt }));
+  if (sketch) canvas(byId("sketch"), problem, (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }));
   if (json) {
     text.value = JSON.stringify(problem, null, 2);
     text.removeAttribute("aria-invalid");
     byId("json-error").replaceChildren();
   }
+}
+
+/** Show what has been edited. @param {{form?: boolean, sketch?: boolean, json?: boolean}} parts */
+function edited(parts) {
+  byId("example").value = "";
+  show(parts);
 }
 
 /** Begin with another statement. @param {any} statement */
@@ -106,7 +112,7 @@ async function restore() {
       if (!ended) return;
       job = ended;
     }
-    answers.answer(byId("result"), job);
+    answers.answer(byId("result"), job, state);
     history.load().catch(tell);
   } catch (error) {
     tell(error);
@@ -151,7 +157,7 @@ text.addEventListener("input", () => {
     text.removeAttribute("aria-invalid");
     byId("json-error").replaceChildren();
     if (other) byId("kind").value = stated.kind;
-    show({ json: false });
+    edited({ json: false });
   } catch (error) {
     text.setAttribute("aria-invalid", "true");
     byId("json-error").textContent = /** @type {Error} */ (error).message;

@@ -214,6 +214,25 @@ def test_every_file_is_taken_home(studio):
     assert json.loads(taken["JSON"].read_text())["result"]["designs"]
 
 
+def test_a_pin_is_dragged_and_the_analysis_follows(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.click("#explore summary")
+    page.wait_for_selector("#explore .curve[d]")
+    until(lambda: page.locator("#explore dd").count() == 4, 30, "the figures")
+    curve, figures = page.get_attribute("#explore .curve", "d"), page.inner_text("#explore .facts")
+    drag(page, "#explore .target:has(text:text-is('O4')) .dot", (40, 25))
+    until(lambda: page.get_attribute("#explore .curve", "d") != curve, 30, "another curve")
+    until(lambda: page.inner_text("#explore .facts") != figures, 30, "other figures")
+    page.get_by_role("button", name="Begin a statement").click()
+    begun = stated(page)
+    assert begun["input_side"]["fixed_pivot"] == [0, -20]
+    assert begun["output_side"]["fixed_pivot"][0] > 20
+    assert begun["output_side"]["fixed_pivot"][1] < -20
+    studio.screen("explore")
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_example_of_each_kind_is_solved_and_shown(studio, kind):
     page = studio.page
