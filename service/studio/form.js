@@ -68,7 +68,10 @@ function field(sheet, schema, name, owner, path, required) {
   const about = schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
   const note = (about ?? "").split("\n\n")[0].replace(/[`\n]+/g, (/** @type {string} */ one) => (one.includes("`") ? "" : " "));
   const fallback = schema.default ?? null;
-  switch (what.control) {
+  // A list or one object: what is stated, or stands in for it, tells which of the two has the controls.
+  const single = what.options.find((one) => one.type === "object" && one.properties);
+  const control = what.control === "table" && single && !Array.isArray(value ?? fallback) ? "object" : what.control;
+  switch (control) {
     case "fixed":
       return null;
     case "choice":
@@ -91,7 +94,7 @@ function field(sheet, schema, name, owner, path, required) {
     case "object":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
         owner[name] ??= {};
-        return controls(sheet, what.options[0], owner[name], path);
+        return controls(sheet, single ?? what.options[0], owner[name], path);
       });
     case "union":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>

@@ -11,7 +11,7 @@ import pytest
 from ezdxf import recover
 from PIL import Image
 
-from synthesis.kinds import KINDS
+from synthesis.kinds import KINDS, examples
 from tests.service.running import until
 
 pytestmark = pytest.mark.browser
@@ -164,6 +164,20 @@ def test_a_fault_stands_at_its_field(open_studio):
     page.fill('[data-path="/problem/positions/1/angle"]', "-25")
     studio.solve()
     assert page.locator("[aria-invalid]").count() == 0
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_form_changes_nothing_that_nobody_edits(studio, kind):
+    page = studio.page
+    page.select_option("#kind", kind)
+    for n, example in enumerate(examples(kind)):
+        page.select_option("#example", str(n))
+        page.locator("#fields").evaluate(
+            "form => form.querySelectorAll('details').forEach(one => { one.open = true; })"
+        )
+        page.fill('[data-path="/problem/max_designs"]', "7")
+        problem = {name: value for name, value in stated(page).items() if value != {} or name in example}
+        assert problem == {**example, "max_designs": 7}
 
 
 def test_a_link_restores_a_job(studio):
