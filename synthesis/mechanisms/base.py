@@ -16,6 +16,9 @@ from synthesis.problems import Number, Point, Statement
 AGREES = 1e-6
 """A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
 
+ROUNDING = 1e-12
+"""Distances may differ by this share of the largest coordinate too: joints that coincide are not quite at one place."""
+
 FIRST_TRIED = 30
 """Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
 

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide
-from synthesis.mechanisms.base import AGREES, BODY, MechanismError, StatedCouplerPoint, StatedLine
+from synthesis.mechanisms.base import AGREES, BODY, ROUNDING, MechanismError, StatedCouplerPoint, StatedLine
 from synthesis.problems import Number, Point, PositiveNumber, Statement
 
 MOST_SHOWN = 6
@@ -182,10 +182,11 @@ class GivenByDimensions(Statement, ABC):
         if self.skeleton is None:
             return own
         made = self.skeleton.mechanism()
+        slack = ROUNDING * max(abs(complex(z)) for m in (own, made) for z in m.joints.values())
         for joints in own.links.values():
             for one, other in combinations([joint for joint in joints if joint in made.joints], 2):
                 stated, found = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, made))
-                if abs(stated - found) > AGREES * max(stated, found):
+                if abs(stated - found) > AGREES * max(stated, found) + slack:
                     raise MechanismError(
                         "/skeleton/joints", f"{one} and {other} are {found:.9g} apart; the dimensions give {stated:.9g}"
                     )

@@ -216,3 +216,27 @@ def test_the_designs_of_the_documented_problems_move(example):
         mechanism = design.model_dump(mode="json")["mechanism"]
         moved = family(mechanism).request.over_the_cycle(mechanism, 36)
         assert sum(moved["valid"]) > 30
+
+
+def test_joints_that_coincide_may_differ_by_rounding():
+    """P on B of a slider-crank far from the origin: as a design states it, rounding leaves some 1e-14 between them."""
+    o2, a, b = complex(3e3, 4e3), complex(3e3, 4e3) + 2.0 * np.exp(0.7j), complex(3e3 + 9.0, 4e3)
+    coupler = abs(b - a)
+    mechanism = {
+        "type": "slider_crank",
+        "fixed_pivot": [o2.real, o2.imag],
+        "links": {"crank": abs(a - o2), "coupler": coupler},
+        "slide": {"point": [b.real, b.imag], "angle": 0.0},
+        "coupler_point": {"distance": coupler, "angle": 0.0},
+        "assembly": "open",
+        "skeleton": {
+            "joints": {"O2": [o2.real, o2.imag], "A": [a.real, a.imag], "B": [b.real, b.imag],
+                       "P": [b.real + 3e-13, b.imag]},
+            "links": [{"name": "ground", "joints": ["O2"]}, {"name": "crank", "joints": ["O2", "A"]},
+                      {"name": "coupler", "joints": ["A", "B", "P"]}],
+            "slides": [{"joint": "B", "link": "ground", "point": [b.real, b.imag], "angle": 0.0}],
+            "input_link": "crank",
+        },
+    }  # fmt: skip
+    answer = parse_request({"mechanism": mechanism, "motion": {"at": math.degrees(0.7)}}).answer()
+    assert answer["joints"]["P"]["x"] == pytest.approx(answer["joints"]["B"]["x"])
