@@ -36,7 +36,7 @@ def chromium():
 class Studio:
     """The page in a window of its own, and whatever went wrong in it."""
 
-    def __init__(self, browser, url, **options):
+    def __init__(self, browser, url, ready="#fields .field", **options):
         self.url = url
         self.wrong = []
         self.context = browser.new_context(accept_downloads=True, **options)
@@ -47,7 +47,7 @@ class Studio:
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("request", self._asked)
         self.page.goto(f"{url}/")
-        self.page.wait_for_selector("#fields .field")
+        self.page.wait_for_selector(ready)
 
     def _asked(self, request):
         if not request.url.startswith((self.url, f"blob:{self.url}")):

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import statistics
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,7 +17,9 @@ from tests.service.running import until
 
 pytestmark = pytest.mark.browser
 
-LINKAGES = {"motion", "path", "function", "quick_return", "straight_line", "steering"}
+LINKAGES = {
+    "motion", "path", "function", "quick_return", "straight_line", "steering", "dwell", "parallel_motion",
+}  # fmt: skip
 
 # Everything is chosen, so that there is one design and nothing to search.
 PLAIN = {
@@ -245,6 +248,44 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     assert begun["output_side"]["fixed_pivot"][0] > 20
     assert begun["output_side"]["fixed_pivot"][1] < -20
     studio.screen("explore")
+
+
+FRAMES = """() => {
+  window.frames_ms = [];
+  addEventListener("pointermove", () => {
+    const began = performance.now();
+    requestAnimationFrame(() => {
+      const after = new MessageChannel();
+      after.port1.onmessage = () => frames_ms.push(performance.now() - began);
+      after.port2.postMessage(null);
+    });
+  }, true);
+}"""
+"""Notes how long after a move of the pointer the next frame is done."""
+
+
+def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.click("#explore summary")
+    page.wait_for_selector("#explore .curve[d]")
+    page.evaluate(FRAMES)
+    curves = set()
+    dot = page.locator("#explore .target").last.locator(".dot")
+    dot.scroll_into_view_if_needed()
+    box = dot.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for k in range(40):
+        page.mouse.move(x + k, y - 0.5 * k)
+        curves.add(page.get_attribute("#explore .curve", "d"))
+    page.mouse.up()
+    taken = page.evaluate("frames_ms")
+    assert len(taken) >= 40
+    assert statistics.median(taken) <= 50.0
+    assert len(curves) >= 10, "the curve follows while the pin is dragged, not when it is let go"
 
 
 @pytest.mark.parametrize("kind", KINDS)
