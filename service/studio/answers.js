@@ -109,7 +109,7 @@ async function select(place, job, n, state) {
   const moving = el("div", { class: "moving" });
   const drawing = el("figure", { class: "drawing" });
   const downloads = el("p", { class: "row", id: "downloads" }, el("span", {}, "Take home"));
-  place.replaceChildren(el("h3", {}, `Design ${n + 1}: ${words(design.mechanism.type)}`), moving, explored(design, job, state), downloads,
+  place.replaceChildren(el("h3", {}, `Design ${n + 1}: ${words(design.mechanism.type)}`), moving, ...explored(design, job, state), downloads,
     el("div", { class: "columns" }, checks(design), table("Quantities", figures(design)), dimensions(design)), drawing);
   downloads.append(...FORMS.map((form) => el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
     const button = event.currentTarget;
@@ -147,13 +147,13 @@ async function select(place, job, n, state) {
 /** The place where a fourbar's pins are dragged. @param {any} design @param {api.Job} job @param {(problem: any) => void} state */
 function explored(design, job, state) {
   const { type, skeleton } = design.mechanism;
-  if (type !== "fourbar" || !skeleton?.joints.P) return null;
+  if (type !== "fourbar" || !skeleton?.joints.P) return [];
   const inside = el("div");
   const details = el("details", { id: "explore", ontoggle: () => {
     explorer?.stop();
     explorer = details.open ? new Explorer(inside, design.mechanism, job.problem, (joints) => state(begun(job.problem, joints))) : null;
   } }, el("summary", {}, "Explore: drag its pins"), inside);
-  return details;
+  return [details];
 }
 
 /** The problem with fixed pivots demanded, where its kind can. @param {any} problem @param {Record<string, [number, number]>} joints */

@@ -78,5 +78,6 @@ export function words(name) {
 export function shown(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
-  return String(Number(value.toPrecision(5))).replace("-", "−");
+  const digits = Number(value.toPrecision(5));
+  return (digits !== 0 && Math.abs(digits) < 1e-4 ? digits.toExponential().replace("e", "·10^") : String(digits)).replaceAll("-", "−");
 }

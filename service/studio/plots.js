@@ -9,6 +9,9 @@ const EDGE = { left: 46, right: 10, top: 8, bottom: 20 };
 /** Greatest number of points of a line; more cannot be told apart. */
 const POINTS = 400;
 
+/** Angles and ratios that differ by less are equal but for rounding. */
+const NOISE = 1e-9;
+
 /** @typedef {(number | null)[]} Series */
 
 /** The quantities worth a plot, as far as the motion has them. @param {any} motion @param {any} skeleton @returns {[string, Series][]} */
@@ -41,7 +44,8 @@ function plot(title, series, input) {
   const known = /** @type {number[]} */ (series.filter((one) => one !== null));
   let low = Math.min(...known);
   let high = Math.max(...known);
-  const range = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? high - low : Math.max(1, Math.abs(high));
+  const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), title.startsWith("Ang") ? 1 : 0);
+  const range = steady ? Math.max(1, Math.abs(high)) : high - low;
   [low, high] = [low - 0.05 * range, high + 0.05 * range];
   const last = series.length - 1;
   const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * k) / last;

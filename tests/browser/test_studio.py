@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import statistics
 from pathlib import Path
 from xml.etree import ElementTree
@@ -76,6 +77,7 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     before = link_now(page)
     until(lambda: link_now(page) != before, what="another frame")
     until(lambda: drawn(page), 60, "the drawing")
+    assert not re.search(r"\b(null|undefined|NaN)\b", page.inner_text("#answers"))
     assert page.locator(".checks .good").count() == page.locator(".checks li").count() > 0
     wider = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     assert wider <= 0, "the page is wider than the window"
@@ -294,6 +296,7 @@ def test_the_example_of_each_kind_is_solved_and_shown(studio, kind):
     page.select_option("#kind", kind)
     studio.solve()
     until(lambda: drawn(page), 60, "the drawing")
+    assert not re.search(r"\b(null|undefined|NaN)\b", page.inner_text("#answers"))
     if kind in LINKAGES:
         page.wait_for_selector(".moving .link")
         before = link_now(page)
