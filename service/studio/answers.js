@@ -117,7 +117,11 @@ async function select(place, job, n, state) {
     const url = await api.file(job.id, n, form).catch((error) => downloads.append(el("span", { class: "error" }, ` ${error.message}`)));
     button.disabled = false;
     if (url) save(url, `${job.kind}-${n}.${form}`);
-  } }, form.toUpperCase())), el("button", { type: "button", class: "small", onclick: () => {
+  } }, form.toUpperCase())), el("button", { type: "button", class: "small", onclick: async () => {
+    const image = drawing.querySelector("img");
+    const url = image && await raster(image);
+    if (url) save(url, `${job.kind}-${n}.png`);
+  } }, "PNG"), el("button", { type: "button", class: "small", onclick: () => {
     const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
     save(URL.createObjectURL(new Blob(parts, { type: "application/json" })), `${job.kind}.json`);
   } }, "JSON"));
@@ -142,6 +146,17 @@ async function select(place, job, n, state) {
     mover = new Mover(moving, design, motion, job.problem);
   };
   await Promise.all([move(), draw()]);
+}
+
+/** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string | null>} */
+async function raster(image) {
+  await image.decode();
+  const canvas = el("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
+  const pen = canvas.getContext("2d");
+  pen.fillStyle = "white";
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((done) => canvas.toBlob((/** @type {Blob | null} */ blob) => done(blob && URL.createObjectURL(blob)), "image/png"));
 }
 
 /** The place where a fourbar's pins are dragged. @param {any} design @param {api.Job} job @param {(problem: any) => void} state */

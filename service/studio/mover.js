@@ -65,6 +65,8 @@ export class Mover {
       ...ground.map((/** @type {string} */ name) => this.pivot(name)),
       ...this.links.map((/** @type {any} */ link) => link.path),
       ...this.pins.flatMap((pin) => [pin.dot, pin.text]));
+    this.picture = picture;
+    this.drags(ground);
     this.button = el("button", { type: "button", class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Pause");
     this.slider = el("input", { type: "range", id: "scrub", min: 0, max: this.count - 1, step: "any", value: 0, oninput: () => {
       this.stop();
@@ -85,6 +87,24 @@ export class Mover {
       el("div", { class: "row" }, this.button, el("label", { for: "scrub" }, "Input"), this.slider, this.reading,
         el("label", { for: "speed" }, "Speed"), speed),
       el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+  }
+
+  /** The crank, or the slider, can be taken by its pin and led along its way. @param {string[]} ground */
+  drags(ground) {
+    const input = this.skeleton.links.find((/** @type {any} */ link) => link.name === this.skeleton.input_link);
+    const name = input?.joints.find((/** @type {string} */ one) => !ground.includes(one));
+    const pin = this.pins.find((/** @type {any} */ one) => one.name === name);
+    if (!pin) return;
+    pin.dot.classList.add("led");
+    pin.dot.setAttribute("r", "7");
+    const { x, y } = this.motion.joints[name];
+    pin.dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+      this.stop();
+      pin.dot.setPointerCapture(event.pointerId);
+      const move = (/** @type {PointerEvent} */ now) => this.show(nearest(x, y, this.view.under(this.picture, now), this.at));
+      pin.dot.addEventListener("pointermove", move);
+      pin.dot.addEventListener("lostpointercapture", () => pin.dot.removeEventListener("pointermove", move), { once: true });
+    });
   }
 
   /** @param {any} slide */
@@ -170,4 +190,18 @@ export class Mover {
     cancelAnimationFrame(this.frame);
     this.button.textContent = "Play";
   }
+}
+
+/**
+ * The sample of a track that is nearest to a point; of equally near ones, as where a crank turns twice, the one at hand.
+ * @param {(number | null)[]} x @param {(number | null)[]} y @param {[number, number]} point @param {number} at
+ */
+function nearest(x, y, point, at) {
+  const away = x.map((one, k) => (one === null ? Infinity : Math.hypot(one - point[0], Number(y[k]) - point[1])));
+  const least = Math.min(...away);
+  let best = away.indexOf(least);
+  for (let k = 0; k < away.length; k++) {
+    if (away[k] <= least * (1 + 1e-6) && Math.abs(k - at) < Math.abs(best - at)) best = k;
+  }
+  return best;
 }

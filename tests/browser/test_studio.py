@@ -100,6 +100,21 @@ def test_the_scrubber_is_worked_by_keys_and_moves_the_marks(studio):
     assert link_now(page) == second, "it stands still while it is scrubbed"
 
 
+def test_the_crank_is_led_by_its_pin(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.wait_for_selector(".moving .led")
+    page.focus("#scrub")
+    page.keyboard.press("Home")
+    page.locator(".moving .led").scroll_into_view_if_needed()
+    at, before = float(page.input_value("#scrub")), page.locator(".moving .led").bounding_box()
+    drag(page, ".moving .led", (80, 0))
+    after = page.locator(".moving .led").bounding_box()
+    assert abs(float(page.input_value("#scrub")) - at) > 5.0
+    assert after["x"] - before["x"] > 20.0, "towards where it was led"
+
+
 def test_positions_are_dragged_turned_and_moved_by_keys(studio):
     page = studio.page
     state(page, PLAIN)
@@ -217,7 +232,8 @@ def test_every_file_is_taken_home(studio):
     studio.solve()
     page.wait_for_selector(".moving .link")
     taken = {}
-    for form in ("SVG", "DXF", "CSV", "GIF", "JSON"):
+    until(lambda: drawn(page), 60, "the drawing")
+    for form in ("SVG", "DXF", "CSV", "GIF", "PNG", "JSON"):
         with page.expect_download() as waiting:
             page.get_by_role("button", name=form, exact=True).click()
         taken[form] = Path(waiting.value.path())
@@ -230,6 +246,9 @@ def test_every_file_is_taken_home(studio):
     assert len(rows) > 30
     with Image.open(taken["GIF"]) as gif:
         assert gif.n_frames == 60
+    with Image.open(taken["PNG"]) as picture:
+        assert picture.width == 2200
+        assert len(picture.convert("RGB").getcolors(1 << 20)) > 20, "more than an empty sheet"
     assert json.loads(taken["JSON"].read_text())["result"]["designs"]
 
 
