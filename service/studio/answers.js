@@ -62,7 +62,7 @@ function known(search, found) {
   if (!search) return "";
   const counted = Object.entries(search.rejected ?? {}).filter(([, n]) => n).map(([why, n]) => `${words(why).toLowerCase()} ${n}`);
   const sure = search.complete
-    ? found ? "Complete: there is no other solution of the problem as stated." : "Complete: no design exists."
+    ? found ? "Complete: the search has left out nothing that the problem allows; the best are shown." : "Complete: no design exists."
     : found ? "Not complete: there may be others." : "None found; that is no proof that none exists.";
   return `${sure} ${counted.length ? `Left out: ${counted.join(", ")}.` : ""}`;
 }

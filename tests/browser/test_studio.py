@@ -73,6 +73,7 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     state(page, PLAIN)
     studio.solve()
     assert page.locator(".card").count() == 1
+    assert "Complete: the search has left out nothing" in page.inner_text("#result")
     page.wait_for_selector(".moving .link")
     before = link_now(page)
     until(lambda: link_now(page) != before, what="another frame")
