@@ -69,7 +69,7 @@ def test_a_convex_program_tells_its_progress_and_is_cancelled_within_two_seconds
     job = server.post(problem=problem)
     heard = until(
         lambda: (found := server.job(job["id"])) and "convex program" in found["progress"]["message"] and found,
-        20.0,
+        60.0,
         "a message from the convex program",
     )
     assert heard["status"] == "running"

@@ -209,10 +209,10 @@ def test_the_command_cancels_its_job_when_interrupted(scripted, tmp_path):
         stderr=subprocess.PIPE,
         text=True,
     ) as process:
-        job = until(lambda: scripted.client.get("/v1/jobs?status=running").json()["jobs"], 20.0)[0]
+        job = until(lambda: scripted.client.get("/v1/jobs?status=running").json()["jobs"], 60.0)[0]
         time.sleep(2.0)  # past the first second, which it waits by Prefer
         process.send_signal(signal.SIGINT)
-        assert "cancelled" in process.communicate(timeout=20)[1]
+        assert "cancelled" in process.communicate(timeout=60)[1]
     assert process.returncode == 1
     assert scripted.job(job["id"])["status"] == "cancelled"
     (scripted.folder / "open").touch()

@@ -197,7 +197,7 @@ def test_distances_both_ways_are_those_of_brute_force():
 
 
 @pytest.mark.parametrize(
-    "size", [1.0, pytest.param(1e-5, marks=pytest.mark.slow), pytest.param(1e5, marks=pytest.mark.slow)]
+    "size", [1.0, pytest.param(1e-5, marks=pytest.mark.campaign), pytest.param(1e5, marks=pytest.mark.campaign)]
 )
 def test_a_crank_rocker_is_recovered_at_any_size_and_place(size):
     target = curve_of(EGG, 64) * size * np.exp(0.7j) + (40.0 - 90.0j) * size
@@ -211,7 +211,7 @@ def test_a_crank_rocker_is_recovered_at_any_size_and_place(size):
     assert result.sweep.linkages >= 100_000
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_stroke_of_a_rocker_is_recovered():
     rocker = Fourbar(0.0, 5.0, 3.0, 3.5, 3.0, 2.0 + 3.0j)
     target = curve_of(rocker, 40, -1.1, 1.0)
@@ -220,7 +220,7 @@ def test_a_stroke_of_a_rocker_is_recovered():
     assert best.metrics.visits_in_order
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_demands_are_kept_and_cost_accuracy():
     case = CASES["yu1_20"]
     free = matched(case["curve"], True, rank_by="accuracy").designs[0]
@@ -245,7 +245,7 @@ def test_demands_are_kept_and_cost_accuracy():
     assert free.metrics.rms_distance < held.designs[0].metrics.rms_distance < 3.0 * free.metrics.rms_distance
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}
@@ -256,13 +256,13 @@ def test_given_pivots_are_hit():
         assert np.allclose(design.mechanism.fixed_pivots.output, pivots["output"], atol=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_the_same_seed_gives_the_same_answer():
     target = curve_of(EGG, 30) * (1.0 + 0.05j)
     assert matched(target, True, seed=4) == matched(target, True, seed=4)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("curve", "closed"),
     [
@@ -285,7 +285,7 @@ def test_odd_curves_end_with_an_honest_answer(curve, closed):
     assert result.designs[0].metrics.rms_distance < 0.1 * size
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_thousand_points():
     result = matched(curve_of(EGG, 1000), True)
     assert result.designs[0].metrics.max_distance < 1e-9
@@ -309,7 +309,7 @@ def test_what_is_no_curve_is_refused_with_its_place():
         statement(curve_of(EGG, 5000))
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", sorted(CASES))
 def test_curves_of_the_literature(name):
     """At or under the published linkage and the best known error; curves of a known linkage are recovered.
@@ -332,7 +332,7 @@ def test_curves_of_the_literature(name):
         assert best.metrics.rms_distance <= reference_rms(case) * 1.001
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_noisy_curves_are_recovered_to_their_noise():
     rng = np.random.default_rng(11)
     within = 0
@@ -343,7 +343,7 @@ def test_noisy_curves_are_recovered_to_their_noise():
     assert within >= 11
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("size", [0.3, 40.0])
 def test_a_curve_of_free_place_stands_on_given_pivots(size):
     """With position, rotation and size free both pivots are hit, and the curve keeps its shape."""
@@ -374,7 +374,7 @@ def test_a_curve_of_free_place_stands_on_given_pivots(size):
     assert np.abs(traced - (spin * target + complex(*best.placement.shift))).max() < 1e-7 * abs(spin) * size
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_what_is_held_is_kept_and_what_is_free_is_used():
     target = curve_of(EGG, 40)
     shifted = matched(target, True, fixed_pivots={"input": [-40.0, 7.0]}, placement_free=["position"])

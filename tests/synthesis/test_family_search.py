@@ -56,7 +56,7 @@ def keeps(design, points):
     assert max(target.point_residual for target in design.targets) < 1e-8 * size
 
 
-@pytest.mark.parametrize("n", [8, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 4, 5, 6, 7))])
+@pytest.mark.parametrize("n", [8, *(pytest.param(n, marks=pytest.mark.campaign) for n in (3, 4, 5, 6, 7))])
 def test_a_crank_rocker_in_a_region_is_found(n):
     linkage, points = planted(n, n)
     o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
@@ -75,7 +75,7 @@ def test_a_crank_rocker_in_a_region_is_found(n):
             assert region["y"][0] <= pivot.imag <= region["y"][1]
 
 
-@pytest.mark.parametrize("n", [6, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5, 7))])
+@pytest.mark.parametrize("n", [6, *(pytest.param(n, marks=pytest.mark.campaign) for n in (4, 5, 7))])
 def test_one_given_pivot_is_hit(n):
     linkage, points = planted(n, 20 + n)
     o2 = complex(linkage.input_pivot)
@@ -86,7 +86,7 @@ def test_one_given_pivot_is_hit(n):
         assert abs(pivots(design)[0] - o2) < 1e-8 * max(1.0, abs(o2))
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("n", [3, 4])
 def test_both_given_pivots_are_hit(n):
     linkage, points = planted(n, 40 + n)
@@ -98,7 +98,7 @@ def test_both_given_pivots_are_hit(n):
         assert abs(pivots(design)[0] - o2) + abs(pivots(design)[1] - o4) < 1e-8 * (1.0 + abs(o2))
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_other_demands_choose_and_rank():
     _, points = planted(5, 3)
     asked = {"grashof": "crank_rocker", "min_transmission_angle": 35, "max_link_ratio": 5}
@@ -113,7 +113,7 @@ def test_other_demands_choose_and_rank():
     assert answer(points, constraints=asked, rank_by="transmission_angle") == result
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("size", [1e-6, 1e6])
 def test_size_and_place_do_not_matter(size):
     _, points = planted(5, 9)
@@ -138,7 +138,7 @@ def test_descents_put_pivots_where_they_are_asked_for():
     assert abs(ends.x[0, 1] + 2.0) < 1e-8
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_points_that_no_order_of_a_crank_meets_end_honestly():
     points = np.array([0.0, 1.0, 0.001j, 1.0 + 0.001j, 0.002j, 1.0 + 0.002j])
     result = answer(points, constraints={"grashof": "double_crank", "min_transmission_angle": 80}, rounds=1)
