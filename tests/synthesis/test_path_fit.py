@@ -208,7 +208,7 @@ def test_the_same_statement_has_the_same_answer_and_progress_rises():
     assert first.search.candidates == first.search.accepted + sum(first.search.rejected.values())
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("row", ROWS, ids=[row["id"] for row in ROWS])
 def test_the_literatures_problems(row):
     """At or under what is published and known, under the rules of each, from every seed that is tried."""
