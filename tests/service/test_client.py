@@ -203,7 +203,8 @@ def test_the_command_cancels_its_job_when_interrupted(scripted, tmp_path):
     (scripted.folder / "open").unlink(missing_ok=True)
     (tmp_path / "task.json").write_text(json.dumps(stated(GATED)))
     with subprocess.Popen(
-        [sys.executable, *REAL, "solve", "--url", scripted.url, "task.json"],
+        # Processes of a test that is dealt out to several ignore interrupts, and so would their children.
+        ["env", "--default-signal=INT", sys.executable, *REAL, "solve", "--url", scripted.url, "task.json"],
         env=environment(tmp_path),
         cwd=tmp_path,
         stderr=subprocess.PIPE,
