@@ -84,7 +84,7 @@ $(STAMP): requirements.lock pyproject.toml
 
 lock: $(STAMP)
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet uv
-	$(BIN)/uv pip compile pyproject.toml --extra dev --python-version 3.11 --universal \
+	$(BIN)/uv pip compile pyproject.toml --all-extras --python-version 3.11 --universal \
 	    --generate-hashes --no-emit-index-url --no-header --quiet -o requirements.lock
 
 clean:
