@@ -11,6 +11,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+NODE   := tests/node/node_modules/.installed
 
 # Files of tests are dealt out to two processes.
 SPREAD := -n 2 --dist loadfile
@@ -87,5 +88,13 @@ lock: $(STAMP)
 	$(BIN)/uv pip compile pyproject.toml --all-extras --python-version 3.11 --universal \
 	    --generate-hashes --no-emit-index-url --no-header --quiet -o requirements.lock
 
+# What the tests need of node, from the lock beside it.
+$(NODE): tests/node/package.json tests/node/package-lock.json
+	@command -v npm > /dev/null || { test "$$(id -u)" = 0 && command -v apt-get > /dev/null \
+	    && apt-get update -q && apt-get install -qy --no-install-recommends nodejs npm; } \
+	    || { echo "these tests need node and npm: apt-get install nodejs npm"; exit 1; }
+	@cd tests/node && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
+
 clean:
-	rm -rf $(VENV) var
+	rm -rf $(VENV) var tests/node/node_modules
