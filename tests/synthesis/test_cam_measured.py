@@ -159,7 +159,7 @@ def test_an_acceleration_of_an_instant_is_not_called_met():
     assert "state one" in result.summary
 
 
-@pytest.mark.parametrize("lift", [0.05, 5.0])
+@pytest.mark.parametrize("lift", [pytest.param(0.05, marks=pytest.mark.campaign), 5.0])
 def test_two_hundred_short_segments(lift):
     """1.8° each: points are put where they are needed, and the profile reproduces them all."""
     moves = [

@@ -142,7 +142,7 @@ def check_gearbox(stated: dict[str, Any]) -> bool:
     return bool(found)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_random_gearboxes() -> None:
     rng = np.random.default_rng(11)
     answered = sum(check_gearbox(random_gearbox(rng)) for _ in range(30))

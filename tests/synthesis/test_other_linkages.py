@@ -216,7 +216,7 @@ def test_prescribed_timing_is_for_fourbars():
     assert "/timing" in [fault.path for fault in problem.contradictions()]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("mechanism", ["slider_crank", "geared_fivebar"])
 def test_odd_curves_end_with_an_honest_answer(mechanism):
     for curve in (np.linspace(0.0, 10.0, 6) + 0j, np.array([0.0, 1.0, 1.0, 2.0 + 1.0j, 3.0])):

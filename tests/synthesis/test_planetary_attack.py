@@ -216,7 +216,7 @@ def check(stated: dict[str, Any]) -> bool:
     return bool(own)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", MEMBERS)
 def test_random_coupled_trains(name: str) -> None:
     rng = np.random.default_rng(list(MEMBERS).index(name))
