@@ -1,7 +1,8 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
 # make test    ruff, mypy, import-linter and the whole pytest suite
 # make test-faults  what becomes of jobs when processes are killed, with figures
-# make test-browser  drive the studio in the system's Chromium (installed where it is missing and we are root)
+# make test-browser  drive the studio in the system's Chromium, and a generated TypeScript client in node (both are
+#              installed where they are missing and we are root)
 # make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
@@ -29,7 +30,7 @@ demo: $(STAMP)
 test: check
 	$(BIN)/pytest -m "not campaign and not faults and not browser" $(SPREAD)
 
-test-browser: $(STAMP)
+test-browser: $(STAMP) $(NODE)
 	@test -x /usr/bin/chromium || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null \
 	    && apt-get update -q && apt-get install -qy --no-install-recommends chromium; } \
 	    || { echo "the browser tests need Debian's chromium: apt-get install chromium"; exit 1; }
