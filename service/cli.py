@@ -56,12 +56,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     if command.name == "keys":
         return _keys(command)
-    from service import analyst
-    from synthesis import dispatch
+    from service.warming import warm
 
-    dispatch.warm_up()
-    dispatch.warm_up_rest()
-    analyst.warm_up()
+    warm()
     return 0
 
 
