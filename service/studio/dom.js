@@ -77,7 +77,9 @@ export function words(name) {
  */
 export function shown(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
-  if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value);
+  if (Number.isInteger(value) && Math.abs(value) < 1e7) return String(value).replace("-", "−");
   const digits = Number(value.toPrecision(5));
-  return (digits !== 0 && Math.abs(digits) < 1e-4 ? digits.toExponential().replace("e", "·10^") : String(digits)).replaceAll("-", "−");
+  if (digits === 0 || (Math.abs(digits) >= 1e-4 && Math.abs(digits) < 1e7)) return String(digits).replaceAll("-", "−");
+  const [factor, power] = digits.toExponential().split("e");
+  return `${factor.replace("-", "−")}·10${[...power.replace("+", "")].map((one) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(one)]).join("")}`;
 }

@@ -1,200 +1,192 @@
 /** A linkage in motion: the arrays of its cycle, drawn at the display's own rate. */
 
-import { el, shown, svg } from "./dom.js";
+import { Circuits, others, telling, track } from "./circuits.js";
+import { el, shown, svg, words } from "./dom.js";
+import { Gauge } from "./gauge.js";
+import { Linkage, drawn, grounded } from "./linkage.js";
+import { Player, between } from "./player.js";
 import { plots } from "./plots.js";
+import { judged, moved, parts } from "./quantities.js";
 import { View } from "./view.js";
 
 const WIDTH = 640;
 const HEIGHT = 420;
 
-/** Seconds that a cycle takes at speed 1. */
-const CYCLE_S = 4;
-
+/** @typedef {[number, number]} Point */
 /** @typedef {{x: (number | null)[], y: (number | null)[]}} Track */
+/** @typedef {{x: number, y: number, angle?: number}} Target */
 
 export class Mover {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
-  constructor(place, design, motion, problem) {
+  /**
+   * @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem
+   * @param {any} [circuits] an analysis with `branches`, where there is one
+   * @param {Point[]} [around] what else is to lie in the picture
+   */
+  constructor(place, design, motion, problem, circuits, around = []) {
     this.motion = motion;
     this.skeleton = design.mechanism.skeleton;
-    this.count = motion.input_angle?.length ?? Object.values(/** @type {Record<string, Track>} */ (motion.joints))[0].x.length;
-    /** Where in the arrays the motion stands, between two samples as a fraction. */
-    this.at = 0;
-    this.sense = 1;
-    this.rate = 1;
-    this.playing = false;
-    this.frame = 0;
-    this.closed = this.returns();
-    const tracks = /** @type {Record<string, Track>} */ (motion.joints);
-    const targets = problem.positions ?? problem.points ?? [];
-    const points = [...Object.values(tracks).flatMap((track) => track.x.map((x, k) => [x, track.y[k]])), ...targets.map((/** @type {any} */ one) => [one.x, one.y])]
-      .filter(([x, y]) => x !== null && y !== null);
-    this.view = new View(/** @type {any} */ (points), WIDTH, HEIGHT, 34);
-    this.build(place, targets);
-    this.show(0);
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
+    this.count = motion.input_angle.length;
+    this.targets = demanded(problem, design);
+    const name = telling(this.skeleton);
+    const points = [...around, ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)), ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
+      ...others(circuits).flatMap((branch) => track(branch, name))];
+    this.view = new View(points, WIDTH, HEIGHT, 34);
+    this.linkage = new Linkage(this.view, this.skeleton);
+    this.circuits = new Circuits(this.view, this.skeleton, circuits);
+    this.player = new Player({ count: this.count, closed: returns(motion, this.count), label: "Input",
+      reading: (at) => this.reading(at), show: (at) => this.show(at) });
+    this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
+      ? new Gauge("Transmission angle", motion.transmission_angle, {
+        limit: problem.constraints?.min_transmission_angle, used: design.targets?.length > 1 ? design.metrics?.min_transmission_angle : null }) : null;
+    /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
+    this.marks = [];
+    this.build(place, design, problem);
+    this.player.begin();
   }
 
-  /** Whether the last configuration is the first again: the motion then goes on, and otherwise back and forth. */
-  returns() {
-    const tracks = Object.values(/** @type {Record<string, Track>} */ (this.motion.joints));
-    const spread = Math.max(...tracks.map((track) => Math.max(...track.x.map(Number)) - Math.min(...track.x.map(Number))));
-    const last = this.count - 1;
-    return tracks.every(({ x, y }) => x[0] !== null && x[last] !== null
-      && Math.hypot(Number(x[0]) - Number(x[last]), Number(y[0]) - Number(y[last])) < 1e-6 * Math.max(spread, 1e-300));
+  /** @param {string} name @returns {Point[]} */
+  track(name) {
+    const { x, y } = this.motion.joints[name];
+    return x.map((/** @type {number} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
   }
 
-  /** @param {HTMLElement} place @param {any[]} targets */
-  build(place, targets) {
+  /** @param {HTMLElement} place @param {any} design @param {any} problem */
+  build(place, design, problem) {
     const { view, skeleton } = this;
-    const ground = skeleton.links.find((/** @type {any} */ link) => link.name === "ground")?.joints ?? [];
-    const track = (/** @type {string} */ name) => {
-      const { x, y } = this.motion.joints[name];
-      return x.map((/** @type {number} */ one, /** @type {number} */ k) => /** @type {[number, number]} */ (one === null ? [NaN, NaN] : [one, y[k]]));
+    const still = grounded(skeleton);
+    const moving = drawn(skeleton).filter((name) => !still.includes(name));
+    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.circuits.node,
+      ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
+      ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
+    this.drags(still);
+    const force = plots(judged(this.motion, design, problem), this.motion.input_angle, (at) => this.player.lead(at));
+    const box = el("div", { class: "plots" });
+    const choices = parts(this.motion, skeleton);
+    const choose = (/** @type {string} */ part) => {
+      this.marks = [...force, ...plots(moved(this.motion, part), this.motion.input_angle, (at) => this.player.lead(at))];
+      box.replaceChildren(...this.marks.map((mark) => mark.figure));
+      for (const mark of this.marks) mark.show(this.player.at);
     };
-    const moving = Object.keys(this.motion.joints).filter((name) => !ground.includes(name));
-    this.links = skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""}` }) }));
-    this.pins = Object.keys(this.motion.joints).map((name) =>
-      ({ name, dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }), text: svg("text", { dx: 8, dy: -7 }, name) }));
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
-      ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(track(name)) })),
-      ...(skeleton.slides ?? []).filter((/** @type {any} */ slide) => slide.link === "ground" && slide.point).map((/** @type {any} */ slide) => this.line(slide)),
-      ...targets.filter((one) => Number.isFinite(one?.x)).map((one, k) => this.target(one, k)),
-      ...ground.map((/** @type {string} */ name) => this.pivot(name)),
-      ...this.links.map((/** @type {any} */ link) => link.path),
-      ...this.pins.flatMap((pin) => [pin.dot, pin.text]));
-    this.picture = picture;
-    this.drags(ground);
-    this.button = el("button", { type: "button", class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Pause");
-    this.slider = el("input", { type: "range", id: "scrub", min: 0, max: this.count - 1, step: "any", value: 0, oninput: () => {
-      this.stop();
-      this.show(this.slider.valueAsNumber);
-    }, onkeydown: (/** @type {KeyboardEvent} */ event) => {
-      const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
-      if (by === undefined) return;
-      event.preventDefault();
-      this.stop();
-      this.show(Math.min(this.count - 1, Math.max(0, Math.round(this.at) + by)));
-    } });
-    const speed = el("select", { id: "speed", onchange: () => (this.rate = Number(speed.value)) },
-      ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)));
-    speed.value = "1";
-    this.reading = el("output", { for: "scrub", class: "reading" });
-    this.marks = plots(this.motion, this.skeleton);
-    place.replaceChildren(picture,
-      el("div", { class: "row" }, this.button, el("label", { for: "scrub" }, "Input"), this.slider, this.reading,
-        el("label", { for: "speed" }, "Speed"), speed),
-      el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
+      ...choices.map((part) => el("option", { value: part }, words(part))));
+    place.replaceChildren(
+      el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.gauge?.node, this.circuits.control)),
+      this.player.row,
+      el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
+        el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box);
+    if (choices.length) choose(choices[0]);
   }
 
-  /** The crank, or the slider, can be taken by its pin and led along its way. @param {string[]} ground */
-  drags(ground) {
-    const input = this.skeleton.links.find((/** @type {any} */ link) => link.name === this.skeleton.input_link);
-    const name = input?.joints.find((/** @type {string} */ one) => !ground.includes(one));
-    const pin = this.pins.find((/** @type {any} */ one) => one.name === name);
+  /** The crank, or the slider, can be taken by its pin and led along its way. @param {string[]} still */
+  drags(still) {
+    const name = inputPin(this.skeleton, still);
+    const pin = this.linkage.pins.find((one) => one.name === name);
     if (!pin) return;
     pin.dot.classList.add("led");
     pin.dot.setAttribute("r", "7");
-    const { x, y } = this.motion.joints[name];
+    const { x, y } = this.motion.joints[pin.name];
     pin.dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      this.stop();
+      this.player.stop();
       pin.dot.setPointerCapture(event.pointerId);
-      const move = (/** @type {PointerEvent} */ now) => this.show(nearest(x, y, this.view.under(this.picture, now), this.at));
+      const move = (/** @type {PointerEvent} */ now) => this.player.lead(nearest(x, y, this.view.under(this.picture, now), this.player.at));
       pin.dot.addEventListener("pointermove", move);
       pin.dot.addEventListener("lostpointercapture", () => pin.dot.removeEventListener("pointermove", move), { once: true });
     });
   }
 
-  /** @param {any} slide */
-  line(slide) {
-    const [u, v] = this.view.at(slide.point[0], slide.point[1]);
-    const angle = (slide.angle * Math.PI) / 180;
-    const [c, s] = [900 * Math.cos(angle), 900 * Math.sin(angle)];
-    return svg("line", { class: "rail", x1: u - c, y1: v + s, x2: u + c, y2: v - s });
+  /** The linkage at the toggles that end its branch, and the crank's pin at those of every circuit. */
+  toggles() {
+    const { motion, skeleton, view } = this;
+    const ends = this.endings().map((k) => {
+      const ghost = new Linkage(view, skeleton, { names: false, faint: true });
+      ghost.show(Object.fromEntries(Object.keys(motion.joints).map((name) => [name, motion.joints[name].x[k] === null ? null : this.track(name)[k]])));
+      ghost.node.setAttribute("class", "faint toggle");
+      return ghost.node;
+    });
+    const still = grounded(skeleton);
+    const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
+    const [pivot, pin] = [link?.joints.find((/** @type {string} */ one) => still.includes(one)), inputPin(skeleton, still)];
+    if (!pivot || !pin || !link) return ends;
+    const [[ox, oy], [ax, ay]] = [skeleton.joints[pivot], skeleton.joints[pin]];
+    const crank = Math.hypot(ax - ox, ay - oy);
+    return [...ends, ...motion.toggles.map((/** @type {number} */ degrees) => {
+      const angle = (degrees * Math.PI) / 180;
+      const [u, v] = view.at(ox + crank * Math.cos(angle), oy + crank * Math.sin(angle));
+      return svg("g", { class: "stop" }, svg("title", {}, `Toggle at ${shown(Math.round(10 * degrees) / 10)}°`),
+        svg("path", { d: `M${u - 5} ${v - 5}l10 10m0 -10l-10 10` }));
+    })];
   }
 
-  /** @param {{x: number, y: number, angle?: number}} one @param {number} k */
+  /** Samples at which the motion ends at a toggle. @returns {number[]} */
+  endings() {
+    const here = this.motion.circuits.flatMap((/** @type {any} */ one) => one.branches).find((/** @type {any} */ one) => one.reference);
+    return here && !here.full ? [0, this.count - 1] : [];
+  }
+
+  /** @param {Target} one @param {number} k */
   target(one, k) {
     const [u, v] = this.view.at(one.x, one.y);
     const angle = ((one.angle ?? 0) * Math.PI) / 180;
     return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }),
       one.angle !== undefined && svg("line", { x1: u, y1: v, x2: u + 26 * Math.cos(angle), y2: v - 26 * Math.sin(angle) }),
-      svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1));
-  }
-
-  /** @param {string} name */
-  pivot(name) {
-    const { x, y } = this.motion.joints[name] ?? { x: [NaN], y: [NaN] };
-    const [u, v] = this.view.at(x[0], y[0]);
-    return Number.isFinite(u) ? svg("path", { class: "ground", d: `M${u} ${v}l-9 15h18Z` }) : "";
+      this.targets.length <= 12 && svg("text", { x: u, y: v, dx: 8, dy: 15 }, k + 1));
   }
 
   /** Show the motion at a place of its arrays, between samples on a straight line. @param {number} at */
   show(at) {
-    this.at = at;
-    const k = Math.min(Math.floor(at), this.count - 2);
-    const share = at - k;
-    /** @type {Record<string, [number, number] | null>} */
+    /** @type {Record<string, Point | null>} */
     const now = {};
-    for (const [name, { x, y }] of Object.entries(/** @type {Record<string, any>} */ (this.motion.joints))) {
-      now[name] = x[k] === null || x[k + 1] === null ? null
-        : [x[k] + share * (x[k + 1] - x[k]), y[k] + share * (y[k + 1] - y[k])];
+    for (const [name, { x, y }] of Object.entries(/** @type {Record<string, Track>} */ (this.motion.joints))) {
+      const across = between(x, at);
+      now[name] = across === null ? null : [across, Number(between(y, at))];
     }
-    for (const { joints, path } of this.links) {
-      const points = joints.map((/** @type {string} */ name) => now[name]);
-      const known = points.every((/** @type {any} */ one) => one);
-      path.setAttribute("d", known ? `${this.view.path(points)}${points.length > 2 ? "Z" : ""}` : "");
-    }
-    for (const { name, dot, text } of this.pins) {
-      const point = now[name];
-      dot.toggleAttribute("hidden", !point);
-      if (!point) continue;
-      const [u, v] = this.view.at(point[0], point[1]);
-      dot.setAttribute("cx", u);
-      dot.setAttribute("cy", v);
-      text.setAttribute("x", u);
-      text.setAttribute("y", v);
-    }
-    this.slider.value = at;
-    const input = this.motion.input_angle;
-    this.reading.value = input ? `${shown(Math.round(10 * (input[k] + share * (input[k + 1] - input[k]))) / 10)}°` : `${Math.round((100 * at) / (this.count - 1))} %`;
-    this.slider.setAttribute("aria-valuetext", this.reading.value);
+    this.linkage.show(now);
+    this.circuits.show(between(this.motion.input_angle, at));
+    this.gauge?.show(between(this.motion.transmission_angle, at));
     for (const mark of this.marks) mark.show(at);
   }
 
-  play() {
-    if (this.playing) return;
-    this.playing = true;
-    this.button.textContent = "Pause";
-    let before = performance.now();
-    const step = (/** @type {number} */ now) => {
-      if (!this.playing) return;
-      const last = this.count - 1;
-      let at = this.at + (this.sense * this.rate * last * Math.max(0, now - before)) / 1000 / CYCLE_S;
-      before = now;
-      if (this.closed) at %= last;
-      else if (at > last || at < 0) {
-        this.sense = -this.sense;
-        at = Math.min(last, Math.max(0, at));
-      }
-      this.show(at);
-      this.frame = requestAnimationFrame(step);
-    };
-    this.frame = requestAnimationFrame(step);
+  /** @param {number} at */
+  reading(at) {
+    const input = Number(between(this.motion.input_angle, at));
+    const sliding = this.skeleton.links.every((/** @type {any} */ link) => link.name !== this.skeleton.input_link);
+    return `${shown(Math.round(10 * input) / 10)}${sliding ? "" : "°"}`;
   }
 
   stop() {
-    this.playing = false;
-    cancelAnimationFrame(this.frame);
-    this.button.textContent = "Play";
+    this.player.stop();
   }
+}
+
+/** The pin by which the input is led: of the crank, or of the slide that drives. @param {any} skeleton @param {string[]} still @returns {string | undefined} */
+function inputPin(skeleton, still) {
+  const link = skeleton.links.find((/** @type {any} */ one) => one.name === skeleton.input_link);
+  return link ? link.joints.find((/** @type {string} */ one) => !still.includes(one)) : skeleton.input_link;
+}
+
+/** The demanded positions or points, where a design that was placed freely has them. @param {any} problem @param {any} design @returns {Target[]} */
+export function demanded(problem, design) {
+  const listed = (problem.positions ?? problem.points ?? []).filter((/** @type {any} */ one) => Number.isFinite(one?.x));
+  const placed = design?.placement;
+  if (!placed) return listed;
+  const turn = (placed.rotation * Math.PI) / 180;
+  const [c, s] = [placed.size * Math.cos(turn), placed.size * Math.sin(turn)];
+  return listed.map((/** @type {Target} */ { x, y }) => ({ x: c * x - s * y + placed.shift[0], y: s * x + c * y + placed.shift[1] }));
+}
+
+/** Whether the last configuration is the first again. @param {any} motion @param {number} count */
+function returns(motion, count) {
+  const tracks = Object.values(/** @type {Record<string, Track>} */ (motion.joints));
+  const spread = Math.max(...tracks.map((track) => Math.max(...track.x.map(Number)) - Math.min(...track.x.map(Number))));
+  const last = count - 1;
+  return tracks.every(({ x, y }) => x[0] !== null && x[last] !== null
+    && Math.hypot(Number(x[0]) - Number(x[last]), Number(y[0]) - Number(y[last])) < 1e-6 * Math.max(spread, 1e-300));
 }
 
 /**
  * The sample of a track that is nearest to a point; of equally near ones, as where a crank turns twice, the one at hand.
- * @param {(number | null)[]} x @param {(number | null)[]} y @param {[number, number]} point @param {number} at
+ * @param {(number | null)[]} x @param {(number | null)[]} y @param {Point} point @param {number} at
  */
 function nearest(x, y, point, at) {
   const away = x.map((one, k) => (one === null ? Infinity : Math.hypot(one - point[0], Number(y[k]) - point[1])));

@@ -1,4 +1,4 @@
-/** Small plots of a motion against its input, each with a mark where the motion stands. */
+/** Small plots over a motion, each with a mark where the motion stands; a click leads the motion there. */
 
 import { el, shown, svg } from "./dom.js";
 
@@ -9,79 +9,105 @@ const EDGE = { left: 46, right: 10, top: 8, bottom: 20 };
 /** Greatest number of points of a line; more cannot be told apart. */
 const POINTS = 400;
 
-/** Angles and ratios that differ by less are equal but for rounding. */
+/** Values that differ by less than this share of their size are equal but for rounding. */
 const NOISE = 1e-9;
 
 /** @typedef {(number | null)[]} Series */
 
-/** The quantities worth a plot, as far as the motion has them. @param {any} motion @param {any} skeleton @returns {[string, Series][]} */
-function quantities(motion, skeleton) {
-  /** @type {[string, Series][]} */
-  const found = [];
-  if (motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)) found.push(["Transmission angle (°)", motion.transmission_angle]);
-  const point = motion.joints.P;
-  const magnitude = (/** @type {Series} */ x, /** @type {Series} */ y) => x.map((one, k) => (one === null || y[k] === null ? null : Math.hypot(one, Number(y[k]))));
-  if (point?.vx) found.push(["Speed of P (by rad)", magnitude(point.vx, point.vy)], ["Acceleration of P (by rad²)", magnitude(point.ax, point.ay)]);
-  for (const [name, slide] of Object.entries(motion.slides ?? {})) {
-    found.push([`Position of ${name}`, slide.position], [`Velocity of ${name}`, slide.velocity]);
-  }
-  const driven = skeleton.links.map((/** @type {any} */ link) => link.name).filter((/** @type {string} */ name) => name !== "ground" && name !== skeleton.input_link);
-  const last = motion.links?.[driven.at(-1)];
-  if (last) found.push([`Angle of ${driven.at(-1)} (°)`, last.angle], [`Angular velocity ratio of ${driven.at(-1)}`, last.omega]);
-  return found.filter(([, series]) => Array.isArray(series) && series.some((one) => one !== null)).slice(0, 6);
-}
+/**
+ * @typedef {object} Plotted
+ * @property {string} title
+ * @property {Record<string, Series>} lines by name; one line needs none
+ * @property {number | null} [limit] a line that is not to be passed
+ * @property {boolean[]} [used] samples in the range that matters
+ * @property {number} [least] differences below it are rounding: what the quantity is measured by
+ */
 
 /**
- * @param {any} motion @param {any} skeleton
+ * @param {Plotted[]} wanted @param {number[] | undefined} input degrees, one for each sample
+ * @param {(at: number) => void} lead leads the motion to a sample
  * @returns {{figure: HTMLElement, show: (at: number) => void}[]}
  */
-export function plots(motion, skeleton) {
-  return quantities(motion, skeleton).map(([title, series]) => plot(title, series, motion.input_angle));
+export function plots(wanted, input, lead) {
+  return wanted.filter(({ lines }) => Object.values(lines).some((series) => series.some(Number.isFinite)))
+    .map((one) => plot(one, input, lead));
 }
 
-/** @param {string} title @param {Series} series @param {number[] | undefined} input */
-function plot(title, series, input) {
-  const known = /** @type {number[]} */ (series.filter((one) => one !== null));
-  let low = Math.min(...known);
-  let high = Math.max(...known);
-  const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), title.startsWith("Ang") ? 1 : 0);
+/** @param {Plotted} plotted @param {number[] | undefined} input @param {(at: number) => void} lead */
+function plot({ title, lines, limit, used, least = 0 }, input, lead) {
+  const all = Object.values(lines);
+  const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
+  const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
+  let [low, high] = typeof limit === "number" ? [Math.min(extremes[0], limit), Math.max(extremes[1], limit)] : extremes;
+  const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), least);
   const range = steady ? Math.max(1, Math.abs(high)) : high - low;
+  const ticks = steady ? [low] : [low, high];
   [low, high] = [low - 0.05 * range, high + 0.05 * range];
-  const last = series.length - 1;
+  const last = all[0].length - 1;
   const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * k) / last;
   const y = (/** @type {number} */ value) => EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - value)) / (high - low);
-  let data = "";
-  let pen = "M";
-  for (let k = 0; k <= last; k += Math.max(1, Math.floor(last / POINTS))) {
-    const value = series[k];
-    if (value === null) pen = "M";
-    else {
-      data += `${pen}${x(k).toFixed(1)} ${y(value).toFixed(1)}`;
-      pen = "L";
+  const data = (/** @type {Series} */ series) => {
+    let path = "";
+    let pen = "M";
+    for (let k = 0; k <= last; k += Math.max(1, Math.floor(last / POINTS))) {
+      const value = series[k];
+      if (value === null || !Number.isFinite(value)) pen = "M";
+      else {
+        path += `${pen}${x(k).toFixed(1)} ${y(value).toFixed(1)}`;
+        pen = "L";
+      }
     }
-  }
+    return path;
+  };
   const mark = svg("line", { class: "mark", y1: EDGE.top, y2: HEIGHT - EDGE.bottom });
   const reading = el("span", { class: "reading" });
-  const ends = input ? [input[0], input[last]] : [0, last];
-  const figure = el("figure", {},
-    el("figcaption", {}, title, reading),
-    svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${title}: from ${shown(Math.min(...known))} to ${shown(Math.max(...known))}` },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
-      ...[low + 0.05 * range, high - 0.05 * range].map((value) => svg("g", {},
-        svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
-        svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value)))),
-      svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, input ? `${Math.round(ends[0])}°` : ""),
-      svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, input ? `${Math.round(ends[1])}°` : ""),
-      svg("path", { class: "series", d: data }), mark));
+  const names = Object.keys(lines);
+  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": `${title}: from ${shown(extremes[0])} to ${shown(extremes[1])}` },
+    svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+    ...runs(used ?? []).map(([from, to]) => svg("rect", { class: "used", x: x(from), y: EDGE.top, width: x(to) - x(from), height: HEIGHT - EDGE.top - EDGE.bottom })),
+    low < 0 && high > 0 && svg("line", { class: "zero", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(0), y2: y(0) }),
+    ...ticks.map((value) => svg("g", {},
+      svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
+      svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value)))),
+    typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
+    input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}°`),
+    input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}°`),
+    ...all.map((series, k) => svg("path", { class: `series s${k}`, d: data(series) })), mark);
+  const follow = (/** @type {PointerEvent} */ event) => {
+    const box = picture.getBoundingClientRect();
+    const u = ((event.clientX - box.left) / box.width) * WIDTH;
+    lead(Math.min(last, Math.max(0, ((u - EDGE.left) / (WIDTH - EDGE.left - EDGE.right)) * last)));
+  };
+  picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+    picture.setPointerCapture(event.pointerId);
+    follow(event);
+    picture.addEventListener("pointermove", follow);
+    picture.addEventListener("lostpointercapture", () => picture.removeEventListener("pointermove", follow), { once: true });
+  });
+  const caption = el("figcaption", {}, el("span", {}, title,
+    ...(names.length > 1 ? names.flatMap((name, k) => [" ", el("span", { class: `key s${k}` }, name)]) : [])), reading);
   const show = (/** @type {number} */ at) => {
     mark.setAttribute("x1", String(x(at)));
     mark.setAttribute("x2", String(x(at)));
-    reading.textContent = brief(series[Math.round(at)]);
+    reading.textContent = all.map((series) => brief(series[Math.round(at)], NOISE * range)).join(", ");
   };
-  return { figure, show };
+  return { figure: el("figure", { class: "plot" }, caption, picture), show };
 }
 
-/** Three digits. @param {number | null} value */
-function brief(value) {
-  return value === null ? "–" : shown(Number(value.toPrecision(3)));
+/** First and last of every run of samples. @param {boolean[]} used @returns {[number, number][]} */
+function runs(used) {
+  /** @type {[number, number][]} */
+  const found = [];
+  used.forEach((one, k) => {
+    if (!one) return;
+    if (k > 0 && used[k - 1]) found[found.length - 1][1] = k;
+    else found.push([k, k]);
+  });
+  return found;
+}
+
+/** Three digits; what is below `noise` is nothing. @param {number | null | undefined} value @param {number} [noise] */
+function brief(value, noise = 0) {
+  if (value === null || value === undefined) return "–";
+  return Math.abs(value) < noise ? "0" : shown(Number(value.toPrecision(3)));
 }

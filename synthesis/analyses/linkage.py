@@ -6,7 +6,7 @@ assembled ``valid`` is False and the numbers are NaN, which JSON has as null.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
@@ -48,10 +48,11 @@ class LinkageAnalysisRequest(AnalysisRequest):
         default=Sweep(),
         description="By default a full turn in 360 steps; a driven slider goes between toggles.",
     )
-    include: list[Topic] = Field(
+    include: list[Topic | Literal["branches"]] = Field(
         default=[],
-        max_length=4,
-        description="What else is wanted, of a pin-jointed fourbar only.",
+        max_length=5,
+        description="What else is wanted. `branches`: where the joints are along every branch of every circuit. "
+        "The others are of a pin-jointed fourbar only.",
     )
 
     def faults(self) -> list[tuple[str, str]]:
@@ -70,10 +71,11 @@ class LinkageAnalysisRequest(AnalysisRequest):
             low, high = cycle_of(mechanism)
             motion = Sweep(start=low, end=high)
         at, speed, time = motion.inputs(slide=slide)
-        more = fourbar_analysis(mechanism, np.radians(at), self.include) if self.include else None
+        topics = [topic for topic in self.include if topic != "branches"]
+        more = fourbar_analysis(mechanism, np.radians(at), topics) if topics else None
         return {
             "time": None if time is None else time.tolist(),
-            **analysis(mechanism, at, speed, motion.acceleration),
+            **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include),
             "fourbar": more,
         }
 
@@ -136,6 +138,11 @@ class BranchRange(Answer):
     end: float = Field(alias="to")
     full: bool
     reference: bool = Field(description="Whether the reference configuration lies on it.")
+    joints: dict[str, Points] | None = Field(
+        default=None,
+        description="Where the joints are along it, if `include` has asked for `branches`; null too where no "
+        "assemblies tell the branches apart (class III, or a slider that drives).",
+    )
 
 
 class CircuitBranches(Answer):

@@ -9,18 +9,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage import barker_type
+from kinematics.linkage.branches import Branch
 from kinematics.linkage.classification import BARKER
 from kinematics.linkage.drive import MechanismMotion, drive
 from kinematics.linkage.instant_centers import instant_centers
 from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
+from kinematics.linkage.program import program_of
 from synthesis.analyses.fourbar import fourbar_of
 
 Real = NDArray[np.float64]
 
 
-def analysis(mechanism: Mechanism, at: Real, speed: Real, acceleration: float) -> dict[str, Any]:
-    """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it."""
+BRANCH_PLACES = 181
+"""Places on a branch at which its joints are listed: enough for a smooth curve on a screen."""
+
+
+def analysis(
+    mechanism: Mechanism, at: Real, speed: Real, acceleration: float, *, tracked: bool = False
+) -> dict[str, Any]:
+    """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it.
+
+    ``tracked`` adds to each branch where the joints are along it.
+    """
     slide = mechanism.driven_by_slide
     motion = drive(mechanism, at if slide else np.radians(at), speed=speed, acceleration=acceleration)
     sines = {link: np.abs(sine) for link, sine in motion.sines.items()}
@@ -38,7 +49,7 @@ def analysis(mechanism: Mechanism, at: Real, speed: Real, acceleration: float) -
         "torque_ratio": _torque_ratios(mechanism, motion),
         "instant_centers": _instant_centers(mechanism, motion) if len(at) == 1 else {},
         "classification": _classification(mechanism),
-        **_global(mechanism),
+        **_global(mechanism, tracked),
     }
 
 
@@ -115,7 +126,22 @@ def _classification(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _global(mechanism: Mechanism) -> dict[str, Any]:
+def _tracked(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, list[float]]] | None:
+    """Joints along a branch, closest together at its ends; None where no assemblies tell the branches apart."""
+    steps = program_of(mechanism).steps
+    if not steps or len(branch.signs) != sum(step.has_two_solutions for step in steps):
+        return None
+    chosen = iter(branch.signs)
+    signs = tuple(np.array(next(chosen) if step.has_two_solutions else 1) for step in steps)
+    share = np.linspace(0.0, 1.0, BRANCH_PLACES)
+    if not branch.full:
+        # Joints go with the root of the distance from a toggle.
+        share = 0.5 - 0.5 * np.cos(np.pi * share)
+    motion = drive(mechanism, branch.low + share * (branch.high - branch.low), signs=signs, order=0)
+    return {name: {"x": _listed(jet[0].real), "y": _listed(jet[0].imag)} for name, jet in motion.joints.items()}
+
+
+def _global(mechanism: Mechanism, tracked: bool) -> dict[str, Any]:
     """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed."""
     try:
         found = branches(mechanism)
@@ -126,9 +152,8 @@ def _global(mechanism: Mechanism) -> dict[str, Any]:
     circuits: dict[int, list[dict[str, Any]]] = {}
     for branch in found:
         listed = circuits.setdefault(branch.circuit, [])
-        listed.append(
-            {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}
-        )
+        one = {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}
+        listed.append({**one, "joints": _tracked(mechanism, branch)} if tracked else one)
     limits: dict[str, list[float] | None] = {}
     if here is not None:
         links = _grounded(mechanism)

@@ -26,7 +26,7 @@ def test_a_key_opens_the_service(chromium, tmp_path):
         assert page.inner_text("#status") == ""
         state(page, PLAIN)
         studio.solve()
-        page.wait_for_selector(".moving .link")
+        page.wait_for_selector(".moving .live .link")
         until(lambda: drawn(page), 30, "the drawing")
         with page.expect_download():
             page.get_by_role("button", name="DXF", exact=True).click()

@@ -52,7 +52,7 @@ def drag(page, selector, by):
 
 
 def link_now(page):
-    return page.locator(".moving .link").first.get_attribute("d")
+    return page.locator(".moving .live .link").first.get_attribute("d")
 
 
 def drawn(page):
@@ -74,7 +74,7 @@ def test_a_linkage_is_stated_solved_and_moves(open_studio, name, options):
     studio.solve()
     assert page.locator(".card").count() == 1
     assert "Complete: the search has left out nothing" in page.inner_text("#result")
-    page.wait_for_selector(".moving .link")
+    page.wait_for_selector(".moving .live .link")
     before = link_now(page)
     until(lambda: link_now(page) != before, what="another frame")
     until(lambda: drawn(page), 60, "the drawing")
@@ -89,7 +89,7 @@ def test_the_scrubber_is_worked_by_keys_and_moves_the_marks(studio):
     page = studio.page
     state(page, PLAIN)
     studio.solve()
-    page.wait_for_selector(".moving .link")
+    page.wait_for_selector(".moving .live .link")
     page.focus("#scrub")
     page.keyboard.press("ArrowRight")
     first, mark = link_now(page), page.locator(".plots .mark").first.get_attribute("x1")
@@ -231,7 +231,7 @@ def test_every_file_is_taken_home(studio):
     page = studio.page
     state(page, PLAIN)
     studio.solve()
-    page.wait_for_selector(".moving .link")
+    page.wait_for_selector(".moving .live .link")
     taken = {}
     until(lambda: drawn(page), 60, "the drawing")
     for form in ("SVG", "DXF", "CSV", "GIF", "PNG", "JSON"):
@@ -318,7 +318,7 @@ def test_the_example_of_each_kind_is_solved_and_shown(studio, kind):
     until(lambda: drawn(page), 60, "the drawing")
     assert not re.search(r"\b(null|undefined|NaN)\b", page.inner_text("#answers"))
     if kind in LINKAGES:
-        page.wait_for_selector(".moving .link")
+        page.wait_for_selector(".moving .live .link")
         before = link_now(page)
         until(lambda: link_now(page) != before, what="another frame")
     studio.screen(f"kind-{kind}")

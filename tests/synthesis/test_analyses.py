@@ -240,3 +240,42 @@ def test_joints_that_coincide_may_differ_by_rounding():
     }  # fmt: skip
     answer = parse_request({"mechanism": mechanism, "motion": {"at": math.degrees(0.7)}}).answer()
     assert answer["joints"]["P"]["x"] == pytest.approx(answer["joints"]["B"]["x"])
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_joints_along_a_branch_keep_every_link(name):
+    """Rigid bodies on each branch, other places on another one, and the reference on its own."""
+    mechanism = stated(name)
+    skeleton = mechanism["skeleton"]
+    found = parse_request({"mechanism": mechanism, "include": ["branches"]}).answer()
+    joints = {n: complex(*z) for n, z in skeleton["joints"].items()}
+    size = max(abs(one - other) for one in joints.values() for other in joints.values())
+    listed = [branch for circuit in found["circuits"] for branch in circuit["branches"]]
+    if listed[0]["joints"] is None:
+        assert skeleton["input_link"] not in {link["name"] for link in skeleton["links"]} or "stephenson" in name
+        return
+    paths = []
+    for branch in listed:
+        at = {n: np.array(z["x"]) + 1j * np.array(z["y"]) for n, z in branch["joints"].items()}
+        paths.append(np.stack(list(at.values())))
+        known = np.isfinite(paths[-1]).all(axis=0)
+        assert known.mean() > 0.97, "but for rounding at a toggle it can be assembled"
+        for link in skeleton["links"]:
+            for one, other in zip(link["joints"], link["joints"][1:], strict=False):
+                length = np.abs(at[one] - at[other])[known]
+                assert np.allclose(length, abs(joints[one] - joints[other]), atol=1e-6 * size)
+    here = next(k for k, branch in enumerate(listed) if branch["reference"])
+    reference = np.array([joints[n] for n in listed[here]["joints"]])
+    away = [np.nanmin(np.abs(path - reference[:, None]).max(axis=0)) for path in paths]
+    assert away[here] <= min(away) + 1e-9 * size
+    for k, path in enumerate(paths):
+        assert all(np.nanmax(np.abs(path - other)) > 1e-3 * size for other in paths[:k]), "no branch is listed twice"
+
+
+def test_branches_are_for_any_linkage_and_the_rest_for_fourbars():
+    skeleton = stated("watt_1 driven by its input")
+    asked = parse_request({"mechanism": skeleton, "include": ["branches", "cognates"]})
+    with pytest.raises(MechanismError, match="fourbar has cognates"):
+        asked.answer()
+    plain = parse_request({"mechanism": FOURBAR, "motion": {"at": 30.0}}).answer()
+    assert "joints" not in plain["circuits"][0]["branches"][0]

@@ -1,0 +1,89 @@
+/** A linkage as a drawing: links, slides and pins, put where the joints are. */
+
+import { svg } from "./dom.js";
+
+/** @typedef {[number, number]} Point */
+/** @typedef {Record<string, Point | null>} Places */
+/** @typedef {import("./view.js").View} View */
+
+/** Joints that stand still. @param {any} skeleton @returns {string[]} */
+export function grounded(skeleton) {
+  return skeleton.links.find((/** @type {any} */ link) => link.name === "ground")?.joints ?? [];
+}
+
+/** Joints worth a drawing: a coupler point that nobody asked for lies on another joint. @param {any} skeleton @returns {string[]} */
+export function drawn(skeleton) {
+  const [px, py] = skeleton.joints.P ?? [NaN, NaN];
+  const doubled = Object.entries(skeleton.joints).some(([name, [x, y]]) => name !== "P" && x === px && y === py);
+  return Object.keys(skeleton.joints).filter((name) => name !== "P" || !doubled);
+}
+
+export class Linkage {
+  /** @param {View} view @param {any} skeleton @param {{names?: boolean, faint?: boolean}} [manner] */
+  constructor(view, skeleton, { names = true, faint = false } = {}) {
+    this.view = view;
+    this.links = skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
+      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""}` }) }));
+    this.slides = (skeleton.slides ?? []).map((/** @type {any} */ slide) => this.slide(skeleton, slide));
+    this.pins = drawn(skeleton).map((name) => ({ name,
+      dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }),
+      text: names && svg("text", { dx: 8, dy: -7 }, name) }));
+    const still = grounded(skeleton).map((name) => this.pivot(skeleton.joints[name]));
+    this.node = svg("g", { class: faint ? "faint" : "live" }, ...this.slides.map((/** @type {any} */ one) => one.rail),
+      ...still, ...this.links.map((/** @type {any} */ one) => one.path),
+      ...this.slides.map((/** @type {any} */ one) => one.block), ...this.pins.flatMap((/** @type {any} */ one) => [one.dot, one.text]));
+  }
+
+  /** @param {Point | undefined} at */
+  pivot(at) {
+    if (!at) return null;
+    const [u, v] = this.view.at(...at);
+    return svg("path", { class: "ground", d: `M${u} ${v}l-9 15h18Z` });
+  }
+
+  /** A block on its line; a line of a moving link is known by two joints of it. @param {any} skeleton @param {any} slide */
+  slide(skeleton, slide) {
+    const angle = (slide.angle * Math.PI) / 180;
+    const link = skeleton.links.find((/** @type {any} */ one) => one.name === slide.link);
+    const on = slide.link === "ground" ? [] : (link?.joints ?? []);
+    const rail = svg("line", { class: "rail" });
+    const block = svg("rect", { class: "block", x: -12, y: -7, width: 24, height: 14, rx: 2 });
+    const [a, b] = on.map((/** @type {string} */ name) => skeleton.joints[name]);
+    const lean = b ? angle - Math.atan2(b[1] - a[1], b[0] - a[0]) : angle;
+    return { joint: slide.joint, on, lean, rail, block };
+  }
+
+  /** @param {Places} places */
+  show(places) {
+    for (const { joints, path } of this.links) {
+      const points = joints.map((/** @type {string} */ name) => places[name]);
+      const known = points.every((/** @type {any} */ one) => one);
+      path.setAttribute("d", known ? `${this.view.path(points)}${points.length > 2 ? "Z" : ""}` : "");
+    }
+    for (const { joint, on, lean, rail, block } of this.slides) {
+      const at = places[joint];
+      const [a, b] = on.map((/** @type {string} */ name) => places[name]);
+      block.toggleAttribute("hidden", !at);
+      rail.toggleAttribute("hidden", !at);
+      if (!at) continue;
+      const angle = b ? lean + Math.atan2(b[1] - a[1], b[0] - a[0]) : a ? Math.atan2(at[1] - a[1], at[0] - a[0]) : lean;
+      const [u, v] = this.view.at(...at);
+      const [c, s] = [900 * Math.cos(angle), -900 * Math.sin(angle)];
+      for (const [name, value] of Object.entries({ x1: u - c, y1: v - s, x2: u + c, y2: v + s })) rail.setAttribute(name, String(value));
+      block.setAttribute("transform", `translate(${u.toFixed(1)} ${v.toFixed(1)}) rotate(${((-angle * 180) / Math.PI).toFixed(1)})`);
+    }
+    for (const { name, dot, text } of this.pins) {
+      const point = places[name];
+      dot.toggleAttribute("hidden", !point);
+      if (text) text.toggleAttribute("hidden", !point);
+      if (!point) continue;
+      const [u, v] = this.view.at(...point);
+      dot.setAttribute("cx", u);
+      dot.setAttribute("cy", v);
+      if (text) {
+        text.setAttribute("x", u);
+        text.setAttribute("y", v);
+      }
+    }
+  }
+}

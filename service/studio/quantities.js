@@ -1,0 +1,109 @@
+/** What is worth a plot in the motion of a linkage: force, error, and how one chosen part moves. */
+
+import { words } from "./dom.js";
+import { drawn, grounded } from "./linkage.js";
+
+/** @typedef {import("./plots.js").Plotted} Plotted */
+/** @typedef {(number | null)[]} Series */
+
+/** Parts whose motion can be plotted, the telling ones first. @param {any} motion @param {any} skeleton @returns {string[]} */
+export function parts(motion, skeleton) {
+  const still = grounded(skeleton);
+  const joints = drawn(skeleton).filter((name) => !still.includes(name)).map((name) => `point ${name}`);
+  const links = Object.keys(motion.links ?? {}).filter((name) => name !== skeleton.input_link && name !== "ground").map((name) => `link ${name}`);
+  const slides = Object.keys(motion.slides ?? {}).map((name) => `slide ${name}`);
+  const first = (/** @type {string} */ part) => part === "point P";
+  return [...joints.filter(first), ...slides, ...links.reverse(), ...joints.filter((part) => !first(part))];
+}
+
+/** Position, velocity and acceleration of a part, by the radian (or length unit) of the input. @param {any} motion @param {string} part @returns {Plotted[]} */
+export function moved(motion, part) {
+  const [kind, ...rest] = part.split(" ");
+  const name = rest.join(" ");
+  const what = kind !== "link" ? name : words(name).toLowerCase();
+  if (kind === "point") {
+    const { x, y, vx, vy, ax, ay } = motion.joints[name];
+    const size = extent(x, y);
+    return [
+      { title: `Position of ${what}`, lines: { x, y }, least: size },
+      { title: `Velocity of ${what}`, lines: { total: length(vx, vy), x: vx, y: vy }, least: size },
+      { title: `Acceleration of ${what}`, lines: { total: length(ax, ay), x: ax, y: ay }, least: size },
+    ];
+  }
+  if (kind === "slide") {
+    const { position, velocity, acceleration } = motion.slides[name];
+    const size = extent(position, position);
+    return [
+      { title: `Position of ${what} on its line`, lines: { "": position }, least: size },
+      { title: `Velocity of ${what}`, lines: { "": velocity }, least: size },
+      { title: `Acceleration of ${what}`, lines: { "": acceleration }, least: size },
+    ];
+  }
+  const { angle, omega, alpha } = motion.links[name];
+  return [
+    { title: `Angle of ${what} (°)`, lines: { "": angle }, least: 180 },
+    { title: `Angular velocity of ${what}`, lines: { "": omega }, least: 1 },
+    { title: `Angular acceleration of ${what}`, lines: { "": alpha }, least: 1 },
+  ];
+}
+
+/** What a linkage must do well: transmit force, and keep to its function. @param {any} motion @param {any} design @param {any} problem @returns {Plotted[]} */
+export function judged(motion, design, problem) {
+  /** @type {Plotted[]} */
+  const found = [];
+  const error = errorCurve(design);
+  if (error) found.push({ title: error.title, lines: { "": along(error.at, error.values, motion.input_angle) } });
+  const used = usedRange(design, motion.input_angle);
+  found.push({ title: "Transmission angle (°)", lines: { "": motion.transmission_angle ?? [] }, limit: problem.constraints?.min_transmission_angle, least: 90, used });
+  return found;
+}
+
+/** Which samples lie between the first target and the last: the range that limits are for. @param {any} design @param {number[]} inputs @returns {boolean[] | undefined} */
+function usedRange(design, inputs) {
+  const at = (design.targets ?? []).map((/** @type {any} */ one) => one.input_angle);
+  if (at.length < 2 || !at.every(Number.isFinite)) return undefined;
+  const [low, high] = [Math.min(...at), Math.max(...at)];
+  const past = (/** @type {number} */ input) => input - low - 360 * Math.floor((input - low) / 360);
+  return high - low >= 360 ? undefined : inputs.map((input) => past(input) <= high - low);
+}
+
+/** Structural error as the answer has it. @param {any} design @returns {{title: string, at: number[], values: number[]} | null} */
+function errorCurve(design) {
+  const structural = design.structural_error;
+  if (structural?.curve) {
+    return { title: `Structural error (${structural.unit === "degrees" ? "°" : "length"})`, at: structural.curve.input_angle, values: structural.curve.error };
+  }
+  const targets = design.targets ?? [];
+  if (targets.length > 2 && targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(one.input_angle))) {
+    return { title: "Steering error (°)", at: targets.map((/** @type {any} */ one) => one.input_angle), values: targets.map((/** @type {any} */ one) => one.error) };
+  }
+  return null;
+}
+
+/**
+ * A curve over some range, at the samples of a motion; full turns aside, and unknown outside of its range.
+ * @param {number[]} at @param {number[]} values @param {number[]} inputs @returns {Series}
+ */
+export function along(at, values, inputs) {
+  const order = at.map((_, k) => k).sort((one, other) => at[one] - at[other]);
+  const [xs, ys] = [order.map((k) => at[k]), order.map((k) => values[k])];
+  const end = xs[xs.length - 1];
+  return inputs.map((input) => {
+    const x = input - 360 * Math.floor((input - xs[0]) / 360);
+    if (x > end) return null;
+    let k = 1;
+    while (k < xs.length - 1 && xs[k] < x) k++;
+    return ys[k - 1] + ((x - xs[k - 1]) / (xs[k] - xs[k - 1] || 1)) * (ys[k] - ys[k - 1]);
+  });
+}
+
+/** @param {Series} x @param {Series} y @returns {Series} */
+function length(x, y) {
+  return x.map((one, k) => (one === null || y[k] === null ? null : Math.hypot(one, Number(y[k]))));
+}
+
+/** How far a track reaches. @param {Series} x @param {Series} y */
+function extent(x, y) {
+  const known = /** @type {number[]} */ ([...x, ...y].filter((one) => one !== null));
+  return known.reduce((most, one) => Math.max(most, Math.abs(one)), 0);
+}

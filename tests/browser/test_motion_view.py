@@ -1,0 +1,160 @@
+"""A design that moves: both circuits, toggles, the gauge of transmission, plots that lead the motion, cognates."""
+
+import math
+import re
+
+import pytest
+
+from synthesis.kinds import examples
+from tests.browser.test_studio import PLAIN, state
+from tests.service.running import until
+
+pytestmark = pytest.mark.browser
+
+TIMED = examples("path")[1]
+"""A crank-rocker through five points; its right cognate is one too, with the same crank angles."""
+
+
+def motion_of(studio, server, number=0, steps=240):
+    job = re.search(r"#job=(\w+)", studio.page.url).group(1)
+    answer = server.client.get(f"/v1/jobs/{job}/designs/{number}/motion", params={"steps": steps})
+    assert answer.status_code == 200
+    return answer.json()
+
+
+def number(text):
+    return float(text.replace("−", "-").rstrip("°"))
+
+
+def solved(studio, problem):
+    state(studio.page, problem)
+    studio.solve()
+    studio.page.wait_for_selector(".moving .live .link")
+    studio.page.focus("#scrub")
+    studio.page.keyboard.press("Home")
+
+
+def curve(page, selector):
+    return [
+        [float(x) for x in pair] for pair in re.findall(r"([-\d.]+) ([-\d.]+)", page.get_attribute(selector, "d") or "")
+    ]
+
+
+def test_the_other_circuit_is_drawn_faint_and_goes_with_the_crank(studio, server):
+    page = studio.page
+    solved(studio, TIMED)
+    assert "moves on circuit 1 of 2" in page.inner_text(".beside")
+    own, other = curve(page, ".moving > .stage .canvas > .curve"), curve(page, ".others .curve.other")
+    assert len(own) > 100
+    assert len(other) > 100
+    assert min(math.dist(own[0], place) for place in other) > 5.0, "another curve"
+    ghost = page.locator(".others .faint .link").first
+    before, standing = ghost.get_attribute("d"), page.get_attribute(".live .pin", "cx")
+    for _ in range(5):
+        page.keyboard.press("PageUp")
+    assert ghost.get_attribute("d") != before
+    # Both circuits have the same crank.
+    assert ghost.get_attribute("d") == page.locator(".live .link").first.get_attribute("d")
+    assert page.get_attribute(".live .pin", "cx") == standing, "the fixed pivot stands"
+    page.uncheck("#circuits")
+    assert not page.locator(".others").is_visible()
+
+
+def test_a_rocker_shows_its_toggles(studio, server):
+    page = studio.page
+    solved(studio, examples("function")[1])
+    motion = motion_of(studio, server)
+    assert page.locator(".stop").count() == len(motion["toggles"]) > 0
+    assert page.locator(".faint.toggle").count() == 2, "the linkage at both ends of its branch"
+    title = page.locator(".stop title").first.text_content()
+    assert str(round(motion["toggles"][0], 1)).rstrip("0").rstrip(".") in title
+
+
+def test_the_gauge_and_the_plots_say_what_the_analysis_says(studio, server):
+    page = studio.page
+    solved(studio, PLAIN)
+    motion = motion_of(studio, server)
+    for _ in range(3):
+        page.keyboard.press("PageUp")
+    assert float(page.input_value("#scrub")) == 30
+    expected = motion["transmission_angle"][30]
+    assert number(page.inner_text(".gauge .reading")) == pytest.approx(expected, abs=0.05)
+    plotted = page.locator(".plot", has_text="Transmission angle").locator(".reading")
+    assert number(plotted.inner_text()) == pytest.approx(expected, rel=5e-3)
+    page.select_option("#part", "link output")
+    for title, series in (("Angle of output", "angle"), ("Angular velocity", "omega"), ("Angular accel", "alpha")):
+        reading = page.locator(".plot", has_text=title).locator(".reading").inner_text()
+        assert number(reading) == pytest.approx(motion["links"]["output"][series][30], rel=5e-3, abs=1e-3)
+
+
+def test_a_click_in_a_plot_leads_the_motion(studio):
+    page = studio.page
+    solved(studio, PLAIN)
+    picture = page.locator(".plot svg").nth(1)
+    picture.scroll_into_view_if_needed()
+    box = picture.bounding_box()
+    # The plot's own edges: 46 of 300 at the left, 10 at the right.
+    middle = (46 + 0.5 * 244) / 300 * box["width"]
+    page.mouse.click(box["x"] + middle, box["y"] + box["height"] / 2)
+    assert float(page.input_value("#scrub")) == pytest.approx(120, abs=1.5)
+    marks = page.locator(".plot .mark").evaluate_all("marks => marks.map(one => one.getAttribute('x1'))")
+    assert len(set(marks)) == 1, "all plots stand at the same input"
+    assert page.inner_text(".player button") == "Play", "it stands still"
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "title"), [("function", 1, "Structural error"), ("steering", 0, "Steering error")]
+)
+def test_the_error_of_a_function_is_plotted_over_its_range(studio, server, kind, n, title):
+    page = studio.page
+    solved(studio, examples(kind)[n])
+    line = page.locator(".plot", has_text=title).locator(".series").get_attribute("d")
+    xs = [float(x) for x in re.findall(r"[ML]([\d.]+) ", line)]
+    motion = motion_of(studio, server)
+    inside = (max(xs) - min(xs)) / 244.0
+    job = server.job(re.search(r"#job=(\w+)", page.url).group(1))
+    design = job["result"]["designs"][0]
+    angles = [target["input_angle"] for target in design["targets"]]
+    share = (max(angles) - min(angles)) / (motion["input_angle"][-1] - motion["input_angle"][0])
+    assert inside == pytest.approx(share, abs=0.02)
+
+
+def test_cognates_are_switched_in_place(studio):
+    page = studio.page
+    solved(studio, TIMED)
+    own, pivots = curve(page, ".canvas > .curve"), page.locator(".live .ground").first.get_attribute("d")
+    page.get_by_label("Right cognate").check()
+    until(lambda: page.locator(".live .ground").first.get_attribute("d") != pivots, what="other pivots")
+    traced = curve(page, ".canvas > .curve")
+    assert len(traced) == len(own)
+    assert max(math.dist(one, other) for one, other in zip(own, traced, strict=True)) < 0.3, "pixels"
+    assert "keeps the crank angles" in page.inner_text("#cognates")
+    studio.screen("cognate")
+    page.get_by_label("Left cognate").check()
+    until(lambda: "other crank angles" in page.inner_text("#cognates"), what="its note")
+    left = curve(page, ".canvas > .curve")
+    away = [min(math.dist(one, other) for other in own) for one in left]
+    assert max(away) < 6.0, "the samples lie elsewhere on the same curve"
+    page.check("#cognate-0")
+    assert curve(page, ".canvas > .curve") == own
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "kind_of_link"),
+    [
+        ("motion", 6, ".live .block"),
+        ("motion", 7, ".others .curve.other"),
+        ("quick_return", 1, ".live .block"),
+        ("parallel_motion", 0, ".others .curve.other"),
+        ("dwell", 1, ".live .block"),
+        ("straight_line", 1, ".faint.toggle"),
+    ],
+)
+def test_other_linkages_have_their_parts(studio, kind, n, kind_of_link):
+    page = studio.page
+    solved(studio, examples(kind)[n])
+    assert page.locator(kind_of_link).count() >= 1
+    assert page.locator(".gauge .reading").inner_text().endswith("°")
+    links = page.locator(".live .link").evaluate_all("links => links.map(one => one.getAttribute('d'))")
+    assert all(links), "every link is drawn"
+    studio.screen(f"view-{kind}-{n}")
