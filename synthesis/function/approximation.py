@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog, minimize
+from scipy.optimize import minimize
 
 from synthesis.function.levelling import levelled
 from synthesis.function.limits import Limits
@@ -32,6 +32,7 @@ from synthesis.function.precision import family, many_exact
 from synthesis.function.structural_error import ERROR, STEPS, Generators
 from synthesis.function.task import FunctionTask
 from synthesis.kinds import Progress
+from synthesis.numerics.linear_program import least
 
 Real = NDArray[np.float64]
 
@@ -353,21 +354,20 @@ class _Descent:
         limited = np.hstack([g_slopes[:, free], np.zeros((len(g), 1)), -np.ones((len(g), 1))])
         low, high = self._scale_rows(at)
         bounded = self.free & (np.arange(STEPS) >= 5)
-        bounds = [
-            (max(-trust, low[j]) if bounded[j] else -trust, min(trust, high[j]) if bounded[j] else trust) for j in free
-        ]
-        done = linprog(
+        floors = [max(-trust, low[j]) if bounded[j] else -trust for j in free]
+        ceilings = [min(trust, high[j]) if bounded[j] else trust for j in free]
+        done = least(
             np.concatenate([np.zeros(len(free)), [1.0, PENALTY / unit]]),
-            A_ub=np.vstack([upper, lower, limited]),
-            b_ub=np.concatenate([-errors[rows] / unit, errors[rows] / unit, -g]),
-            bounds=[*bounds, (0.0, None), (0.0, None)],
-            method="highs",
+            np.vstack([upper, lower, limited]),
+            np.concatenate([-errors[rows] / unit, errors[rows] / unit, -g]),
+            np.array([*floors, 0.0, 0.0]),
+            np.array([*ceilings, np.inf, np.inf]),
         )
-        if done.status != 0:
+        if done is None:
             return None, math.inf
         step = np.zeros(STEPS)
-        step[free] = done.x[: len(free)]
-        return step, float(done.fun) * unit
+        step[free] = done.at[: len(free)]
+        return step, done.value * unit
 
     def least_squares(self, at: Real, sign: float, rounds: int) -> Approximation:
         """Sequential quadratic programs from one generator."""

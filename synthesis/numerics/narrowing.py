@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
+
+from synthesis.numerics.linear_program import least
 
 Real = NDArray[np.float64]
 
@@ -207,11 +208,15 @@ def _step(
     limit[2 * k + 2 * j :] = here.positive[0] / unit
     cost = np.zeros(n + 4)
     cost[n + 2], cost[n + 3] = 1.0, penalty
-    bounds = [*zip(low / reach, high / reach, strict=True), (None, None), (None, None), (0.0, None), (0.0, None)]
-    done = linprog(cost, matrix, limit, bounds=bounds, method="highs")
-    if done.status != 0:
+    floors = np.array([*(low / reach), -np.inf, -np.inf, 0.0, 0.0])
+    ceilings = np.array([*(high / reach), np.inf, np.inf, np.inf, np.inf])
+    # Rows that no step within the bounds can break, whatever the unknowns beside it are, only cost time.
+    slack = limit - np.where(matrix[:, :n] > 0.0, matrix[:, :n] * ceilings[:n], matrix[:, :n] * floors[:n]).sum(axis=1)
+    needed = (matrix[:, n : n + 2] != 0.0).any(axis=1) | ~(slack >= 0.0)
+    done = least(cost, matrix[needed], limit[needed], floors, ceilings)
+    if done is None:
         return None, np.inf
-    return np.asarray(done.x[:n]) * reach, float(done.fun) * unit
+    return done.at[:n] * reach, done.value * unit
 
 
 def _middle(values: Real) -> float:

@@ -76,12 +76,27 @@ def test_every_row_of_nortons_table_is_beaten(case: Case) -> None:
     across, velocity = errors(problem, best)
     assert np.isclose(best.metrics.straightness_error, across, rtol=1e-3)
     assert np.isclose(best.metrics.velocity_variation, velocity, rtol=1e-3)
-    printed = case.expected["dCy_pct" if measure == "straightness" else "dV_pct"]
-    assert (across if measure == "straightness" else velocity) <= 0.97 * (printed.value + printed.tolerance)
-    if measure == "velocity":
+    # Printed digits are few: 0.001 % stands for 0.0012 %. The linkage of the row itself is the harder measure.
+    row = norton_path(x["L1_over_L2"], x["L3_over_L2_exact"], x["dbeta"])
+    speed = np.diff(row.real)
+    rows_across, rows_velocity = np.ptp(row.imag) / np.ptp(row.real), np.ptp(speed) / speed.mean()
+    # The print was sampled in steps of 2°.
+    assert np.isclose(100.0 * rows_across, case.expected["dCy_pct"].value, rtol=2e-3, atol=5e-4)
+    assert np.isclose(100.0 * rows_velocity, case.expected["dV_pct"].value, rtol=5e-3, atol=5e-4)
+    if measure == "straightness":
+        assert across <= 0.97 * 100.0 * rows_across
+    else:
+        assert velocity <= 0.97 * 100.0 * rows_velocity
         assert across <= 1.02 * (case.expected["dCy_pct"].value + 0.05)
     assert best.metrics.full_rotation
     assert np.isclose(best.metrics.cycle_transmission_angle, least_over_a_turn(best), atol=1e-6)
+
+
+def norton_path(ground: float, coupler: float, span: float, steps: int = 20001) -> np.ndarray:
+    """P of Hoeken's linkage with a crank of 1 over a range about 180°; A P is the diameter of a circle through O4."""
+    pin = np.exp(1j * np.radians(180.0 + span * np.linspace(-0.5, 0.5, steps))) - ground
+    point = 1j * pin * np.sqrt(4.0 * coupler**2 / np.abs(pin) ** 2 - 1.0)
+    return point * np.sign(point[-1].real - point[0].real)
 
 
 def least_over_a_turn(design: StraightLineDesign) -> float:
