@@ -93,6 +93,8 @@ def _too_large(limit: int) -> Refusal:
 
 
 def _parsed(body: bytes) -> Any:
+    if _surely_has_more_values_than(body, MAX_VALUES):
+        raise _too_many()
     # This parser bounds depth and digits by itself, and passes NaN and 1e999 on to the validation, which knows the
     # field that they are in.
     try:
@@ -101,8 +103,28 @@ def _parsed(body: bytes) -> Any:
         # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
         raise malformed_json(f"The body is not valid JSON: {error}.") from None
     if _has_more_values_than(parsed, MAX_VALUES):
-        raise Refusal(422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.")
+        raise _too_many()
     return parsed
+
+
+def _too_many() -> Refusal:
+    return Refusal(422, "invalid-request", "Invalid request", f"The body holds more than {MAX_VALUES} values.")
+
+
+def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
+    """Whether the punctuation alone says so: a comma stands between two values, and each list or object is one.
+
+    Half a million lists take a third of a second to make and to collect again; counting their brackets takes a
+    millisecond. What passes has at most twice the limit.
+    """
+    if len(body) <= limit:
+        return False
+    if b'"' in body:
+        # What is between quotes is no punctuation. Behind a backslash a quote does not end its string.
+        body = b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
+    lists = min(body.count(b"["), body.count(b"]"))
+    objects = min(body.count(b"{"), body.count(b"}"))
+    return body.count(b",") > limit or lists + objects > limit + 1
 
 
 def _has_more_values_than(parsed: Any, limit: int) -> bool:

@@ -54,7 +54,6 @@ MALFORMED = {
     "nul byte": b'{"problem": {}}\x00',
     "control character in a string": b'{"problem": {}, "label": "a\x01"}',
     "deep lists": b"[" * 100_000,
-    "deep and closed": b'{"problem": ' + b"[" * 50_000 + b"]" * 50_000 + b"}",
     "deep objects": b'{"a":' * 100_000,
     "5000 digits": with_x("1" * 5000),
     "a million digits": with_x("1" * 1_000_000),
@@ -115,7 +114,11 @@ INVALID = {
 ENORMOUS = {
     "a million positions": raw('{"kind": "motion", "positions": [' + "0," * 500_000 + "0]}"),
     "a hundred thousand unknown fields": raw("{" + ",".join(f'"{n:x}":0' for n in range(100_000)) + "}"),
+    "deep and closed": raw("[" * 50_000 + "]" * 50_000),
     "many empty lists": raw("[" + "[]," * 340_000 + "[]]"),
+    "many deep lists": raw("[" + ("[" * 99 + "]" * 99 + ",") * 5000 + "[]]"),
+    "many small objects": raw("[" + '{"a":{"b":{"c":{}}}},' * 47_000 + "{}]"),
+    "many strings of quotes": raw("[" + r'"\"\\",' * 130_000 + "0]"),
     "one name many times": raw("{" + '"kind":"motion",' * 60_000 + '"kind":"motion"}'),
     "a long string": raw('"' + "x" * (MIB - 100) + '"'),
     "a long field name": raw('{"' + "x" * (MIB - 100) + '": 0}'),
@@ -173,6 +176,13 @@ def test_every_field_of_every_kind_spoilt(client, kind):
     for name, body in bodies.items():
         status, _ = refused(client, body)
         assert status in (400, 422), name
+
+
+def test_punctuation_within_strings_is_not_counted(client):
+    """What looks like a hundred thousand values is two strings; they are refused for what they are."""
+    status, problem = refused(client, raw(r'{"kind": "[{,}]\"\\' + "[,]{,}" * 50_000 + '", "a": "\\\\"}'))
+    assert status == 422
+    assert [error["path"] for error in problem["errors"]] == ["/problem/kind"]
 
 
 def test_at_most_twenty_faults_are_listed(client):
