@@ -27,7 +27,7 @@ ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 P = ParamSpec("P")
 
 
-def _analyst(request: Request) -> Analyst:
+async def _analyst(request: Request) -> Analyst:
     analyst = request.app.state.analyst
     assert isinstance(analyst, Analyst)
     return analyst

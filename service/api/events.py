@@ -38,7 +38,7 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
-def _feed(request: Request) -> Feed:
+async def _feed(request: Request) -> Feed:
     feed = request.app.state.feed
     assert isinstance(feed, Feed)
     return feed

@@ -67,7 +67,7 @@ def _key(request: Request) -> str | None:
     return key.strip() if scheme.lower() == "bearer" else None
 
 
-def _tenant(request: Request) -> str:
+async def _tenant(request: Request) -> str:
     tenant = request.state.tenant
     assert isinstance(tenant, str)
     return tenant

@@ -43,7 +43,7 @@ NO_JOB = "There is no job with this id."
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
 
 
-def _desk(request: Request) -> JobDesk:
+async def _desk(request: Request) -> JobDesk:
     desk = request.app.state.desk
     assert isinstance(desk, JobDesk)
     return desk
