@@ -18,10 +18,11 @@ from service.access.keys import KeyStore
 from service.analyst import Analyst
 from service.api import analyses, docs, errors, events, health, jobs, metrics, problems, studio
 from service.jobs.changes import Changes
-from service.jobs.database import connect, upgrade
+from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
 from service.jobs.feed import Feed
+from service.jobs.finished import CAPACITY_BYTES, FinishedJobs
 from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
 from service.metrics import Metrics
@@ -58,12 +59,14 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
                 executor.submit(job_id)
             if unfinished:
                 log.info("unfinished jobs taken up again", jobs=len(unfinished))
-            app.state.desk = JobDesk(store, executor, changes, measured, settings.max_queued)
+            # A SQLite store has one server; of any other, another server may remove a job.
+            finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
+            app.state.desk = JobDesk(store, executor, changes, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
             feed = app.state.feed = Feed(store, changes)
             measured.watch(lambda: feed.listeners, executor.ready, store.unfinished)
             following = asyncio.create_task(feed.run())
-            tidying = asyncio.create_task(keep_tidy(store, settings.retention_days))
+            tidying = asyncio.create_task(keep_tidy(store, finished, settings.retention_days))
             yield
             tidying.cancel()
             changes.close()

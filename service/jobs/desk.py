@@ -11,6 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from service.jobs.changes import Changes
 from service.jobs.executor import Executor
+from service.jobs.finished import FinishedJobs
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
 from service.jobs.store import JobStore, Repeatable
@@ -29,6 +30,7 @@ class JobDesk:
     changes: Changes
     metrics: Metrics
     max_queued: int
+    finished: FinishedJobs
 
     async def accept(
         self,
@@ -94,7 +96,12 @@ class JobDesk:
 
     async def get(self, tenant: str, job_id: str) -> JobRow | None:
         """The job, or None where the tenant has none such. Another tenant's job is none."""
-        job = await run_in_threadpool(self.store.get, job_id)
+        job = self.finished.get(job_id)
+        if job is None:
+            removals = self.finished.removals
+            job = await run_in_threadpool(self.store.get, job_id)
+            if job is not None:
+                self.finished.keep(job, removals)
         return job if job is not None and job.tenant == tenant else None
 
     async def page(
@@ -115,7 +122,10 @@ class JobDesk:
         if job is None:
             return None
         if job.status.finished:
-            return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None
+            try:
+                return "deleted" if await run_in_threadpool(self.store.delete, job_id) else None
+            finally:
+                self.finished.removed(job_id)
         if await run_in_threadpool(self.store.cancel, job_id):
             log.info("job cancelled", job=job_id, was=job.status)
             self.executor.cancel(job_id)

@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 import structlog
 from starlette.concurrency import run_in_threadpool
 
+from service.jobs.finished import FinishedJobs
 from service.jobs.store import JobStore
 
 AT_ONCE = 200
@@ -20,7 +21,7 @@ _PAUSE_S = 0.05
 log = structlog.get_logger(__name__)
 
 
-async def keep_tidy(store: JobStore, days: float | None) -> None:
+async def keep_tidy(store: JobStore, finished: FinishedJobs, days: float | None) -> None:
     """Remove jobs that finished more than ``days`` ago, now and again and again; nothing where ``days`` is None."""
     if days is None:
         return
@@ -31,6 +32,7 @@ async def keep_tidy(store: JobStore, days: float | None) -> None:
         try:
             while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, AT_ONCE):
                 removed += gone
+                finished.removed()
                 await asyncio.sleep(_PAUSE_S)
         except Exception:  # whatever a database driver raises: the jobs are still there the next time
             log.exception("old jobs could not be removed")
