@@ -14,6 +14,7 @@ REAL = ("-m", "service.cli")
 SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
 START_S = 90.0  # the first start ever compiles the kernels
 STOP_S = 60.0  # how long it takes in good health is for the tests of that; a machine may be ten times as busy
+REACHED_S = 60.0  # a worker may have to be started first
 PROBLEM = {
     "kind": "motion",
     "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 10.0, "y": 5.0, "angle": 30.0}],
@@ -79,7 +80,7 @@ class RunningServer:
         assert answer.status_code == 200, answer.text
         return answer.json()
 
-    def reaches(self, job_id, status, seconds=20.0):
+    def reaches(self, job_id, status, seconds=REACHED_S):
         """The job once it has the status."""
 
         def there():
