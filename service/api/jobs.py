@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+from importlib.metadata import version
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
@@ -23,6 +24,7 @@ from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused, QueueFull
+from service.loading import IMPORTS
 from service.render import Form
 from service.telemetry import span
 from synthesis.kinds import KINDS, example
@@ -322,6 +324,66 @@ def _rendered(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
         return render.exported(designs[n], problem, title, form)
     except render.NoSuchExport:
         raise not_found(f"There is no .{form} file of this type of mechanism.") from None
+
+
+class ReportScope(BaseModel):
+    """How much of a job is reported."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    designs: int = Field(
+        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
+    )
+
+
+@router.get(
+    "/{job_id}/report.html",
+    operation_id="report_job",
+    summary="Report a job",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The page.",
+            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
+            "headers": {
+                "Content-Security-Policy": {
+                    "description": "Nothing but the page's own style sheet, by its hash.",
+                    "schema": _TEXT,
+                }
+            },
+        },
+        **errors.responses(
+            e404=NO_JOB,
+            e409="The job has no result (yet).",
+            e422="A parameter is not valid; `errors` says which.",
+        ),
+    },
+)
+async def report_job(desk: Desk, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]) -> Response:
+    """The job as one self-contained page for paper.
+
+    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
+    """
+    job, result = await _solved(desk, tenant, job_id)
+    with span("report"):
+        page, policy = await run_in_threadpool(_reported, job, result, query.designs)
+    headers = {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
+    }
+    return Response(page, media_type="text/html", headers=headers)
+
+
+def _reported(job: JobRow, result: str, most: int) -> tuple[str, str]:
+    with IMPORTS:
+        from service.render.report import POLICY, Occasion, report
+
+    kind = KINDS[job.kind]
+    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
+    problem = kind.problem.model_validate_json(job.problem)
+    return report(problem, kind.result.model_validate_json(result), occasion, most), POLICY
 
 
 class MotionSteps(BaseModel):

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import inspect
 from functools import cache
+from typing import Any, get_args
 
 from fastapi import APIRouter
+from pydantic import BaseModel
 
 from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
-from synthesis.kinds import KINDS, example
+from service.render import forms
+from service.units import annotated
+from synthesis.kinds import KINDS, Kind, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
 
@@ -30,9 +34,24 @@ def _kinds() -> ProblemKinds:
                 kind=name,
                 title=kind.problem.model_config.get("title") or name,
                 description=inspect.getdoc(kind.problem) or "",
-                schema=kind.problem.model_json_schema(),
+                schema=annotated(kind.problem.model_json_schema(), kind.problem.__name__),
                 example=example(name),
+                files={one: list(found) for one in _mechanisms(kind) if (found := forms(name, one))},
             )
             for name, kind in KINDS.items()
         ]
     )
+
+
+def _mechanisms(kind: Kind) -> list[str]:
+    """The types of mechanisms that designs of a kind can have."""
+    designs = _models(kind.result.model_fields["designs"].annotation)
+    mechanisms = [one for design in designs for one in _models(design.model_fields["mechanism"].annotation)]
+    return [name for one in mechanisms for name in get_args(one.model_fields["type"].annotation)]
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    """The models that a type is made of."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for one in get_args(annotation) for model in _models(one)]

@@ -94,8 +94,15 @@ class ProblemKind(BaseModel):
     kind: str = Field(examples=list(KINDS))
     title: str
     description: str
-    schema_: dict[str, Any] = Field(alias="schema", description="JSON schema of the problem.")
+    schema_: dict[str, Any] = Field(
+        alias="schema",
+        description="JSON schema of the problem. `x-dimension` says what a number measures: a length in the problem's "
+        "unit, an angle in degrees, ...; pure numbers have none.",
+    )
     example: dict[str, Any] = Field(description="A problem of this kind that runs as it is.")
+    files: dict[str, list[str]] = Field(
+        description="By the type of mechanism, the files that there are of its designs: svg, gif, dxf, csv."
+    )
 
 
 class ProblemKinds(BaseModel):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from service.loading import IMPORTS
 
-__all__ = ["Form", "NoSuchExport", "exported"]
+__all__ = ["Form", "NoSuchExport", "exported", "forms"]
 
 Form = Literal["svg", "gif", "dxf", "csv"]
 
@@ -20,8 +20,6 @@ _LINKAGE: dict[Form, str] = {
 
 _UNDRAWN: dict[Form, str] = {form: maker for form, maker in _LINKAGE.items() if form != "svg"}
 """Of types whose sheet is that of a kind of problem."""
-
-_MOVING: dict[Form, str] = {"gif": "service.render.linkage_animation:linkage_animation"}
 
 EXPORTS: dict[str, dict[Form, str]] = {
     "cam": {
@@ -47,9 +45,13 @@ EXPORTS: dict[str, dict[Form, str]] = {
     "drag_link_rocker": _UNDRAWN,
     "drag_link_slider": _UNDRAWN,
     "davis": _UNDRAWN,
-    "peaucellier": _MOVING,
-    "hart": _MOVING,
-    "scott_russell": _MOVING,
+    "peaucellier": _UNDRAWN,
+    "hart": _UNDRAWN,
+    "scott_russell": _UNDRAWN,
+    "dwell_rocker": _UNDRAWN,
+    "dwell_slider": _UNDRAWN,
+    "dwell_slot": _UNDRAWN,
+    "watt_1": _UNDRAWN,
     "gear_train": {
         "svg": "service.render.gear_sheet:gear_train_sheet",
         "gif": "service.render.gear_animation:gear_train_animation",
@@ -94,6 +96,16 @@ class NoSuchExport(LookupError):
     """This type of mechanism has no file of this form."""
 
 
+def forms(kind: str, mechanism: str) -> list[Form]:
+    """The forms of files that there are of a type of mechanism in answers to a kind of problem."""
+    makers = _makers(kind, mechanism)
+    return [form for form in get_args(Form) if form in makers]
+
+
+def _makers(kind: str, mechanism: str) -> dict[Form, str]:
+    return {**EXPORTS.get(mechanism, {}), **EXPORTS_OF_KIND.get(kind, {})}
+
+
 def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     """A design as the text of a file, or its bytes where it is an animation.
 
@@ -119,10 +131,10 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     NoSuchExport
         Where there is no such file of this type of mechanism.
     """
-    forms = {**EXPORTS.get(design.mechanism.type, {}), **EXPORTS_OF_KIND.get(problem.kind, {})}
-    if form not in forms:
+    makers = _makers(problem.kind, design.mechanism.type)
+    if form not in makers:
         raise NoSuchExport(design.mechanism.type, form)
-    module, function = forms[form].split(":")
+    module, function = makers[form].split(":")
     with IMPORTS:
         make = getattr(import_module(module), function)
     file: str | bytes = make(design, problem, title)

@@ -55,7 +55,7 @@ def test_every_kind_is_listed_with_an_example_that_runs(client):
     kinds = client.get("/v1/problems").json()["problems"]
     assert [kind["kind"] for kind in kinds] == list(KINDS)
     for kind in kinds:
-        assert set(kind) == {"kind", "title", "description", "schema", "example"}
+        assert set(kind) == {"kind", "title", "description", "schema", "example", "files"}
         assert kind["schema"]["type"] == "object"
         assert kind["title"]
         job = client.post("/v1/jobs", json={"problem": kind["example"]}, headers={"Prefer": "wait=30"}).json()

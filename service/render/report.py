@@ -1,0 +1,223 @@
+"""The report of a job: one self-contained page of the problem, the answer, the designs and what is proven of them.
+
+It is made for paper: light, without scripts, with its one style sheet inside, which is named by its hash in the
+:data:`POLICY` under which the page is served and which it repeats for itself, so that it holds for a saved file too.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from service.render import NoSuchExport, exported
+from service.render.numbers import length
+from service.render.outline import Outline, outline, words, written
+from service.render.svg import clean
+from service.units import Dimension, dimension, symbols
+from synthesis.designs import Check, Result, Search
+from synthesis.problems import StatedProblem
+
+UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
+
+_HERE = files("service").joinpath("render")
+_STYLE = _HERE.joinpath("report.css").read_text(encoding="utf-8")
+_HASH = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
+
+_OWN_POLICY = f"default-src 'none'; style-src 'sha256-{_HASH}'; base-uri 'none'; form-action 'none'"
+
+POLICY = f"{_OWN_POLICY}; frame-ancestors 'none'"
+"""Nothing but the page's own style sheet; a page cannot state the last part for itself."""
+
+_ENVIRONMENT = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+_PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encoding="utf-8"))
+
+
+@dataclass(frozen=True)
+class Occasion:
+    """Which job is reported: what is not in its problem and its result."""
+
+    job: str
+    kind: str
+    label: str | None
+    accepted: str
+    finished: str | None
+    version: str
+
+    def told(self) -> str:
+        """The job in a line, its times to the second."""
+        times = [f"accepted {_readable(self.accepted)}"]
+        if self.finished is not None:
+            times.append(f"finished {_readable(self.finished)}")
+        return f"Job {self.job}, {', '.join(times)}; mechsynth {self.version}."
+
+
+def _readable(time: str) -> str:
+    return f"{time[:19].replace('T', ' ')} UTC"
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A check in words."""
+
+    name: str
+    passed: bool
+    value: str
+    limit: str
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A design in full: its drawing, its checks, and its numbers by heading."""
+
+    number: int
+    name: str
+    passed: bool
+    drawing: str
+    checks: list[Checked]
+    parts: list[tuple[str, Outline]]
+
+
+def report(problem: StatedProblem, result: Result[Any], occasion: Occasion, most: int) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    problem, result
+        What was asked and what was answered.
+    occasion : Occasion
+        The job.
+    most : int
+        Designs that are shown in full, the best first; all are listed.
+
+    Returns
+    -------
+    str
+        HTML; the same arguments give the same text.
+    """
+    units = symbols(problem)
+    title = problem.model_config.get("title") or words(occasion.kind)
+    heading = clean(occasion.label or "") or title
+    sheets = [_sheet(design, n, problem, f"{heading}, design {n}", units) for n, design in enumerate(result.designs)][
+        :most
+    ]
+    return _PAGE.render(
+        title=title,
+        heading=heading,
+        occasion=occasion,
+        length_unit=UNITS[problem.length_unit],
+        style=Markup(_STYLE),
+        policy=_OWN_POLICY,
+        about=(type(problem).__doc__ or "").split("\n\n")[0].replace("\n", " ").strip(),
+        problem=outline(problem, units, leave_out={"kind"}, last=StatedProblem.model_fields.keys() - {"kind"}),
+        summary=result.summary,
+        proven=_proven(result),
+        search=outline(result.search, units),
+        more=outline(result, units, leave_out={"designs", "search", "summary", "curves"}),
+        ranking=_ranking(result, units),
+        sheets=sheets,
+    )
+
+
+def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[Dimension, str]) -> Sheet:
+    try:
+        drawing = exported(design, problem, title, "svg")
+        assert isinstance(drawing, str)
+    except NoSuchExport:
+        drawing = ""
+    parts = [
+        ("Dimensions", outline(design.mechanism, units, leave_out={"type", "skeleton"})),
+        ("Quantities", outline(design.metrics, units)),
+        ("As it was driven", outline(design, units, leave_out={"mechanism", "metrics", "verification"})),
+    ]
+    skeleton = getattr(design.mechanism, "skeleton", None)
+    if skeleton is not None:
+        parts.append(("Skeleton: the joints at the first target, and the rigid links", outline(skeleton, units)))
+    return Sheet(
+        number=n,
+        name=words(design.mechanism.type),
+        passed=design.verification.passed,
+        # The writers of drawings escape what they are given; a declaration has no place inside a page.
+        drawing=Markup(drawing[drawing.index("<svg") :]) if drawing else "",
+        checks=[_checked(check, units) for check in design.verification.checks],
+        parts=[(heading, found) for heading, found in parts if found.rows or found.lists],
+    )
+
+
+def _checked(check: Check, units: dict[Dimension, str]) -> Checked:
+    measured = dimension("Check", check.name)
+    unit = f" {units[measured]}" if measured is not None else ""
+
+    def amount(value: float | None) -> str:
+        return "" if value is None else f"{length(value)}{unit}"
+
+    return Checked(words(check.name), check.passed, amount(check.value), amount(check.limit))
+
+
+def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int, str, bool, list[tuple[str, str]]]]:
+    """All designs with the first of their quantities."""
+    found = []
+    for n, design in enumerate(result.designs):
+        plain = [
+            (name, value)
+            for name, value in design.metrics
+            if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool))
+        ]
+        plain.sort(key=lambda one: one[0] not in _TELLING)
+        figures = []
+        for name, value in plain[:4]:
+            measured = dimension(type(design.metrics).__name__, name)
+            figures.append((words(name), written(value) + ("" if measured is None else f" {units[measured]}")))
+        found.append((n, words(design.mechanism.type), design.verification.passed, figures))
+    return found
+
+
+_TELLING = {
+    "quality",
+    "min_transmission_angle",
+    "rms_residual",
+    "max_structural_error",
+    "steering_error",
+    "relative_error",
+    "max_error",
+    "error",
+    "total_teeth",
+    "tooth_sum",
+    "size",
+    "jitter",
+    "deviation",
+}
+"""Quantities by which designs are compared, where they have them."""
+
+
+def _proven(result: Result[Any]) -> list[str]:
+    """What is known, in sentences."""
+    search: Search = result.search
+    passed = sum(design.verification.passed for design in result.designs)
+    count = len(result.designs)
+    known = []
+    if search.complete:
+        known.append(
+            "The search is complete: it has left out nothing that the problem allows; the best designs are shown."
+            if count
+            else "The search is complete: no design exists that does what is demanded."
+        )
+    else:
+        known.append(
+            "The search is not complete: there may be other designs, and better ones."
+            if count
+            else "None was found; that is no proof that none exists."
+        )
+    if count:
+        known.append(
+            f"Verified by driving the finished mechanism, from its dimensions alone: {passed} of {count} designs pass "
+            "every check."
+        )
+    if getattr(search, "sizing_proven", False):
+        known.append("No smaller cam carries this program within the limits.")
+    return known

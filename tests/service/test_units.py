@@ -1,0 +1,88 @@
+"""What each number measures: as the fields' own descriptions say it, and in the units of the problem."""
+
+import pytest
+
+from service.units import annotated, dimension, symbols
+from synthesis.kinds import KINDS, example, examples, parse_problem
+
+# They speak of degrees and are none, or are not in the same unit for all mechanisms of their kind.
+MIXED = {"SteeringPosition.input_angle", "Scales.input", "Scales.output", "Target.residual"}
+
+
+def numeric(schema):
+    if schema.get("type") == "number":
+        return True
+    inner = [one for key in ("anyOf", "oneOf", "prefixItems") for one in schema.get(key, [])]
+    inner += [schema[key] for key in ("items", "additionalProperties") if isinstance(schema.get(key), dict)]
+    return any(numeric(one) for one in inner)
+
+
+def numbers(kind):
+    """Every number of a kind's problem and result: model, field and schema."""
+    for model, mode in ((KINDS[kind].problem, "validation"), (KINDS[kind].result, "serialization")):
+        root = model.model_json_schema(mode=mode)
+        for name, part in [(model.__name__, root), *root.get("$defs", {}).items()]:
+            for field, schema in part.get("properties", {}).items():
+                if numeric(schema):
+                    yield name, field, schema
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_field_that_says_its_unit_has_the_dimension(kind):
+    seen = 0
+    for model, field, schema in numbers(kind):
+        if f"{model}.{field}" in MIXED:
+            continue
+        says, found = schema.get("description", "").lower(), dimension(model, field)
+        if "degrees, or length units" in says or "degrees, or place along" in says:
+            assert found == "output", (model, field)
+        elif "degrees" in says:
+            assert found in ("angle", "output"), (model, field)
+        elif "length units squared" in says:
+            assert found == "area", (model, field)
+        elif "revolutions a minute" in says:
+            assert found == "rotational speed", (model, field)
+        elif "length unit" in says:
+            assert str(found).startswith(("length", "inverse length", "stiffness", "output")), (model, field)
+        seen += 1
+    assert seen > 3
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_lengths_and_angles_by_their_names(kind):
+    for model, field, _ in numbers(kind):
+        if field.endswith("_angle") and f"{model}.{field}" not in MIXED:
+            assert dimension(model, field) == "angle", (model, field)
+        if field.endswith(("_radius", "_distance", "_length")):
+            assert dimension(model, field) == "length", (model, field)
+        if field.endswith("_ratio"):
+            assert dimension(model, field) is None, (model, field)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_dimension_has_a_symbol(kind):
+    units = symbols(parse_problem(example(kind)))
+    for model, field, _ in numbers(kind):
+        found = dimension(model, field)
+        assert found is None or units[found]
+
+
+def test_the_units_are_those_of_the_problem():
+    inches = symbols(parse_problem({**example("motion"), "length_unit": "in"}))
+    assert (inches["length"], inches["area"], inches["force"]) == ("in", "in²", "lbf")
+    flat = next(one for one in examples("cam") if one["follower"]["type"] == "translating_flat")
+    assert symbols(parse_problem(flat))["displacement"] == "mm"
+    arm = {"type": "oscillating_roller", "roller_radius": 5.0, "arm": 40.0, "pivot_distance": 60.0}
+    turned = symbols(parse_problem({**example("cam"), "follower": arm}))
+    assert (turned["displacement"], turned["velocity"]) == ("°", "rad/rad")
+    assert symbols(parse_problem(examples("function")[2]))["output"] == "mm"
+    assert symbols(parse_problem(examples("function")[1]))["output"] == "°"
+
+
+def test_a_schema_says_what_its_numbers_measure():
+    problem = KINDS["motion"].problem
+    schema = annotated(problem.model_json_schema(), problem.__name__)
+    position = schema["$defs"]["Position"]["properties"]
+    assert (position["x"]["x-dimension"], position["angle"]["x-dimension"]) == ("length", "angle")
+    assert "x-dimension" not in schema["properties"]["max_designs"]
+    assert "x-dimension" not in str(problem.model_json_schema()), "the model's own schema stays as it is"
