@@ -60,6 +60,10 @@ class BarrelCamAnalysisRequest(AnalysisRequest):
     motion: StatedMotion = Sweep()
     load: Load | None = None
 
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        return self.motion.faults()
+
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`BarrelCamAnalysis`."""
         at, speed, time = self.motion.inputs()

@@ -72,11 +72,12 @@ class CamshaftAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
+        found = self.motion.faults()
         if self.motion.rate <= 0.0:
-            return [("/motion/speed", "the shaft must turn with a speed that is positive")]
+            found.append(("/motion/speed", "the shaft must turn with a speed that is positive"))
         if self.motion.acceleration != 0.0:
-            return [("/motion/acceleration", "the torques are those of a steady speed; leave it out")]
-        return []
+            found.append(("/motion/acceleration", "the torques are those of a steady speed; leave it out"))
+        return found
 
     def answer(self) -> dict[str, Any]:
         """The shaft's torque over the motion, in the shape of :class:`CamshaftAnalysis`."""

@@ -43,6 +43,10 @@ class ContourCamAnalysisRequest(AnalysisRequest):
     mechanism: GivenContourCam
     motion: StatedMotion = Sweep()
 
+    def faults(self) -> list[tuple[str, str]]:
+        """What no single field shows."""
+        return self.motion.faults()
+
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`ContourCamAnalysis`."""
         contour, follower = self.mechanism.core()

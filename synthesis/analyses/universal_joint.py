@@ -84,12 +84,14 @@ class UniversalJointRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        limits = self.limits
+        found, limits = self.motion.faults(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
-            return [("/limits", "state the fluctuation, or a least or greatest ratio")]
+            found.append(("/limits", "state the fluctuation, or a least or greatest ratio"))
         if self.mechanism.joints[0].offset != 0.0:
-            return [("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")]
-        return []
+            found.append(
+                ("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")
+            )
+        return found
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`UniversalJointAnalysis`."""
