@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import os
 import socket
 from collections.abc import Sequence
 
@@ -24,11 +25,17 @@ GRACE_S = 2
 
 _READY_PERIOD_S = 0.02
 
+_OPENTELEMETRY = {"OTEL_SERVICE_NAME": "mechsynth", "OTEL_EXPORTER_OTLP_TIMEOUT": "1"}
+"""Where its exporters are asked for and nothing else is said. The last sending of each is waited for when the service
+stops, and a collector that is not there must not hold that up for the usual ten seconds each."""
+
 
 class WebServer(uvicorn.Server):
     """Serves the application on a bound socket until SIGINT or SIGTERM."""
 
     def __init__(self, settings: Settings, executor: Executor, metrics: Metrics) -> None:
+        for name, value in _OPENTELEMETRY.items():
+            os.environ.setdefault(name, value)
         self._app = create_app(settings, executor, metrics)
         self._executor = executor
         self._announcement: asyncio.Task[None] | None = None

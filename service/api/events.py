@@ -38,6 +38,28 @@ _HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
 _EVENT_ID = re.compile(f"([0-9]{{1,9}})-({'|'.join(Status)})")
 
 
+_EVENT = {
+    "type": "object",
+    "required": ["event", "data"],
+    "properties": {
+        "event": {"type": "string", "enum": ["state", "progress", "removed"]},
+        "data": {
+            "type": "string",
+            "contentMediaType": "application/json",
+            "contentSchema": {
+                "anyOf": [
+                    {"$ref": "#/components/schemas/JobListItem"},
+                    {"$ref": "#/components/schemas/Progress"},
+                    {"type": "object", "maxProperties": 0},
+                ]
+            },
+        },
+        "id": {"type": "string", "pattern": f"^{_EVENT_ID.pattern}$", "examples": ["7-running"]},
+        "retry": {"type": "integer"},
+    },
+}
+
+
 async def _feed(request: Request) -> Feed:
     feed = request.app.state.feed
     assert isinstance(feed, Feed)
@@ -59,7 +81,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
             "description": "Events until the job has ended: `state` (the job as in a list) whenever its state changes, "
             "first of all the present one, and `progress` in between. The event of the final state is the last one; "
             "a job that is removed before anybody has seen it end ends with `removed`.",
-            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+            "content": {"text/event-stream": {"itemSchema": _EVENT}},
         },
         204: {"description": "The client has the event of the final state already; it need not come again."},
         **errors.responses(e404=NO_JOB, e503="Too many clients listen at once."),
