@@ -6,8 +6,10 @@ their ends (to 1e-9 rad) and their assemblies must be the same, and each toggle 
 
     python -m benchmarks.circuits --designs 1000 [--type watt_2]
 
-Types that dyads close from their input, and geared fivebars of seven ratios. A line a type: designs, designs without a
-verdict (no series ended: two roots on one another), branches compared, differences, CPU seconds.
+Types that dyads close from their input, geared fivebars of six ratios, and those that no dyads close: these are
+eliminated from another link (``tests/oracles/turning.py``), and their circuits compared one by one. A line a type:
+designs, designs without a verdict (no series ended: two roots on one another), branches compared, differences, CPU
+seconds.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +26,7 @@ from kinematics.linkage.mechanism import Mechanism
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
 from tests.kinematics.test_branches import ELIMINATED, same_branches
+from tests.kinematics.test_circuits_from_other_links import TURNED, same_circuits
 from tests.oracles.elimination import Undecided
 
 TURNS = {0.5: 2, 2.0 / 3.0: 3}
@@ -31,13 +36,13 @@ SHOWN = 3
 """Differences that are printed for a type."""
 
 
-def compared(mechanism: Mechanism, count: int, turns: int) -> tuple[int, int, list[int]]:
+def compared(mechanism: Mechanism, count: int, same: Callable[[Mechanism], int]) -> tuple[int, int, list[int]]:
     """Branches that agree, designs without a verdict, and the numbers of designs that differ."""
     agreed = undecided = 0
     differ = []
     for k in range(count):
         try:
-            agreed += same_branches(take(mechanism, k), turns)
+            agreed += same(take(mechanism, k))
         except Undecided:
             undecided += 1
         except AssertionError:
@@ -54,19 +59,22 @@ def main() -> None:
     given = parser.parse_args()
     failed = 0
     print(f"{'type':<40}{'designs':>9}{'no verdict':>12}{'branches':>10}{'differ':>8}{'CPU s':>9}")
-    jobs: list[tuple[str, Mechanism, int]] = []
-    for name in ELIMINATED:
+    jobs: list[tuple[str, Callable[[], Mechanism], Callable[[Mechanism], int]]] = []
+    for name in (*ELIMINATED, *TURNED):
         rng = np.random.default_rng([given.seed, list(EVERY).index(name)])
-        if given.type in name:
-            jobs.append((name, EVERY[name](rng, given.designs), 1))
+        same = partial(same_circuits, name) if name in TURNED else same_branches
+        jobs.append((name, partial(EVERY[name], rng, given.designs), same))
     for n, ratio in enumerate(RATIOS):
-        if given.type in "geared fivebar":
-            rng = np.random.default_rng([given.seed + 1, n])
-            made = sampling.geared_fivebar(rng, given.designs, ratio)
-            jobs.append((f"geared fivebar, ratio {ratio:.3g}", made, TURNS.get(ratio, 1)))
-    for name, mechanism, turns in jobs:
+        rng = np.random.default_rng([given.seed + 1, n])
+        made = partial(sampling.geared_fivebar, rng, given.designs, ratio)
+        same = partial(same_branches, turns=TURNS.get(ratio, 1))
+        jobs.append((f"geared fivebar, ratio {ratio:.3g}", made, same))
+    for name, make, same in jobs:
+        if given.type not in name:
+            continue
+        mechanism = make()
         begun = time.process_time()
-        agreed, undecided, differ = compared(mechanism, given.designs, turns)
+        agreed, undecided, differ = compared(mechanism, given.designs, same)
         spent = time.process_time() - begun
         print(f"{name:<40}{given.designs:>9}{undecided:>12}{agreed:>10}{len(differ):>8}{spent:>9.1f}", flush=True)
         if differ:

@@ -184,21 +184,29 @@ def same_branches(mechanism: Mechanism, turns: int = 1) -> int:
 
 
 def shared(found: list[Branch], closing: list[str], period: float) -> None:
-    """Each toggle of a mechanism without change points is the end of two branches: only the folded assembly differs."""
+    """Each toggle of a mechanism without change points is the end of two branches: only the folded assembly differs.
+
+    Branches that are joined so, and no others, are one circuit.
+    """
+    joined = {n: {n} for n in range(len(found))}
     for high in (False, True):
-        for branch in found:
+        for n, branch in enumerate(found):
             if branch.full:
                 continue
             at, link = (branch.high, branch.high_closure) if high else (branch.low, branch.low_closure)
-            partners = 0
-            for other in found:
+            partners = []
+            for m, other in enumerate(found):
                 if other.full:
                     continue
                 there, folded = (other.high, other.high_closure) if high else (other.low, other.low_closure)
                 apart = abs(np.mod(there - at + period / 2.0, period) - period / 2.0)
                 differ = [k for k, a, b in zip(closing, branch.signs, other.signs, strict=True) if a != b]
-                partners += folded == link and differ == [link] and apart < 1e-9 and other.circuit == branch.circuit
-            assert partners == 1
+                if folded == link and differ == [link] and apart < 1e-9 and other.circuit == branch.circuit:
+                    partners.append(m)
+            assert len(partners) == 1
+            whole = joined[n] | joined[partners[0]]
+            joined |= dict.fromkeys(whole, whole)
+    assert len({frozenset(whole) for whole in joined.values()}) == len({branch.circuit for branch in found})
 
 
 @pytest.mark.parametrize("name", ELIMINATED)

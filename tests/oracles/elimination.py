@@ -17,8 +17,8 @@ begin or end.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -47,6 +47,17 @@ DEPTH = 40
 Pair = tuple[Complex, Complex]
 
 
+class Piece(NamedTuple):
+    """One assembly from ``low`` to ``high`` (or all round), and the numbers of the dyads that fold flat there."""
+
+    low: float
+    high: float
+    full: bool
+    choice: tuple[int, ...]
+    low_fold: int
+    high_fold: int
+
+
 class Undecided(Exception):
     """A product that no series of this order gives on however short a segment."""
 
@@ -67,6 +78,7 @@ class Elimination:
         size = max(abs(z - origin) for z in joints.values())
         self.joints = {name: (complex(z) - origin) / size for name, z in joints.items()}
         self.slides = [(j, link, (complex(x) - origin) / size, angle) for j, link, x, angle in slides]
+        self.size = float(size)
         self.links, self.gears, self.input, self.turns = links, gears, input, turns
         pivot = next(joint for joint in links[input] if joint in links["ground"])
         tip = next(joint for joint in links[input] if joint != pivot)
@@ -84,6 +96,12 @@ class Elimination:
 
     def radicands(self, theta: ArrayLike, choice: Sequence[int]) -> tuple[list[Complex], list[Complex]]:
         """Radicand of each dyad, and d d̄ (1 where nothing is divided by), at inputs, for one choice of assemblies."""
+        return self.configurations(theta, choice)[:2]
+
+    def configurations(
+        self, theta: ArrayLike, choice: Sequence[int]
+    ) -> tuple[list[Complex], list[Complex], dict[str, Pair]]:
+        """The same and every joint as a pair (z, z̄)."""
         turned = np.asarray(theta, complex) - self.start
         one = np.ones_like(turned)
         poses: dict[str, tuple[Complex, Complex]] = {"ground": (one, one)}
@@ -109,7 +127,7 @@ class Elimination:
         while len(poses) < len(self.links):
             if not (self._slide(poses, points, known, radicands, divisors, signs)):
                 self._links(poses, points, known, radicands, divisors, signs)
-        return radicands, divisors
+        return radicands, divisors, points
 
     def _slide(
         self, poses: Any, points: Any, known: Any, radicands: list[Complex], divisors: list[Complex], signs: Any
@@ -186,12 +204,16 @@ class Elimination:
 
     def candidates(self, level: int) -> Real:
         """Inputs near which a radicand may vanish, for any choice: all roots of the product, [0, 2π turns)."""
+        return self.roots(lambda theta: self._product(level, theta))
+
+    def roots(self, function: Callable[[Real], Real]) -> Real:
+        """Inputs near which a function that is smooth all round may vanish, [0, 2π turns)."""
         low = 2.0 * np.pi * np.arange(16 * self.turns) / 16.0
         width = np.full(len(low), 2.0 * np.pi / 16.0)
         found: list[float] = []
         for _ in range(DEPTH):
             theta = low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)
-            coefficients = self._product(level, theta) @ TO_COEFFICIENTS
+            coefficients = function(theta) @ TO_COEFFICIENTS
             size = np.abs(coefficients)
             resolved = size[:, -4:].max(axis=1) <= TAIL * size.max(axis=1)
             for k in np.flatnonzero(resolved & (size[:, 0] <= size[:, 1:].sum(axis=1))):
@@ -207,22 +229,27 @@ class Elimination:
 
     def branches(self) -> list[tuple[float, float, bool]]:
         """All branches as (low, high, whether full), low within the period, sorted; one for each assembly."""
+        return sorted((piece.low, piece.high, piece.full) for piece in self.pieces())
+
+    def pieces(self) -> list[Piece]:
+        """The same with their assemblies, and the dyads that are folded flat at their ends."""
         period = 2.0 * np.pi * self.turns
-        found: list[tuple[float, float, bool]] = []
+        found: list[Piece] = []
         per_level = [self.candidates(level) for level in range(self.count)]
         for choice in itertools.product((1, -1), repeat=self.count):
-            cuts: list[float] = []
+            folds: dict[float, int] = {}
             for level, near in enumerate(per_level):
-                cuts += self._polished(level, near, choice)
-            cuts = sorted({round(c, 13) for c in np.mod(cuts, period)})
+                for cut in np.mod(self._polished(level, near, choice), period):
+                    folds.setdefault(round(float(cut), 13), level)
+            cuts = sorted(folds)
             if not cuts:
-                if self._exists(0.1, choice):
-                    found.append((0.0, period, True))
+                if self._exists(np.array([0.1]), choice).all():
+                    found.append(Piece(0.0, period, True, choice, -1, -1))
                 continue
             ends = [*cuts, cuts[0] + period]
-            inside = [self._exists(0.5 * (a + b), choice) for a, b in itertools.pairwise(ends)]
+            inside = self._exists(0.5 * (np.array(ends[:-1]) + ends[1:]), choice).tolist()
             if all(inside):
-                found.append((0.0, period, True))
+                found.append(Piece(0.0, period, True, choice, -1, -1))
                 continue
             first = inside.index(False)
             k = 1
@@ -233,9 +260,10 @@ class Elimination:
                     while inside[(first + k) % len(inside)]:
                         k += 1
                     high = cuts[(first + k) % len(inside)]
-                    found.append((low, low + float(np.mod(high - low, period)), False))
+                    way = float(np.mod(high - low, period))
+                    found.append(Piece(low, low + way, False, choice, folds[low], folds[high]))
                 k += 1
-        return sorted(found)
+        return found
 
     def _real(self, theta: Real, choice: Sequence[int]) -> Real:
         """Radicands at real inputs, shape (dyads, n); the later ones are NaN where an earlier one is negative."""
@@ -244,8 +272,8 @@ class Elimination:
         values[1:][lost[:-1]] = np.nan
         return values
 
-    def _exists(self, theta: float, choice: Sequence[int]) -> bool:
-        return bool((self._real(np.array([theta]), choice) > 0.0).all())
+    def _exists(self, theta: Real, choice: Sequence[int]) -> NDArray[np.bool_]:
+        return np.asarray((self._real(theta, choice) > 0.0).all(axis=0))
 
     def _polished(self, level: int, near: Real, choice: Sequence[int]) -> list[float]:
         """Where the radicand of one choice changes its sign next to candidates, by bisection between them."""
