@@ -171,7 +171,11 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
     TopologyError
         Where a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
     """
-    waves = max([1.0, *(abs(gear.ratio) for gear in mechanism.gears), *(abs(1.0 / g.ratio) for g in mechanism.gears)])
+    turned = {mechanism.input: 1.0}
+    for step in closures.steps:
+        if step.kind == "gear":
+            turned[step.link] = step.ratio * turned.get(step.other, 0.0)
+    waves = max(abs(rotation) for rotation in turned.values())
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
     for level in range(len(closures.links)):
         below = chains(curves) if curves else np.empty((0, 0, 4))

@@ -57,6 +57,8 @@ LEAST_SHARE = 1e-9
 LOST = 1e-12
 """Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
 
+FULL_TURN = 2.0 * np.pi
+
 NEWTON_STEPS = 20
 """Steps at most; from inside the ball three or four do."""
 
@@ -137,7 +139,10 @@ class Track:
         return self._sides[1.0].first_step
 
     def at(self, rotation: Real) -> Real:
-        """Rotations of the unknown links for input rotations from the reference; NaN beyond a toggle.
+        """Rotations of the unknown links for input rotations from the reference; NaN where no way leads there.
+
+        An input is reached by its own rotation, or, where a toggle lies before it, by the least rotation that differs
+        from that by full turns.
 
         Parameters
         ----------
@@ -148,6 +153,18 @@ class Track:
         -------
         float, shape (links, N)
         """
+        found = self._followed(rotation)
+        lost = np.flatnonzero(np.isnan(found[0]) & np.isfinite(rotation))
+        least = np.mod(rotation + np.pi, FULL_TURN) - np.pi
+        turns = 0
+        while len(lost) and not all(side.ended_before(FULL_TURN * (turns - 0.5)) for side in self._sides.values()):
+            for away in (-1.0, 1.0) if turns else (0.0,):
+                found[:, lost] = self._followed(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
+                lost = lost[np.isnan(found[0, lost])]
+            turns += 1
+        return found
+
+    def _followed(self, rotation: Real) -> Real:
         found = np.full((len(self._loops.links), len(rotation)), np.nan)
         for sign, side in self._sides.items():
             chosen = np.flatnonzero(sign * rotation >= 0.0)
@@ -170,6 +187,11 @@ class _Side:
     @property
     def first_step(self) -> float:
         return float(self._reach[0])
+
+    def ended_before(self, rotation: float) -> bool:
+        """Whether a toggle lies within this rotation."""
+        self._extend(rotation)
+        return self._ended and float(self._nodes[-1] + self._reach[-1]) < rotation
 
     def at(self, rotation: Real) -> Real:
         ahead = self._sign * rotation

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -216,4 +217,27 @@ _CLASS_THREE = {
 for (_kind, _input), _three in _CLASS_THREE.items():
     (CLASS_THREE if _three else DYADIC)[f"{_kind} driven by its {_input}"] = _sixbar(_kind, _input)
 
-EVERY = DYADIC | CLASS_THREE
+
+def _dwell(output: str, rng: Rng, n: int) -> Mechanism:
+    """A fourbar whose coupler point drives an output: rocker or slider by a link, or a slot through the point."""
+    names = {"rocker": "O2 O4 O6 A B P D", "slider": "O2 O4 A B P D", "slot": "O2 O4 O6 A B P C"}[output]
+    joints = points(rng, names, n)
+    links: dict[str, tuple[str, ...]] = {
+        "ground": tuple(joint for joint in names.split() if joint[0] == "O"),
+        "input": ("O2", "A"),
+        "coupler": ("A", "B", "P"),
+        "rocker": ("O4", "B"),
+    }
+    if output == "rocker":
+        return Mechanism(joints, links | {"link_5": ("P", "D"), "output": ("O6", "D")}, "input")
+    angle = rng.uniform(-np.pi, np.pi, n)
+    if output == "slider":
+        return Mechanism(joints, links | {"link_5": ("P", "D")}, "input", (Slide("D", "ground", joints["D"], angle),))
+    slot = Slide("P", "output", joints["P"] + rng.normal(size=n) * np.exp(1j * angle), angle)
+    return Mechanism(joints, links | {"output": ("O6", "C")}, "input", (slot,))
+
+
+_DWELLS: dict[str, Make] = {f"dwell_{output}": partial(_dwell, output) for output in ("rocker", "slider", "slot")}
+
+EVERY = DYADIC | CLASS_THREE | _DWELLS
+DYADIC |= _DWELLS

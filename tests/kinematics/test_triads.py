@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.drive import decompose, drive
+from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics.mechanism_sampling import CLASS_THREE, take
 from tests.oracles.constraints import Constraints, Trace
@@ -35,8 +36,11 @@ def agrees(mechanism: Mechanism, limit: float = TURN, m: int = 40) -> tuple[int,
         edge = end + sign * np.array([-1e-4, -1e-7, 1e-7, 1e-4, 1e-2, 0.3])
         way = np.concatenate([points[:, :, -1], np.where(toggled[:, None], edge, 0.0)], axis=1)
         found = drive(mechanism, mechanism.reference_input[:, None] + way, order=0)
-        inside = ~toggled[:, None] | (sign * way < sign * end)
-        sure = ~toggled[:, None] | (np.abs(way - end) > 1e-9)
+        # An input beyond a toggle may be reached the other way round.
+        places = way[..., None] + TURN * np.array([-1.0, 0.0, 1.0])
+        within = (places > ends[:, 1, None, None]) & (places < ends[:, 0, None, None])
+        inside = ~toggled[:, None] | within.any(axis=-1)
+        sure = ~toggled[:, None] | (np.abs(places[..., None] - ends[:, None, None, :]).min(axis=(-1, -2)) > 1e-9)
         np.testing.assert_array_equal(found.valid[sure], inside[sure])
         refused += int((~inside).sum())
         joints = {name: z[0][:, :m].ravel() for name, z in found.joints.items()}
@@ -56,7 +60,7 @@ def batch(name: str, seed: int, n: int) -> Mechanism:
 def test_continuation_agrees_with_small_steps(name: str) -> None:
     compared, refused = agrees(batch(name, 31, 4))
     assert compared > 200
-    assert refused > 20
+    assert refused > 10
 
 
 @pytest.mark.slow
@@ -64,7 +68,7 @@ def test_continuation_agrees_with_small_steps(name: str) -> None:
 def test_continuation_agrees_with_small_steps_for_many(name: str) -> None:
     compared, refused = agrees(batch(name, 32, 20))
     assert compared > 500
-    assert refused > 100
+    assert refused > 60
 
 
 def blended(one: Mechanism, other: Mechanism, share: np.ndarray) -> Mechanism:
@@ -194,3 +198,31 @@ def test_slides_in_a_class_three_mechanism_are_refused() -> None:
     joints = {name: z for name, z in mechanism.joints.items() if name != "O4"}
     with pytest.raises(TopologyError, match="dyads"):
         drive(Mechanism(joints, links, "input", (slide,)), [0.0])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_input_is_reached_from_whichever_side_of_the_reference(name: str) -> None:
+    """Inputs in the first turn, wherever in its branch the reference stands: just those of the branch exist."""
+    mechanisms, bounded = batch(name, 33, 12), 0
+    for k in range(12):
+        mechanism = take(mechanisms, k)
+        here = holding_reference(mechanism, branches(mechanism))
+        assert here is not None
+        at = np.linspace(0.0, TURN, 91) + 1e-3
+        first = drive(mechanism, at, order=1)
+        if here.full:
+            assert first.valid.all()
+            continue
+        offset, way = np.mod(at - here.low, TURN), here.high - here.low
+        sure = np.abs(offset - way) > 1e-6
+        if way > TURN - 0.01:
+            continue
+        bounded += 1
+        np.testing.assert_array_equal(first.valid[sure], (offset < way)[sure])
+        for turns in (-2.0, 1.0):
+            again = drive(mechanism, at + turns * TURN, order=1)
+            np.testing.assert_array_equal(again.valid[sure], first.valid[sure])
+            both = first.smooth & again.smooth
+            for joint, jet in first.joints.items():
+                np.testing.assert_allclose(again.joints[joint][0][both], jet[0][both], atol=1e-9)
+    assert bounded > 6

@@ -2,6 +2,7 @@
 
 import copy
 import math
+import time
 
 import numpy as np
 import pytest
@@ -279,3 +280,35 @@ def test_branches_are_for_any_linkage_and_the_rest_for_fourbars():
         asked.answer()
     plain = parse_request({"mechanism": FOURBAR, "motion": {"at": 30.0}}).answer()
     assert "joints" not in plain["circuits"][0]["branches"][0]
+
+
+FIVEBAR = {
+    "type": "geared_fivebar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 1.0, "coupler_1": 7.0, "coupler_2": 9.0, "output": 4.0},
+}
+
+
+def test_gears_that_hold_the_output_still_make_a_fourbar():
+    """With a ratio of 0 the output's pin does not move: O2, A, C and that pin."""
+    found = answer({**FIVEBAR, "gear_ratio": 0.0, "phase": 60.0}, **{"from": 0.0, "to": 360.0, "steps": 36})
+    pin = [6.0 + 4.0 * math.cos(math.pi / 3.0), 4.0 * math.sin(math.pi / 3.0)]
+    fourbar = {
+        "type": "fourbar", "fixed_pivots": {"input": [0.0, 0.0], "output": pin},
+        "links": {"input": 1.0, "coupler": 7.0, "output": 9.0},
+        "assembly": "open", "coupler_point": {"distance": 0.0, "angle": 0.0},
+    }  # fmt: skip
+    same = answer(fourbar, **{"from": 0.0, "to": 360.0, "steps": 36})
+    assert all(found["valid"])
+    assert found["joints"]["C"]["x"] == pytest.approx(same["joints"]["B"]["x"], abs=1e-12)
+    assert [len(circuit["branches"]) for circuit in found["circuits"]] == [1, 1]
+
+
+def test_gears_of_many_turns_are_searched_by_their_turns_alone():
+    """A hundred turns of the input are one of the output; what is to be looked at grows with the turns, no faster."""
+    begun = time.process_time()
+    slow = answer({**FIVEBAR, "gear_ratio": 0.01, "phase": 60.0})
+    assert time.process_time() - begun < 1.0
+    (branch,) = [b for circuit in slow["circuits"] for b in circuit["branches"] if b["reference"]]
+    assert branch["full"] is False
+    assert len(slow["toggles"]) == 30
