@@ -62,3 +62,39 @@ def solve(factors: Complex, pivots: Any, b: Complex) -> None:
         for c in range(i + 1, n):
             total -= factors[i, c] * b[c]
         b[i] = total * factors[i, i]
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def reduce(matrix: Complex) -> bool:
+    """Solve a system with its right sides, which stand as further columns and are replaced by the solutions.
+
+    ``matrix`` has shape (n, n + right sides); what is left of its first n columns has no meaning. Returns whether the
+    matrix is regular.
+    """
+    n, width = matrix.shape
+    for k in range(n):
+        best, row = -1.0, k
+        for i in range(k, n):
+            size = abs(matrix[i, k].real) + abs(matrix[i, k].imag)
+            if size > best:
+                best, row = size, i
+        if not best > 0.0:
+            return False
+        if row != k:
+            for c in range(k, width):
+                matrix[k, c], matrix[row, c] = matrix[row, c], matrix[k, c]
+        pivot = matrix[k, k]
+        size = 1.0 / (pivot.real * pivot.real + pivot.imag * pivot.imag)
+        inverse = complex(pivot.real * size, -pivot.imag * size)
+        matrix[k, k] = inverse
+        for i in range(k + 1, n):
+            share = matrix[i, k] * inverse
+            for c in range(k + 1, width):
+                matrix[i, c] -= share * matrix[k, c]
+    for i in range(n - 1, -1, -1):
+        for c in range(n, width):
+            total = matrix[i, c]
+            for k in range(i + 1, n):
+                total -= matrix[i, k] * matrix[k, c]
+            matrix[i, c] = total * matrix[i, i]
+    return True

@@ -64,9 +64,17 @@ def start() -> Start:
 
 
 def is_linkage(y: Complex) -> NDArray[np.bool_]:
-    """Whether the two dyads of a solution differ: shape (...), for y of shape (..., 16)."""
-    apart = np.abs(y[..., :4] - y[..., 4:8]).max(axis=-1)
-    return np.asarray(apart > APART * np.abs(y[..., :8]).max(axis=-1))
+    """Whether the two dyads of a solution differ: shape (...), for y of shape (..., 16).
+
+    They must differ in both isotropic coordinates. Where they agree in one the system has whole curves of solutions, to
+    which paths come that have lost their way.
+    """
+    differ = np.ones(y.shape[:-1], np.bool_)
+    for half in ([0, 2], [1, 3]):
+        first, second = y[..., half], y[..., [k + 4 for k in half]]
+        size = np.maximum(np.abs(first), np.abs(second)).max(axis=-1)
+        differ &= np.abs(first - second).max(axis=-1) > APART * size
+    return differ
 
 
 def smallest_member(y: Complex, p: Complex) -> Complex:

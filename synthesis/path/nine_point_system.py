@@ -20,6 +20,7 @@ the orbit's own, and are of ordinary size however large the linkage is.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from numpy.typing import NDArray
 
 from synthesis.numerics.continuation import SYSTEM
 from synthesis.numerics.double_double import add, multiply, reciprocal
-from synthesis.numerics.elimination import factor, solve
+from synthesis.numerics.elimination import reduce
 
 Complex = NDArray[np.complex128]
 
@@ -40,89 +41,166 @@ ORBITS = 1442
 GROUPS = np.array([0] * 4 + [1] * 4 + [2] * 8)
 """The vectors of a dyad share a scale, and so do the rotations."""
 
-SCRATCH = 192
+OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+"""How the kernels are compiled: vectors for the eight points, with fused multiplications and no exceptions."""
+
+LANES = 8
+"""Numbers side by side in the scratch, one for each point; the imaginary parts stand LANES after the real ones."""
+
+PAIR = 2 * LANES
+
+S, TURN_BACK, S_BACK, DELTA, DELTA_BAR, STEP, STEP_BAR = range(0, 7 * PAIR, PAIR)
+"""Where rotations, parameters and their changes stand in the scratch."""
+
+ALPHA_1, BETA_1, GAP_1, ALPHA_2, BETA_2, GAP_2 = range(7 * PAIR, 13 * PAIR, PAIR)
+"""And what follows from them."""
+
+COLUMNS, ROWS = 13 * PAIR, 23 * PAIR
+"""Ten columns of the equations without the rotations, right sides last, and six of those that give the rotations."""
+
+FIRST = 29 * PAIR
+"""Number of the first vector of the dyad that gives the rotation."""
+
+MATRIX = (29 * PAIR + LANES) // 2
+"""The equations as rows, in complex numbers of the scratch."""
+
+SCRATCH = MATRIX + 80
 
 _WEIGHTS = np.exp(1j * np.arange(1, 9) ** 2)
 """Some directions of no meaning, by which eight rotations are summed up to one number."""
 
 
-@njit(cache=True, nogil=True)
-def _solve(
-    y: Complex, differences: Complex, gaps: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
-) -> int:
-    """Newton's step and the tangent, from α, β of both dyads at each point and from the gaps of the equations there."""
-    matrix, rows = work[:64].reshape((8, 8)), work[64:144].reshape((8, 10))
-    pivots = np.empty(8, np.int64)
-    for j in range(8):
-        s, turn_back = y[8 + j], 1.0 / (1.0 + y[8 + j])
-        s_back = -s * turn_back
-        alpha_1, beta_1, alpha_2, beta_2 = differences[j, 0], differences[j, 1], differences[j, 2], differences[j, 3]
-        gap_1, gap_2 = gaps[j, 0], gaps[j, 1]
+@njit(**OPTIONS)
+def _get(w: Any, at: int) -> complex:
+    return complex(w[at], w[at + LANES])
+
+
+@njit(**OPTIONS)
+def _put(w: Any, at: int, z: complex) -> None:
+    w[at], w[at + LANES] = z.real, z.imag
+
+
+@njit(**OPTIONS)
+def _inverse(z: complex) -> complex:
+    size = 1.0 / (z.real * z.real + z.imag * z.imag)
+    return complex(z.real * size, -z.imag * size)
+
+
+@njit(**OPTIONS)
+def _spread(y: Complex, p: Complex, dp: Complex, w: Any, points: int) -> None:
+    """Rotations and parameters side by side."""
+    for j in range(points):
+        _put(w, S + j, y[8 + j])
+        _put(w, DELTA + j, p[j])
+        _put(w, DELTA_BAR + j, p[8 + j])
+        _put(w, STEP + j, dp[j])
+        _put(w, STEP_BAR + j, dp[8 + j])
+
+
+@njit(**OPTIONS)
+def _differences(y: Complex, w: Any, points: int) -> None:
+    """α, β and the gaps of the equations at all points.
+
+    The number of points is an argument so that loops over it are not unrolled, but run in vectors.
+    """
+    x_1, c_1, r_1, d_1, x_2, c_2, r_2, d_2 = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
+    for j in range(points):
+        s = _get(w, S + j)
+        back = _inverse(1.0 + s)
+        s_back = -s * back
+        _put(w, TURN_BACK + j, back)
+        _put(w, S_BACK + j, s_back)
+        delta, delta_bar = _get(w, DELTA + j), _get(w, DELTA_BAR + j)
+        alpha, beta = delta + x_1 * s, delta_bar + c_1 * s_back
+        _put(w, ALPHA_1 + j, alpha)
+        _put(w, BETA_1 + j, beta)
+        _put(w, GAP_1 + j, alpha * (beta + d_1) + r_1 * beta)
+        alpha, beta = delta + x_2 * s, delta_bar + c_2 * s_back
+        _put(w, ALPHA_2 + j, alpha)
+        _put(w, BETA_2 + j, beta)
+        _put(w, GAP_2 + j, alpha * (beta + d_2) + r_2 * beta)
+
+
+@njit(**OPTIONS)
+def _equations(y: Complex, w: Any, points: int) -> None:
+    """The equations of each point without its rotation, and those that give the rotation."""
+    x_1, c_1, r_1, d_1, x_2, c_2, r_2, d_2 = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
+    for j in range(points):
+        s, back, s_back = _get(w, S + j), _get(w, TURN_BACK + j), _get(w, S_BACK + j)
+        alpha_1, beta_1, gap_1 = _get(w, ALPHA_1 + j), _get(w, BETA_1 + j), _get(w, GAP_1 + j)
+        alpha_2, beta_2, gap_2 = _get(w, ALPHA_2 + j), _get(w, BETA_2 + j), _get(w, GAP_2 + j)
+        step, step_bar = _get(w, STEP + j), _get(w, STEP_BAR + j)
         # by α and by β
-        by_alpha_1, by_beta_1 = beta_1 + y[3], alpha_1 + y[2]
-        by_alpha_2, by_beta_2 = beta_2 + y[7], alpha_2 + y[6]
+        by_alpha_1, by_beta_1 = beta_1 + d_1, alpha_1 + r_1
+        by_alpha_2, by_beta_2 = beta_2 + d_2, alpha_2 + r_2
         # by θ
-        square = turn_back * turn_back
-        by_turn_1 = by_alpha_1 * y[0] - by_beta_1 * y[1] * square
-        by_turn_2 = by_alpha_2 * y[4] - by_beta_2 * y[5] * square
-        size_1 = abs(by_turn_1.real) + abs(by_turn_1.imag)
-        size_2 = abs(by_turn_2.real) + abs(by_turn_2.imag)
-        if not (size_1 > 0.0 or size_2 > 0.0):
-            return 0
-        share = 1.0 / (size_1 + size_2)
+        square = back * back
+        by_turn_1 = by_alpha_1 * x_1 - by_beta_1 * c_1 * square
+        by_turn_2 = by_alpha_2 * x_2 - by_beta_2 * c_2 * square
+        size_1 = by_turn_1.real * by_turn_1.real + by_turn_1.imag * by_turn_1.imag
+        size_2 = by_turn_2.real * by_turn_2.real + by_turn_2.imag * by_turn_2.imag
+        share = 1.0 / math.sqrt(size_1 + size_2)
         to_1, to_2 = by_turn_2 * share, -by_turn_1 * share
-        matrix[j, 0] = to_1 * by_alpha_1 * s
-        matrix[j, 1] = to_1 * by_beta_1 * s_back
-        matrix[j, 2] = to_1 * beta_1
-        matrix[j, 3] = to_1 * alpha_1
-        matrix[j, 4] = to_2 * by_alpha_2 * s
-        matrix[j, 5] = to_2 * by_beta_2 * s_back
-        matrix[j, 6] = to_2 * beta_2
-        matrix[j, 7] = to_2 * alpha_2
-        newton[j] = -(to_1 * gap_1 + to_2 * gap_2)
-        moved_1 = by_alpha_1 * dp[j] + by_beta_1 * dp[8 + j]
-        moved_2 = by_alpha_2 * dp[j] + by_beta_2 * dp[8 + j]
-        tangent[j] = -(to_1 * moved_1 + to_2 * moved_2)
+        moved_1 = by_alpha_1 * step + by_beta_1 * step_bar
+        moved_2 = by_alpha_2 * step + by_beta_2 * step_bar
+        by_x_1, by_c_1 = by_alpha_1 * s, by_beta_1 * s_back
+        by_x_2, by_c_2 = by_alpha_2 * s, by_beta_2 * s_back
+        _put(w, COLUMNS + j, to_1 * by_x_1)
+        _put(w, COLUMNS + PAIR + j, to_1 * by_c_1)
+        _put(w, COLUMNS + 2 * PAIR + j, to_1 * beta_1)
+        _put(w, COLUMNS + 3 * PAIR + j, to_1 * alpha_1)
+        _put(w, COLUMNS + 4 * PAIR + j, to_2 * by_x_2)
+        _put(w, COLUMNS + 5 * PAIR + j, to_2 * by_c_2)
+        _put(w, COLUMNS + 6 * PAIR + j, to_2 * beta_2)
+        _put(w, COLUMNS + 7 * PAIR + j, to_2 * alpha_2)
+        _put(w, COLUMNS + 8 * PAIR + j, -(to_1 * gap_1 + to_2 * gap_2))
+        _put(w, COLUMNS + 9 * PAIR + j, -(to_1 * moved_1 + to_2 * moved_2))
         # θ comes back from the equation in which it counts more
-        if size_1 >= size_2:
-            inverse = -1.0 / by_turn_1
-            rows[j, 0], rows[j, 1] = by_alpha_1 * s * inverse, by_beta_1 * s_back * inverse
-            rows[j, 2], rows[j, 3] = beta_1 * inverse, alpha_1 * inverse
-            rows[j, 4], rows[j, 5], rows[j, 6] = gap_1 * inverse, moved_1 * inverse, 0.0
-        else:
-            inverse = -1.0 / by_turn_2
-            rows[j, 0], rows[j, 1] = by_alpha_2 * s * inverse, by_beta_2 * s_back * inverse
-            rows[j, 2], rows[j, 3] = beta_2 * inverse, alpha_2 * inverse
-            rows[j, 4], rows[j, 5], rows[j, 6] = gap_2 * inverse, moved_2 * inverse, 4.0
-    if not factor(matrix, pivots):
+        one = size_1 >= size_2
+        inverse = -_inverse(by_turn_1 if one else by_turn_2)
+        _put(w, ROWS + j, (by_x_1 if one else by_x_2) * inverse)
+        _put(w, ROWS + PAIR + j, (by_c_1 if one else by_c_2) * inverse)
+        _put(w, ROWS + 2 * PAIR + j, (beta_1 if one else beta_2) * inverse)
+        _put(w, ROWS + 3 * PAIR + j, (alpha_1 if one else alpha_2) * inverse)
+        _put(w, ROWS + 4 * PAIR + j, (gap_1 if one else gap_2) * inverse)
+        _put(w, ROWS + 5 * PAIR + j, (moved_1 if one else moved_2) * inverse)
+        w[FIRST + j] = 0.0 if one else 4.0
+
+
+@njit(**OPTIONS)
+def _solve(y: Complex, newton: Complex, tangent: Complex, work: Complex, points: int) -> int:
+    """Newton's step and the tangent, from α, β of both dyads at each point and from the gaps of the equations there."""
+    w = work.view(np.float64)
+    _equations(y, w, points)
+    matrix = work[MATRIX : MATRIX + 80].reshape((8, 10))
+    for c in range(10):
+        for j in range(8):
+            matrix[j, c] = _get(w, COLUMNS + PAIR * c + j)
+    if not reduce(matrix):
         return 0
-    solve(matrix, pivots, newton[:8])
-    solve(matrix, pivots, tangent[:8])
     for j in range(8):
-        first = int(rows[j, 6].real)
-        step, slope = rows[j, 4], rows[j, 5]
+        newton[j], tangent[j] = matrix[j, 8], matrix[j, 9]
+    for j in range(8):
+        first = int(w[FIRST + j])
+        step, slope = _get(w, ROWS + 4 * PAIR + j), _get(w, ROWS + 5 * PAIR + j)
         for k in range(4):
-            step += rows[j, k] * newton[first + k]
-            slope += rows[j, k] * tangent[first + k]
+            by = _get(w, ROWS + PAIR * k + j)
+            step += by * newton[first + k]
+            slope += by * tangent[first + k]
         newton[8 + j], tangent[8 + j] = step, slope
     return 1
 
 
-@njit(SYSTEM, cache=True, nogil=True)
+@njit(SYSTEM, **OPTIONS)
 def nine_point_system(
     y: Complex, low: Complex, p: Complex, dp: Complex, newton: Complex, tangent: Complex, work: Complex
 ) -> int:
     """The system, of the type that the continuation follows, in ordinary precision."""
-    differences, gaps = work[144:176].reshape((8, 4)), work[176:192].reshape((8, 2))
-    for j in range(8):
-        s = y[8 + j]
-        s_back = -s / (1.0 + s)
-        for dyad in range(2):
-            first = 4 * dyad
-            alpha, beta = p[j] + y[first] * s, p[8 + j] + y[first + 1] * s_back
-            differences[j, 2 * dyad], differences[j, 2 * dyad + 1] = alpha, beta
-            gaps[j, dyad] = alpha * (beta + y[first + 3]) + y[first + 2] * beta
-    return _solve(y, differences, gaps, dp, newton, tangent, work)
+    points = p.size // 2
+    w = work.view(np.float64)
+    _spread(y, p, dp, w, points)
+    _differences(y, w, points)
+    return int(_solve(y, newton, tangent, work, points))
 
 
 @njit(SYSTEM, cache=True, nogil=True)
@@ -133,12 +211,16 @@ def nine_point_system_extended(
 
     Newton's method converges to the digits of its residuals; its matrix needs no more than some right ones.
     """
-    differences, gaps = work[144:176].reshape((8, 4)), work[176:192].reshape((8, 2))
-    for j in range(8):
+    points = p.size // 2
+    w = work.view(np.float64)
+    _spread(y, p, dp, w, points)
+    for j in range(points):
         s, s_low = y[8 + j], low[8 + j]
         turn, turn_low = add(1.0 + 0j, 0j, s, s_low)
         back, back_low = reciprocal(turn, turn_low)
         s_back, s_back_low = multiply(-s, -s_low, back, back_low)
+        _put(w, TURN_BACK + j, back)
+        _put(w, S_BACK + j, s_back)
         for dyad in range(2):
             k = 4 * dyad
             moved, moved_low = multiply(y[k], low[k], s, s_low)
@@ -149,9 +231,10 @@ def nine_point_system_extended(
             one, one_low = multiply(alpha, alpha_low, to, to_low)
             other, other_low = multiply(y[k + 2], low[k + 2], beta, beta_low)
             gap, _ = add(one, one_low, other, other_low)
-            differences[j, 2 * dyad], differences[j, 2 * dyad + 1] = alpha, beta
-            gaps[j, dyad] = gap
-    return _solve(y, differences, gaps, dp, newton, tangent, work)
+            _put(w, (ALPHA_2 if dyad else ALPHA_1) + j, alpha)
+            _put(w, (BETA_2 if dyad else BETA_1) + j, beta)
+            _put(w, (GAP_2 if dyad else GAP_1) + j, gap)
+    return int(_solve(y, newton, tangent, work, points))
 
 
 def residuals(y: Complex, p: Complex, low: Complex | None = None) -> NDArray[np.float64]:

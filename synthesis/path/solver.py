@@ -99,7 +99,7 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
         found.append(triples)
         harvest.gather(triples)
     progress(1.0, "verified")
-    complete = len(given) == NINE and found[0].complete and not harvest.rejected["degenerate"]
+    complete = len(given) == NINE and found[0].complete and not harvest.unproven
     counts = CognateTriples(
         rounds=rounds,
         computed=sum(len(triples.y) for triples in found),

@@ -126,12 +126,10 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
             lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
             if min(lengths) <= SHORTEST_LINK * max(lengths):
                 harvest.degenerate()
-                proved = False
             else:
                 harvest.add(verify_path(problem, fourbar_mechanism(joints)))
     progress(1.0, "verified")
-    # A solution that rounding keeps from being shown to reach its points is none that is proved not to be.
-    complete = proved and not harvest.rejected["residual"] and not harvest.rejected["cannot_be_driven"]
+    complete = proved and not harvest.unproven
     text = (
         f"{inputs} input dyads and {fourbars} fourbars pass the five points at their crank angles; "
         f"{len(harvest.passed)} of them satisfy all demands."

@@ -32,6 +32,12 @@ Whole = NDArray[np.int64]
 MET = 1e-9
 """Distance, as a share of the task's size, up to which places count as alike where one circuit is to be chosen."""
 
+ROUNDED = 1e-11
+"""Misses above this share of the task's size may be those of the arc cosine by which inputs are found."""
+
+POLISHED, DIFFERENCE = 4, 1e-7
+"""Steps by which such inputs are polished, and the difference, radians, that their slope is measured over."""
+
 GRID = 360
 """Inputs that are looked at first: one degree of a full turn."""
 
@@ -90,11 +96,40 @@ def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
     best = np.where(good & here, 0.0, np.where(good, 1.0, 2.0)).argmin(axis=0), np.arange(len(points))
     if not np.isfinite(misses[best]).all():
         return None
-    passed = Passages(angles[best], np.array(signs[best]), at.a[best], at.b[best], at.p[best], misses[best])
+    inputs, assembly = angles[best], np.array(signs[best])
+    if misses[best].max() > ROUNDED * np.abs(points - points[0]).max():
+        inputs = _closer(fourbar, points, inputs, assembly)
+    at = positions(linkage, inputs[:, None], assembly)
+    p = at.p[:, 0]
+    passed = Passages(inputs, assembly, at.a[:, 0], at.b[:, 0], p, np.abs(p - points))
     own = (fourbar.reference, fourbar.assembly, reference.a, reference.b, reference.p, first)
     for part, value in zip(passed[:6], own, strict=True):
         part[0] = value
     return passed
+
+
+def _closer(fourbar: DrivenFourbar, points: Complex, inputs: Real, signs: Whole) -> Real:
+    """Inputs at which P is nearer to the points: Newton's steps along its path, each taken where it brings P nearer.
+
+    An arc cosine leaves half of the digits where the crank points at the target.
+    """
+
+    def place(angles: Real) -> Complex:
+        at = positions(fourbar.linkage, angles[:, None], signs)
+        return np.where(at.valid, at.p, np.nan)[:, 0]
+
+    best = place(inputs)
+    for _ in range(POLISHED):
+        before, after = (place(inputs + way * DIFFERENCE) for way in (-1.0, 1.0))
+        slope = (after - before) / (2.0 * DIFFERENCE)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = (slope.conj() * (points - best)).real / (slope.real**2 + slope.imag**2)
+        tried = inputs + np.where(np.isfinite(step), step, 0.0)
+        there = place(tried)
+        # Not a number is never nearer.
+        nearer = np.abs(there - points) < np.abs(best - points)
+        inputs, best = np.where(nearer, tried, inputs), np.where(nearer, there, best)
+    return inputs
 
 
 def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: bool) -> Passages | None:

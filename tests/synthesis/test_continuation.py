@@ -6,7 +6,7 @@ from numba import njit
 
 from synthesis.numerics.continuation import REACHED, SYSTEM, follow, refine
 from synthesis.numerics.double_double import add, multiply, reciprocal
-from synthesis.numerics.elimination import factor, solve
+from synthesis.numerics.elimination import factor, reduce, solve
 
 GROUPS = np.zeros(3, np.int64)
 SCRATCH = 9
@@ -111,3 +111,15 @@ def test_double_doubles_have_thirty_digits():
         assert size([s - x for s, x in zip(found, product, strict=True)]) < 1e-30 * (1.0 + size(product))
         unit = times(one, exact(*reciprocal(a, a_low)))
         assert size([unit[0] - 1, unit[1]]) < 1e-29
+
+
+def test_systems_with_right_sides_are_solved():
+    rng = np.random.default_rng(4)
+    for n in (1, 2, 8):
+        matrix = rng.normal(size=(n, n + 2)) + 1j * rng.normal(size=(n, n + 2))
+        # a zero where the first pivot would be
+        matrix[0, 0] *= n == 1
+        solved = matrix.copy()
+        assert reduce(solved)
+        assert np.abs(solved[:, n:] - np.linalg.solve(matrix[:, :n], matrix[:, n:])).max() < 1e-12
+    assert not reduce(np.zeros((3, 5), complex))

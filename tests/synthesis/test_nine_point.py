@@ -10,9 +10,12 @@ from synthesis.path.nine_point import all_triples, conjugate
 from synthesis.path.nine_point_start import is_linkage, start
 from synthesis.path.nine_point_system import (
     ORBITS,
+    SCRATCH,
     cognate,
     cognates,
     exchanged,
+    nine_point_system,
+    nine_point_system_extended,
     orbit_keys,
     random_problem,
     residuals,
@@ -65,6 +68,47 @@ def test_cognates_and_exchanged_dyads_solve_the_same_problem():
         # going round the cognates comes back after three times
         round_ = cognate(exchanged(cognate(exchanged(cognate(exchanged(y), p)), p)), p)
         assert np.abs(round_ - y).max() < 1e-9 * np.abs(y).max()
+
+
+@pytest.mark.parametrize("system", [nine_point_system, nine_point_system_extended])
+def test_the_compiled_system_is_newtons_step_of_the_equations(system):
+    """Against the whole Jacobian of 16 equations, by differences, and a library's solver."""
+    rng = np.random.default_rng(3)
+
+    def gaps(y, p):
+        s = y[8:]
+        s_back = 1.0 / (1.0 + s) - 1.0
+        found = []
+        for x, x_bar, r, r_bar in (y[:4], y[4:8]):
+            alpha, beta = p[:8] + x * s, p[8:] + x_bar * s_back
+            found.append(alpha * beta + r * beta + r_bar * alpha)
+        return np.concatenate(found)
+
+    for _ in range(10):
+        y, p = random_problem(rng)
+        y = y * (1.0 + 0.01 * rng.normal(size=16))
+        dp = rng.normal(size=16) + 1j * rng.normal(size=16)
+        newton, tangent = np.empty((2, 16), np.complex128)
+        assert system(y, np.zeros(16, complex), p, dp, newton, tangent, np.empty(SCRATCH, complex)) == 1
+        h = 1e-6
+        jacobian = np.stack([(gaps(y + h * e, p) - gaps(y - h * e, p)) / (2 * h) for e in np.eye(16)], axis=1)
+        by_p = (gaps(y, p + h * dp) - gaps(y, p - h * dp)) / (2 * h)
+        assert np.abs(newton - np.linalg.solve(jacobian, -gaps(y, p))).max() < 1e-6 * np.abs(newton).max()
+        assert np.abs(tangent - np.linalg.solve(jacobian, -by_p)).max() < 1e-6 * np.abs(tangent).max()
+
+
+def test_dyads_that_agree_in_one_coordinate_are_no_linkage():
+    """β = 0 at all points but one, from both dyads: a whole curve of solutions, with residuals of 0."""
+    y, p = random_problem(np.random.default_rng(9))
+    assert is_linkage(y)
+    y[[1, 5]] = 2.0 - 1.0j
+    y[[3, 7]] = 0.0
+    s_back = -p[8:] / y[1]
+    y[8:] = -s_back / (1.0 + s_back)
+    # β = 0 and r̄ = 0 leave nothing of the equations, whatever x and r are.
+    assert residuals(y, p) < 1e-12
+    assert not is_linkage(y)
+    assert not is_linkage(conjugate(y))
 
 
 @pytest.mark.campaign

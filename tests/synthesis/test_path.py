@@ -46,6 +46,18 @@ def test_a_linkage_that_draws_the_points_passes():
     assert design.metrics.grashof == "crank_rocker"
 
 
+def test_a_point_in_line_with_the_crank_is_reached_to_rounding():
+    """There the triangle of O2, A and P is flat, and its angle known to half of the digits only."""
+    angles = np.array([0.3, 0.9, 1.8, 2.2, 3.9, 5.0])
+    at = positions(CRANK_ROCKER, angles[2], OPEN)
+    beyond = 3.0 * (at.a - CRANK_ROCKER.input_pivot) / abs(at.a - CRANK_ROCKER.input_pivot)
+    aligned = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, complex(beyond * abs(at.b - at.a) / (at.b - at.a)))
+    points = positions(aligned, angles, OPEN).p
+    design = verify_path(statement(points), mechanism(aligned, angles[0]))
+    assert max(t.residual for t in design.targets) < 1e-13
+    assert design.verification.passed
+
+
 def test_points_out_of_order_are_seen():
     points = positions(CRANK_ROCKER, np.array([0.3, 1.8, 0.9, 2.2, 3.9]), OPEN).p
     design = verify_path(statement(points), mechanism(CRANK_ROCKER, 0.3))
