@@ -64,17 +64,51 @@ def test_the_book_s_linkage(case: Any) -> None:
     case.check(**{name: computed[name] for name in case.expected})
 
 
+def turning_radii(pivot: float, wheelbase: float, track: float, inner: float) -> tuple[float, float]:
+    """Distances of the front wheels from the centre of turning, the inner one's and the outer one's.
+
+    The centre lies on the line of the rear axle, where the normal of the inner wheel meets it; each wheel stands beside
+    its kingpin by half of what the track is wider, on the wheel's own axis.
+    """
+    kingpins = np.array([-0.5 * pivot, 0.5 * pivot])
+    centre = complex(-0.5 * pivot - wheelbase / math.tan(inner), -wheelbase)
+    away = kingpins - centre
+    beside = 0.5 * (track - pivot) * np.array([-1.0, 1.0])
+    radii = np.abs(away + beside * away / np.abs(away))
+    return float(radii[0]), float(radii[1])
+
+
 @pytest.mark.parametrize("case", cases("ackermann_correct", "steering_hooke"))
 def test_where_the_book_s_linkage_steers_correctly(case: Any) -> None:
-    """R_outer of the book is read from a figure, and is not that of the outer wheel (6.57); it is left out."""
+    """All but R_outer, which the book reads from a figure: see the next test."""
     _, design = measured(case)
     (theta,) = design.metrics.correct_at
     given, inner = case.inputs, math.radians(theta)
     phi = float(outer_angle(inner, given["pivot"] / given["wheelbase"]))
-    beside = 0.5 * (given["track"] - given["pivot"])
-    found = {"theta": theta, "phi": math.degrees(phi), "R_inner": given["wheelbase"] / math.sin(inner) - beside}
+    near, _ = turning_radii(given["pivot"], given["wheelbase"], given["track"], inner)
+    found = {"theta": theta, "phi": math.degrees(phi), "R_inner": near}
     for name, value in found.items():
         assert case.expected[name].agrees(value), name
+    assert case.expected.keys() - found.keys() == {"R_outer"}
+
+
+@pytest.mark.parametrize("case", cases("ackermann_correct", "steering_hooke"))
+def test_the_book_s_outer_radius_is_one_of_the_inner_wheel(case: Any) -> None:
+    """Rao, Solved Problem 4.6: "R_outer" 5.2987 m, measured on a drawing, cannot be the outer wheel's radius.
+
+    That one is 6.57 m in the position of correct steering and above 6.2 m at 33°, the greatest angle that the book
+    looks at; it would be 5.2987 m at 41°. It is the radius of the inner wheel (5.2358 m) as near as drawings are read,
+    and exactly so at 30.4°, beside the 30.8° where the linkage steers correctly.
+    """
+    given, printed = case.inputs, case.expected["R_outer"].value
+    vehicle = given["pivot"], given["wheelbase"], given["track"]
+    near, far = turning_radii(*vehicle, math.radians(case.expected["theta"].value))
+    assert near == pytest.approx(printed, rel=0.015)
+    assert far > 1.2 * printed
+    looked_at = np.radians(np.linspace(0.5, 40.0, 400))
+    assert min(turning_radii(*vehicle, angle)[1] for angle in looked_at) > printed
+    exactly = turning_radii(*vehicle, math.radians(30.39))[0]
+    assert exactly == pytest.approx(printed, abs=2e-3)
 
 
 @pytest.mark.parametrize("case", cases("davis_property", "steering_hooke"))
