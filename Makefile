@@ -61,6 +61,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.path_fit
 	$(BIN)/python -m benchmarks.straight_line
 	$(BIN)/python -m benchmarks.dwell
+	$(BIN)/python -m benchmarks.parallel_motion
 	$(BIN)/python -m benchmarks.quick_return
 	$(BIN)/python -m benchmarks.steering
 	$(BIN)/python -m benchmarks.curve_match
