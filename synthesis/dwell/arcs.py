@@ -46,12 +46,14 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
             y = 0.5 * (syz * sxx - sxz * sxy) / determinant
             centre = complex(x, y)
             radius = math.sqrt(x * x + y * y + (sxx + syy) / length)
-            farthest = 0.0
+            nearest, farthest = np.inf, 0.0
             for k in range(length):
-                farthest = max(farthest, abs(abs(curve[(start + k) % n] - mean - centre) - radius))
+                z = curve[(start + k) % n] - mean - centre
+                square = z.real * z.real + z.imag * z.imag
+                nearest, farthest = min(nearest, square), max(farthest, square)
             centres[row, start] = mean + centre
             radii[row, start] = radius
-            off[row, start] = farthest
+            off[row, start] = max(math.sqrt(farthest) - radius, radius - math.sqrt(nearest))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

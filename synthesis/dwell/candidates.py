@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from kinematics.linkage import OPEN, Fourbar, coupler_points
 from synthesis.dwell.arcs import arcs, lines
-from synthesis.dwell.outputs import CYCLE, NEAREST, Kind
+from synthesis.dwell.outputs import CYCLE, Kind
+from synthesis.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -43,8 +44,6 @@ the arcs' centres; shares of the curve's extent."""
 
 MOST_PAIRS, JUDGED = 1_000_000, 60_000
 """Pairs of pieces that are looked at, and pairs that get an output."""
-
-ROCKER, SLIDER, SLOT = range(3)
 
 
 class Start(NamedTuple):
@@ -86,7 +85,7 @@ def starts(
         np.empty(len(tried.rows), np.int64),
         np.empty((len(tried.rows), 2), np.int64),
     )
-    _judge(number, curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
+    judge(number, curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
     found: list[Start] = []
     used: set[int] = set()
     for n in np.argsort(scores):
@@ -228,7 +227,8 @@ def _pairs(
                     continue
                 if way == 0.0:
                     wrong = abs(radii[row, i] - radii[row, j]) / extent[row]
-                    wrong = wrong if abs(places[row, i] - places[row, j]) > APART * extent[row] else np.inf
+                    if wrong > ALIKE or abs(places[row, i] - places[row, j]) <= APART * extent[row]:
+                        continue
                 else:
                     # Lines have no direction: they cross at an angle and its supplement.
                     crossing = abs(radii[row, i] - radii[row, j]) % math.pi
@@ -239,128 +239,3 @@ def _pairs(
                 score[count] = max(share[row, i], share[row, j]) + wrong
                 count += 1
     return count
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _judge(
-    kind: int,
-    curves: Complex,
-    rows: Integers,
-    first: Integers,
-    second: Integers,
-    numbers: Real,
-    length: int,
-    dwells: int,
-    way: float,
-    least: float,
-    scores: Real,
-    signs: Integers,
-    ends: Integers,
-) -> None:
-    """Drive every output through the turn and score it: the way during the dwells, and what it lacks."""
-    n = curves.shape[1]
-    out, path = np.empty(n), np.empty(n, np.complex128)
-    for k in range(len(rows)):
-        curve = curves[rows[k]]
-        scores[k], signs[k] = np.inf, 1
-        a, b, c, d = numbers[k]
-        # The side on which the pin rests in the middle of the first dwell.
-        middle = curve[(first[k] + length // 2) % n]
-        if kind == ROCKER:
-            signs[k] = _rest_sign(curve, first[k], length, a, complex(b, c), d)
-        elif kind == SLIDER:
-            along = complex(math.cos(c), math.sin(c))
-            best = np.inf
-            for sign in (1, -1):
-                low, high = np.inf, -np.inf
-                for m in range(length):
-                    z = curve[(first[k] + m) % n]
-                    y = z.imag * along.real - z.real * along.imag - b
-                    x = z.real * along.real + z.imag * along.imag
-                    value = x + sign * math.sqrt(max(a * a - y * y, 0.0))
-                    low, high = min(low, value), max(high, value)
-                if high - low < best:
-                    best, signs[k] = high - low, sign
-        sine, reached = 1.0, True
-        total = 0j
-        for m in range(n):
-            z = curve[m]
-            if kind == SLIDER:
-                y = z.imag * along.real - z.real * along.imag - b
-                square = 1.0 - (y / a) ** 2
-                if square <= 0.0:
-                    reached = False
-                    break
-                out[m] = z.real * along.real + z.imag * along.imag + signs[k] * a * math.sqrt(square)
-                sine = min(sine, math.sqrt(square))
-            elif kind == SLOT:
-                arm = z - complex(a, b)
-                r = abs(arm)
-                if r < NEAREST:
-                    reached = False
-                    break
-                path[m] = arm / r
-                total += path[m]
-            else:
-                arm = z - complex(b, c)
-                r = abs(arm)
-                cosine = (d * d + r * r - a * a) / (2.0 * d * r)
-                pin = (d * d + a * a - r * r) / (2.0 * d * a)
-                if abs(cosine) >= 1.0 or abs(pin) >= 1.0:
-                    reached = False
-                    break
-                sine = min(sine, math.sqrt(1.0 - pin * pin))
-                path[m] = arm / r * complex(cosine, signs[k] * math.sqrt(1.0 - cosine * cosine))
-                total += path[m]
-        if not reached or middle != middle:
-            continue
-        if kind != SLIDER:
-            for m in range(n):
-                turned = path[m] * total.conjugate()
-                out[m] = math.atan2(turned.imag, turned.real)
-        low, high = out.min(), out.max()
-        span = high - low
-        if not span > 0.0:
-            continue
-        rest, ending = 0.0, 0.0
-        for dwell in range(dwells):
-            begin = first[k] if dwell == 0 else second[k]
-            least_out, most_out, mean = np.inf, -np.inf, 0.0
-            for m in range(length):
-                value = out[(begin + m) % n]
-                least_out, most_out = min(least_out, value), max(most_out, value)
-                mean += value / length
-            rest = max(rest, (most_out - least_out) / span)
-            ends[k, dwell] = 1 if high - mean < mean - low else -1
-            ending = max(ending, min(high - mean, mean - low) / span)
-        if dwells == 2 and ends[k, 0] == ends[k, 1]:
-            continue
-        scores[k] = rest + 0.5 * ending + 0.5 * max(0.0, 1.5 * least - sine)
-        if kind == SLIDER:
-            extent = 0.0
-            for m in range(n):
-                extent = max(extent, abs(curve[m] - curve[0]))
-            scores[k] += 0.05 * max(0.0, math.log(2.0 * extent / span))
-        else:
-            scores[k] += 0.3 * abs(math.log(span / way))
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _rest_sign(curve: Complex, begin: int, length: int, link: float, pivot: complex, rocker: float) -> int:
-    """The assembly in which a rocker's pin moves least while P runs through a piece."""
-    n = len(curve)
-    best, chosen = np.inf, 1
-    for sign in (1, -1):
-        farthest, origin = 0.0, 0j
-        for m in range(length):
-            arm = curve[(begin + m) % n] - pivot
-            r = abs(arm)
-            cosine = (rocker * rocker + r * r - link * link) / (2.0 * rocker * r)
-            cosine = min(max(cosine, -1.0), 1.0)
-            pin = arm / r * complex(cosine, sign * math.sqrt(1.0 - cosine * cosine))
-            if m == 0:
-                origin = pin
-            farthest = max(farthest, abs(pin - origin))
-        if farthest < best:
-            best, chosen = farthest, sign
-    return chosen
