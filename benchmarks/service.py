@@ -1,32 +1,44 @@
-"""The service as one client meets it: how long a small job takes through HTTP, and how soon the service is ready.
+"""The service as its clients meet it: how long a small job takes, what a server bears, and how soon it is ready.
 
     python -m benchmarks.service [--jobs 200]
 
-A real server is started on a free loopback port. The jobs are Norton's Problem 5-26, solved and verified, stated
-with ``Prefer: wait``; the time runs from the request to the parsed answer. Then the same over eight clients, and
-analyses of given mechanisms in 360 steps. A second server shows what it bears: reads of one job over four connections,
-a thousand queued jobs worked off, two hundred listeners, a flood of five times its queue, and every hostile body of the
-tests.
+A real server is started on a free loopback port, and left alone until its workers have loaded everything. The jobs are
+Norton's Problem 5-26, solved and verified, stated with ``Prefer: wait``; the time runs from the request to the last
+byte of the answer. First over one connection, then over eight, and analyses of given mechanisms in 360 steps. A second
+server shows what it bears: reads of a job over four connections, a thousand queued jobs worked off, two hundred
+listeners, a flood of five times its queue, nine hundred half-open connections, and every hostile body of the tests.
+
+Beside the times stands the processor time of the server and of its workers: on a machine that is busy with other things
+the times say how busy, the processor time what the work costs.
 """
 
 from __future__ import annotations
 
 import argparse
 import asyncio
-import http.client
+import contextlib
+import json
 import os
+import selectors
 import signal
+import socket
 import statistics
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
+from urllib.parse import urlsplit
 
 import httpx
 
+from benchmarks import http_load
+from benchmarks.http_load import Load
 from synthesis.kinds import KINDS
 from tests.service import hostile, test_hostile_bodies
 from tests.service.running import RunningServer, alive, until
+from tests.service.test_limits import HALVES
 
 PROBLEM_5_26 = {
     "kind": "motion",
@@ -105,61 +117,86 @@ def row(name: str, times: list[float]) -> None:
 
 QUEUE = 1000
 LISTENERS = 200
+HALF_OPEN = 900
+BODY = json.dumps({"problem": PROBLEM_5_26}).encode()
+QUEUED_JOB = http_load.request("POST", "/v1/jobs", BODY)
+AWAITED_JOB = http_load.request("POST", "/v1/jobs", BODY, {"Prefer": "wait=20"})
 
 
-def read_rate(server: RunningServer, job_id: str, reads: int = 2000, connections: int = 4) -> tuple[float, float]:
-    """Reads of a job by the second, and by the second of the server's processor time; a plain client."""
+T = TypeVar("T")
 
-    def read(count: int) -> None:
-        connection = http.client.HTTPConnection(server.url.removeprefix("http://"))
-        for _ in range(count):
-            connection.request("GET", f"/v1/jobs/{job_id}")
-            answer = connection.getresponse()
-            assert answer.status == 200
-            answer.read()
-        connection.close()
 
-    start, start_of_processor = time.perf_counter(), processor_s(server.process.pid)
-    with ThreadPoolExecutor(connections) as pool:
-        list(pool.map(read, [reads // connections] * connections))
-    return reads / (time.perf_counter() - start), reads / (processor_s(server.process.pid) - start_of_processor)
+@dataclass(frozen=True)
+class Spent:
+    """Seconds of a piece of work: by the clock, and of the processors in the server and in its workers."""
+
+    clock: float
+    server: float
+    workers: float
+
+    def each(self, count: int) -> str:
+        """The processor time of one of so many."""
+        return f"{1e3 * self.server / count:.2f} ms of processor in the server" + (
+            f" and {1e3 * self.workers / count:.2f} ms in a worker" if self.workers > 0.02 * self.server else ""
+        )
+
+
+def spent(server: RunningServer, work: Callable[[], T]) -> tuple[T, Spent]:
+    """What the work gives, and what it took."""
+    workers = server.workers()
+    before = processor_s(server.process.pid), sum(map(processor_s, workers))
+    start = time.perf_counter()
+    given = work()
+    clock = time.perf_counter() - start
+    return given, Spent(clock, processor_s(server.process.pid) - before[0], sum(map(processor_s, workers)) - before[1])
 
 
 def processor_s(pid: int) -> float:
+    """Seconds of the processor that a process has had, by the system's clock of 10 ms."""
     times = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:13]
     return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
 
 
+def until_settled(server: RunningServer, workers: int = 2) -> None:
+    """Wait until the workers have loaded what they load beside their first jobs, and are idle for some seconds."""
+    until(lambda: len(server.workers()) == workers, 60.0)
+    used = [sum(map(processor_s, server.workers()))]
+    while len(used) < 4 or used[-1] > used[-4] + 0.03:
+        time.sleep(1.0)
+        used.append(sum(map(processor_s, server.workers())))
+
+
+def awaited(server: RunningServer, jobs: int, connections: int) -> Load:
+    """So many jobs, each waited for; every answer must be a solved one."""
+    load = http_load.run(server.url, [AWAITED_JOB] * jobs, connections, keep_bodies=True)
+    assert set(load.statuses) == {200}
+    assert all(json.loads(body)["result"]["designs"] for body in load.bodies)
+    return load
+
+
 def fill(server: RunningServer, jobs: int) -> list[int]:
     """The statuses of so many jobs posted over four connections."""
-
-    def post(count: int) -> list[int]:
-        with httpx.Client(base_url=server.url, timeout=60.0) as client:
-            return [client.post("/v1/jobs", json={"problem": PROBLEM_5_26}).status_code for _ in range(count)]
-
-    with ThreadPoolExecutor(4) as pool:
-        return [status for statuses in pool.map(post, [jobs // 4] * 4) for status in statuses]
+    return http_load.run(server.url, [QUEUED_JOB] * jobs, 4).statuses
 
 
-def unfinished(server: RunningServer) -> int:
-    lines = server.client.get("/metrics").text.splitlines()
-    return sum(int(float(line.split()[-1])) for line in lines if line.startswith("mechsynth_jobs_unfinished{"))
+def waiting_or_running(server: RunningServer) -> bool:
+    def some(status: str) -> bool:
+        return bool(server.client.get(f"/v1/jobs?limit=1&status={status}").json()["jobs"])
+
+    return some("queued") or some("running")
+
+
+def drain(server: RunningServer) -> None:
+    suspend(server, signal.SIGCONT)
+    deadline = time.monotonic() + 120.0
+    while waiting_or_running(server):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)  # a closer look would take the processor from what is measured
 
 
 def suspend(server: RunningServer, signal_: signal.Signals) -> None:
     for pid in server.workers():
         os.kill(pid, signal_)
-
-
-def drain_rate(server: RunningServer) -> float:
-    """Jobs by the second of a queue that was filled while the workers were suspended."""
-    suspend(server, signal.SIGSTOP)
-    assert set(fill(server, QUEUE)) == {202}
-    waiting = unfinished(server)
-    start = time.perf_counter()
-    suspend(server, signal.SIGCONT)
-    until(lambda: unfinished(server) == 0, 120.0)
-    return waiting / (time.perf_counter() - start)
 
 
 def listeners(server: RunningServer) -> tuple[int, float]:
@@ -195,8 +232,7 @@ def flood(server: RunningServer) -> tuple[int, float]:
     before = resident_mb(server.process.pid)
     statuses = fill(server, 5 * QUEUE)
     assert set(statuses) == {202, 503}
-    suspend(server, signal.SIGCONT)
-    until(lambda: unfinished(server) == 0, 120.0)
+    drain(server)
     return statuses.count(503), resident_mb(server.process.pid) - before
 
 
@@ -204,20 +240,49 @@ def resident_mb(pid: int) -> float:
     return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
 
-def hostile_times(server: RunningServer) -> list[tuple[float, str]]:
-    """Seconds to each refusal, with the body's name; every answer must be a 4xx problem."""
+def half_open(server: RunningServer) -> tuple[float, list[float]]:
+    """Seconds until the last of many connections with half a request is closed; and the times of honest jobs beside."""
+    address = urlsplit(server.url)
+    halves = list(HALVES.values())
+    waiting = selectors.DefaultSelector()
+    start = time.perf_counter()
+    for n in range(HALF_OPEN):
+        connection = socket.create_connection((address.hostname, address.port), timeout=30)
+        connection.sendall(halves[n % len(halves)])
+        connection.setblocking(False)
+        waiting.register(connection, selectors.EVENT_READ, time.perf_counter())
+    longest, honest = 0.0, []
+    while waiting.get_map():
+        honest += awaited(server, 1, 1).times
+        for key, _ in waiting.select(timeout=0.05):
+            connection = key.fileobj
+            assert isinstance(connection, socket.socket)
+            with contextlib.suppress(ConnectionError):
+                if connection.recv(65536):
+                    continue
+            longest = max(longest, time.perf_counter() - key.data)
+            waiting.unregister(connection)
+            connection.close()
+        assert time.perf_counter() < start + 60.0
+    return longest, honest
+
+
+def hostile_times(server: RunningServer) -> list[tuple[float, float, str]]:
+    """Seconds to each refusal by the clock and of the server's processor, with the body's name."""
     bodies = {name: body for name, (body, _) in test_hostile_bodies.INVALID.items()}
     bodies |= test_hostile_bodies.MALFORMED | test_hostile_bodies.ENORMOUS
     for kind in KINDS:
         bodies |= dict(hostile.of_kind(kind))
+    asked = {name: http_load.request("POST", "/v1/jobs", body) for name, body in bodies.items()}
     times = []
-    for name, body in bodies.items():
-        start = time.perf_counter()
-        answer = server.client.post("/v1/jobs", content=body, headers={"Content-Type": "application/json"})
-        times.append((time.perf_counter() - start, name))
-        assert 400 <= answer.status_code < 500, name
-        assert answer.headers["content-type"] == "application/problem+json", name
-    return sorted(times)
+    for name, request in asked.items():
+        load, effort = spent(server, lambda request=request: http_load.run(server.url, [request], 1, keep_bodies=True))
+        assert 400 <= load.statuses[0] < 500, name
+        problem = json.loads(load.bodies[0])
+        assert problem["status"] == load.statuses[0], name
+        assert problem["type"].startswith("/problems/"), name
+        times.append((load.times[0], effort.server, name))
+    return times
 
 
 def bearing() -> None:
@@ -225,22 +290,38 @@ def bearing() -> None:
     with tempfile.TemporaryDirectory() as folder:
         server = RunningServer(Path(folder), log_level="warning", max_queued=QUEUE)
         try:
+            until_settled(server)
             job = server.post(problem=PROBLEM_5_26, wait=20)
-            read_rate(server, job["id"], 200)
-            rate, by_processor = read_rate(server, job["id"])
-            print(
-                f"\nGET of a job, four connections: {rate:.0f}/s, {by_processor:.0f} by the server's processor second"
-            )
-            print(f"queue of {QUEUE} drained: {drain_rate(server):.0f} jobs/s")
+            read = [http_load.request("GET", f"/v1/jobs/{job['id']}")] * 4000
+            http_load.run(server.url, read[:400], 4)
+            _, effort = spent(server, lambda: http_load.run(server.url, read, 4))
+            print(f"\nGET of a job, four connections: {len(read) / effort.clock:.0f}/s, {effort.each(len(read))}")
+            suspend(server, signal.SIGSTOP)
+            waiting = server.post(problem=PROBLEM_5_26)
+            read = [http_load.request("GET", f"/v1/jobs/{waiting['id']}")] * 2000
+            _, effort = spent(server, lambda: http_load.run(server.url, read, 4))
+            print(f"GET of a queued job: {len(read) / effort.clock:.0f}/s, {effort.each(len(read))}")
+            drain(server)
+            suspend(server, signal.SIGSTOP)
+            assert set(fill(server, QUEUE)) == {202}
+            _, effort = spent(server, lambda: drain(server))
+            print(f"queue of {QUEUE} drained: {QUEUE / effort.clock:.0f} jobs/s, {effort.each(QUEUE)}")
             seen, spread = listeners(server)
             print(f"listeners that saw exactly one end: {seen} of {LISTENERS}, all within {1e3 * spread:.0f} ms")
             refusals, growth = flood(server)
             print(f"flood of {5 * QUEUE} jobs: {refusals} refused, memory grew by {growth:.0f} MB")
-            times = hostile_times(server)
-            median, (worst, name) = times[len(times) // 2][0], times[-1]
+            longest, honest = half_open(server)
             print(
-                f"hostile bodies refused: {len(times)}, median {1e3 * median:.1f} ms, "
-                f"worst {1e3 * worst:.0f} ms ({name}), {sum(t > 0.2 for t, _ in times)} above 200 ms"
+                f"half-open connections, {HALF_OPEN} at once: the last was closed after {longest:.1f} s; "
+                f"{len(honest)} jobs meanwhile, median {1e3 * statistics.median(honest):.0f} ms, "
+                f"slowest {1e3 * max(honest):.0f} ms"
+            )
+            times = hostile_times(server)
+            by_clock, by_processor = max(times), max(times, key=lambda entry: entry[1])
+            print(
+                f"hostile bodies refused: {len(times)}, median {1e3 * sorted(times)[len(times) // 2][0]:.1f} ms, "
+                f"worst {1e3 * by_clock[0]:.0f} ms ({by_clock[2]}), {sum(entry[0] > 0.2 for entry in times)} above 200 "
+                f"ms; most processor time {1e3 * by_processor[1]:.0f} ms ({by_processor[2]})"
             )
             workers = server.workers()
             server.kill()
@@ -262,22 +343,19 @@ def main() -> None:
         server = RunningServer(Path(folder), log_level="warning")
         print(f"server start to ready: {time.perf_counter() - start:.2f} s\n")
         try:
-            for _ in range(20):
-                job_time(server.client, PROBLEM_5_26)
+            until_settled(server)
+            awaited(server, 20, 1)
             print(f"{'job through HTTP with Prefer: wait':<52}{'median ms':>10}{'p95 ms':>10}")
-            row("exact, one client", [job_time(server.client, PROBLEM_5_26) for _ in range(jobs)])
+            alone, effort = spent(server, lambda: awaited(server, jobs, 1))
+            row("exact, one client", alone.times)
+            print(f"    {effort.each(jobs)}")
             row(
                 "search over 1.4 million pairs, one client",
                 [job_time(server.client, POSITIONS_ALONE) for _ in range(10)],
             )
-            clients = [httpx.Client(base_url=server.url, timeout=60.0) for _ in range(8)]
-            start = time.perf_counter()
-            with ThreadPoolExecutor(len(clients)) as pool:
-                times = list(pool.map(lambda k: job_time(clients[k % 8], PROBLEM_5_26), range(2 * jobs)))
-            row("exact, eight clients", times)
-            print(f"\neight clients: {2 * jobs / (time.perf_counter() - start):.0f} jobs/s")
-            for client in clients:
-                client.close()
+            eight, effort = spent(server, lambda: awaited(server, 2 * jobs, 8))
+            row("exact, eight clients", eight.times)
+            print(f"\neight clients: {eight.rate:.0f} jobs/s, {effort.each(2 * jobs)}")
             print(f"\n{'analysis of 360 steps through HTTP':<52}{'median ms':>10}{'p95 ms':>10}")
             for name, mechanism in (
                 ("fourbar", FOURBAR),
