@@ -19,8 +19,9 @@ from typing import Any, cast
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
-REQUEST_S = 10.0
-"""From the first byte of a request, or the opening of the connection, to the last byte of its body."""
+REQUEST_S = 8.0
+"""From the first byte of a request, or the opening of the connection, to the last byte of its body. Ten seconds are the
+most that a connection may take up; a busy event loop comes to its timers late."""
 
 READING_S = 10.0
 """How long a client may leave an answer unread that no longer fits into the buffers."""

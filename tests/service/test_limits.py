@@ -12,7 +12,7 @@ import pytest
 from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT
 
-REQUEST_S = 10.0  # what the documentation promises, not what the code says
+REQUEST_S = 10.0  # how long a connection may take up, whatever the code says
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +157,7 @@ def test_each_sort_of_half_open_connection_ends_in_time(server):
     )
     for name, connection in connections.items():
         received, seconds = until_closed(connection, began)
-        assert seconds < REQUEST_S + 2.0, name
+        assert seconds < REQUEST_S, name
         if b"408" in received:
             assert b'"/problems/request-timeout"' in received
         connection.close()
