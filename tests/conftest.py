@@ -1,6 +1,29 @@
-"""Settings that all tests share."""
+"""Settings that all tests share, and the engines that the service runs on while they run."""
 
+import pytest
 from hypothesis import settings
+
+from tests.cluster import backend
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--backend",
+        choices=backend.NAMES,
+        default=backend.NAMES[0],
+        help="what the service runs on: SQLite and workers of its own, or PostgreSQL, Celery and a broker",
+    )
+
+
+def pytest_configure(config):
+    backend.choose(config.getoption("--backend"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def engines():
+    """Ends whatever engines the tests have started."""
+    yield
+    backend.CHOSEN.remove()

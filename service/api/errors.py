@@ -6,15 +6,18 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_json
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service import telemetry
+from service.jobs.database import unreachable
 
 PROBLEM_JSON = "application/problem+json"
 
@@ -24,7 +27,13 @@ MAX_ERRORS = 20
 MAX_STEP = 100
 """Longest name in a path, characters."""
 
+STORE_RETRY_AFTER_S = 2
+"""When to ask again while the store is out of reach; PostgreSQL restarts within a second or two."""
+
 _MODEL = re.compile("<[a-z_]+>")
+
+
+log = structlog.get_logger(__name__)
 
 
 class FieldError(BaseModel):
@@ -130,6 +139,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(Refusal, _refused)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(SQLAlchemyError, _store_error)
     app.add_exception_handler(Exception, _defect)
 
 
@@ -162,6 +172,17 @@ async def _http_error(request: Request, error: Exception) -> Response:
     return _answer(
         request, error.status_code, "/problems/http-error", "HTTP error", "The request cannot be served.",
         headers=error.headers,
+    )  # fmt: skip
+
+
+async def _store_error(request: Request, error: Exception) -> Response:
+    if not unreachable(error):
+        raise error
+    log.warning("the store does not answer", error=type(error).__name__)
+    return _answer(
+        request, 503, "/problems/store-unavailable", "Store unavailable",
+        "The job store does not answer; send this again later. With an Idempotency-Key that makes one job at most.",
+        headers={"Retry-After": str(STORE_RETRY_AFTER_S)},
     )  # fmt: skip
 
 

@@ -6,11 +6,32 @@ from pathlib import Path
 from typing import Any, Literal
 from urllib.parse import unquote, urlsplit
 
-from sqlalchemy import Engine, create_engine, event, make_url
-from sqlalchemy.exc import ArgumentError
+from sqlalchemy import URL, Engine, NullPool, create_engine, event, func, make_url, select
+from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, TimeoutError
 
 BUSY_TIMEOUT_S = 10.0
 """How long a writer waits for another one. A write takes a millisecond, so this is never reached in good health."""
+
+
+POOL_SIZE = 10
+"""Connections to PostgreSQL that a server keeps; under load it takes as many again. PostgreSQL has 100 by default."""
+
+UPGRADE_LOCK, QUEUE_LOCK = 0x6D656368, 0x6D656369
+"""The numbers of our advisory locks in PostgreSQL; any that nobody else in the database uses."""
+
+UNREACHABLE = (OperationalError, InterfaceError, TimeoutError)
+"""What SQLAlchemy raises when the database is out of reach, is starting or stopping, or has no connection left."""
+
+# A host that vanishes without a word is noticed within 10 s; otherwise it would take the kernel a quarter of an hour.
+_POSTGRESQL = {
+    "application_name": "mechsynth",
+    "connect_timeout": 3,
+    "options": "-c synchronous_commit=on",
+    "keepalives_idle": 5,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 10_000,
+}
 
 
 def connect(url: str, *, durable: bool) -> Engine:
@@ -22,10 +43,22 @@ def connect(url: str, *, durable: bool) -> Engine:
     was told 202 relies on it. A worker is not: the worst it can lose is a finished result, and then the job is
     found unfinished and computed anew. A flush costs 0.3 ms on a virtual disk and up to 10 ms on a real one, so one
     flush a job instead of three is worth the distinction.
+
+    PostgreSQL always waits for the disk. Its connections are looked at before they are used, so that those which a
+    restart of the database has broken are replaced by new ones.
     """
-    parsed = make_url(url)
+    parsed = _with_driver(make_url(url))
+    if parsed.get_backend_name() == "postgresql":
+        return create_engine(
+            parsed,
+            pool_pre_ping=True,
+            pool_size=POOL_SIZE if durable else 2,
+            max_overflow=POOL_SIZE,
+            pool_timeout=BUSY_TIMEOUT_S,
+            connect_args=_POSTGRESQL,
+        )
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed, pool_pre_ping=True)
+        raise ArgumentError("the database has to be SQLite or PostgreSQL")
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
     engine = create_engine(parsed, pool_size=8, max_overflow=32, connect_args={"timeout": BUSY_TIMEOUT_S})
@@ -61,6 +94,23 @@ def sqlite_file(url: str) -> Path | None:
     return file
 
 
+def listening(url: str) -> Engine:
+    """An engine for one connection that stays open to hear what PostgreSQL has to tell."""
+    return create_engine(_with_driver(make_url(url)), poolclass=NullPool, connect_args=_POSTGRESQL)
+
+
+def unreachable(error: BaseException) -> bool:
+    """Whether an error says that the store does not answer, and not that what it was asked is wrong.
+
+    What was being written may or may not have been stored.
+    """
+    return isinstance(error, UNREACHABLE) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+
+
+def _with_driver(url: URL) -> URL:
+    return url.set(drivername="postgresql+psycopg") if url.drivername in ("postgresql", "postgres") else url
+
+
 def upgrade(engine: Engine, revision: str = "head") -> None:
     """Bring the tables to a revision, the newest by default."""
     # Alembic takes a tenth of a second to import, which only the server has to spend.
@@ -70,5 +120,7 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
     with engine.begin() as connection:
+        if engine.dialect.name == "postgresql":  # servers and worker hosts may start at once
+            connection.execute(select(func.pg_advisory_xact_lock(UPGRADE_LOCK)))
         config.attributes["connection"] = connection
         command.upgrade(config, revision)

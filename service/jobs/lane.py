@@ -12,6 +12,7 @@ Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when i
 
 from __future__ import annotations
 
+import signal
 import threading
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
@@ -22,6 +23,7 @@ from typing import Any
 import pebble
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
+from ulid import ULID
 
 from service.jobs import faults, worker
 from service.jobs.executor import Changed
@@ -46,7 +48,11 @@ log = structlog.get_logger(__name__)
 
 
 class WorkerLost(Exception):
-    """The worker died, or could not be started."""
+    """The worker died, or could not be started; ``killed``: from outside, by what need not be the job's fault."""
+
+    def __init__(self, reason: str, *, killed: bool = False) -> None:
+        self.killed = killed
+        super().__init__(reason)
 
 
 class Lane(threading.Thread):
@@ -80,6 +86,8 @@ class Lane(threading.Thread):
         self._pool: Any = None
         self._future: Any = None
         self._job_id: str | None = None
+        self._claim = ""
+        self._seen_to: str | None = None
         self.ready = False
         """Whether the worker has finished starting."""
         self.settled = threading.Event()
@@ -89,6 +97,18 @@ class Lane(threading.Thread):
         """Stop the job if this lane is running it. Callable from any thread; the worker is killed soon after."""
         with self._lock:
             if self._job_id == job_id and self._future is not None:
+                self._future.cancel()
+
+    @property
+    def held(self) -> tuple[str, str] | None:
+        """The claim and the job that this lane sees to, from before the claim is made until the last is written."""
+        with self._lock:
+            return None if self._seen_to is None else (self._claim, self._seen_to)
+
+    def drop(self, claim: str) -> None:
+        """Stop the job if this lane is running it under this claim."""
+        with self._lock:
+            if self._claim == claim and self._job_id is not None and self._future is not None:
                 self._future.cancel()
 
     def stop(self) -> None:
@@ -130,14 +150,18 @@ class Lane(threading.Thread):
     def _see_to(self, job_id: str) -> None:
         """Run a job and tell of it. A defect on the way fails the job; it does not end the lane."""
         try:
+            with self._lock:
+                self._claim, self._seen_to = str(ULID()), job_id
             self._run_job(job_id)
         except Exception:  # a defect of the lane's own: it is this job's end, not that of all that come after
             log.exception("the lane failed", lane=self.name, job=job_id)
             self._replace_worker("defect")
             try:
-                self._stored(self._store.give_up, job_id, faults.INTERNAL_ERROR.as_json(job_id))
+                self._stored(self._store.give_up, job_id, self._claim, faults.INTERNAL_ERROR.as_json(job_id))
             except Exception:  # then the job is taken up again at the next start of the service
                 log.exception("a job could not be failed", lane=self.name, job=job_id)
+        with self._lock:
+            self._seen_to = None
         try:
             self._changed(job_id)
         except Exception:  # the store has the truth; who waits for the news finds it there when the wait is over
@@ -183,12 +207,12 @@ class Lane(threading.Thread):
 
     def _run_job(self, job_id: str) -> None:
         try:
-            ran: worker.Ran = self._call(self._timeout_s, worker.run, job_id, job_id=job_id)
+            ran: worker.Ran = self._call(self._timeout_s, worker.run, job_id, self._claim, job_id=job_id)
         except TimeoutError:
             self._metrics.attempt("timeout")
             self._replace_worker("timeout")
             fault = faults.timeout(self._timeout_s)
-            if self._stored(self._store.give_up, job_id, fault.as_json(job_id)):
+            if self._stored(self._store.give_up, job_id, self._claim, fault.as_json(job_id)):
                 log.warning("job failed", job=job_id, reason="timeout")
         except CancelledError:
             if self._stopping.is_set():
@@ -196,12 +220,12 @@ class Lane(threading.Thread):
             else:
                 self._metrics.attempt("cancelled")
                 self._replace_worker("cancelled")
-            if self._stopping.is_set() and self._stored(self._store.requeue, job_id):
+            if self._stopping.is_set() and self._stored(self._store.requeue, job_id, self._claim):
                 log.info("job requeued", job=job_id, reason="the service stops")
         except WorkerLost as loss:
             self._metrics.attempt("worker lost")
             self._replace_worker("lost")
-            status = self._stored(self._store.crashed, job_id)
+            status = self._stored(self._store.crashed, job_id, self._claim, killed=loss.killed)
             log.warning("worker lost", lane=self.name, job=job_id, reason=str(loss), job_is_now=status)
             if status == Status.QUEUED:
                 self._queue.put(job_id)
@@ -229,7 +253,7 @@ class Lane(threading.Thread):
             try:
                 self._future = self._pool.schedule(function, args=args)
             except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe can be had
-                raise WorkerLost(str(error)) from None
+                raise WorkerLost(str(error), killed=True) from None
             self._job_id = job_id
         try:
             # Not pebble's own timeout, which goes by the wall clock and so by whoever sets it.
@@ -240,8 +264,11 @@ class Lane(threading.Thread):
             raise
         except CancelledError:
             raise
-        except (pebble.ProcessExpired, BrokenProcessPool) as error:
-            raise WorkerLost(f"{error}; exit code {getattr(error, 'exitcode', 'unknown')}") from None
+        except pebble.ProcessExpired as error:
+            killed = error.exitcode == -signal.SIGKILL
+            raise WorkerLost(f"{error}; exit code {error.exitcode}", killed=killed) from None
+        except BrokenProcessPool as error:  # it had not begun the job
+            raise WorkerLost(str(error), killed=True) from None
         except Exception as error:  # whatever the worker could not store or handle: it is of no more use
             log.exception("the worker raised", lane=self.name, job=job_id)
             raise WorkerLost(f"{type(error).__name__} in the worker") from None
@@ -250,11 +277,11 @@ class Lane(threading.Thread):
                 self._job_id = None
                 self._future = None
 
-    def _stored(self, write: Any, *args: Any) -> Any:
+    def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
         """Write to the store, and keep trying while it is out of reach: else the job would be lost until a restart."""
         while True:
             try:
-                return write(*args)
+                return write(*args, **options)
             except SQLAlchemyError:
                 log.exception("the store refused a write", lane=self.name)
                 if self._stopping.wait(RETRY_PERIOD_S):

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import Column, Float, Index, Integer, MetaData, String, Table, Text
+from sqlalchemy.ext.compiler import compiles
+from sqlalchemy.sql.expression import FunctionElement
 
-from service.jobs.states import Status
+from service.jobs.states import UNFINISHED, Status
 
 metadata = MetaData()
 
 TENANT_LENGTH = 100
 """Longest name of a tenant."""
 
-# Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are,
-# and what the API shows. Problem, result and error are JSON as text, because nothing ever looks inside them here.
+# Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are, and what
+# the API shows. What decides about a job (queued_at, due_at) goes by the clock of the database instead, since those of
+# several machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON as text, because
+# nothing ever looks inside them here.
 jobs = Table(
     "jobs",
     metadata,
@@ -37,12 +42,45 @@ jobs = Table(
     Column("idempotency_key", String(200)),
     Column("request_hash", String(64)),
     Column("tenant", String(TENANT_LENGTH), nullable=False, server_default=""),
+    Column("claim", String(26)),
+    Column("queued_at", Float, nullable=False, server_default="0"),
+    Column("due_at", Float, nullable=False, server_default="0"),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_tenant", "tenant", "id"),
     Index("jobs_by_tenant_and_status", "tenant", "status", "id"),
     Index("jobs_by_tenant_and_kind", "tenant", "kind", "id"),
     Index("jobs_by_idempotency_key", "tenant", "idempotency_key", unique=True),
 )
+Index(
+    "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED)])
+).ddl_if("postgresql")  # fmt: skip
+
+# Who runs jobs for several servers: a row for each worker host that is there.
+hosts = Table(
+    "hosts",
+    metadata,
+    Column("id", String(26), primary_key=True),
+    Column("workers", Integer, nullable=False),
+    Column("seen_at", Float, nullable=False),
+)
+
+
+class StoreClock(FunctionElement[float]):
+    """The present time by the clock of the database, which all who share it agree on; seconds since 1970."""
+
+    name = "store_clock"
+    type = Float()
+    inherit_cache = True
+
+
+@compiles(StoreClock, "sqlite")
+def _sqlite_clock(_element: Any, _compiler: Any, **_: Any) -> str:
+    return "((julianday('now') - 2440587.5) * 86400.0)"
+
+
+@compiles(StoreClock, "postgresql")
+def _postgresql_clock(_element: Any, _compiler: Any, **_: Any) -> str:
+    return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,25 +3,70 @@
 Every change is a single ``UPDATE`` whose ``WHERE`` clause holds the states that the change may start from
 (:data:`service.jobs.states.MOVES`) and, for what a worker writes, the number of its attempt. A change that comes too
 late matches no row and is refused; there is nothing to read before, and so nothing to go stale in between.
+
+Several servers and worker hosts may share a store. Words: a *claim* is the mark of one attempt, chosen by who has it
+run; as long as the attempt goes on, its *lease* is renewed, and when that is over the job is taken for abandoned. A
+queued job is *due* when its message may have been lost, and it should be sent again. Leases and dues go by the clock of
+the database, in ``due_at``.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Engine, RowMapping, case, delete, func, insert, literal, select, text, update
-from sqlalchemy.exc import IntegrityError
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Engine,
+    RowMapping,
+    and_,
+    case,
+    delete,
+    func,
+    insert,
+    literal,
+    or_,
+    select,
+    text,
+    update,
+)
+from sqlalchemy.exc import IntegrityError, SQLAlchemyError
+from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
+from service.jobs.database import QUEUE_LOCK, unreachable
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import JobRow, JobSummary, as_stored, jobs, now
+from service.jobs.schema import JobRow, JobSummary, StoreClock, as_stored, hosts, jobs, now
 from service.jobs.states import FINISHED, MOVES, UNFINISHED, Status
 
 MAX_CRASHES = 3
-"""A job whose worker died is tried again this many times."""
+"""A job whose worker died by itself is tried again this many times."""
+
+MAX_KILLS = 20
+"""A job whose worker was killed from outside is tried again this many times: that is hardly the job's fault. It may be,
+where the system kills what takes the last of the memory, so there is an end to it."""
+
+LEASE_S = 10.0
+"""So long after its last sign of life an attempt is taken for abandoned. Signs come twice a second, but a machine may
+be very busy, and a database may need some seconds for a restart."""
+
+RESEND_S = 5.0
+"""A job that nobody has taken is sent again after so long at first, and then whenever it has waited twice as long."""
+
+MAX_RESEND_S = 600.0
+"""Longest time from one sending of a waiting job to the next."""
+
+SETTLE_S = 5.0
+"""How long a new job is tried to be stored when the database breaks off in the middle, so that nobody knows whether."""
+
+_SETTLE_PERIOD_S = 0.2
+_HOST_FORGOTTEN_S = 3600.0
+_CROWD = 500
+"""More servers' connections than can insert at once: so far from its limit, the queue needs no exact count."""
 
 _ROW = tuple(field.name for field in fields(JobRow))
 _SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
@@ -75,6 +120,9 @@ class JobStore:
     ) -> JobRow:
         """Store a new job in the queue. When this returns, the job is on the disk.
 
+        A database that breaks off before it has answered may have stored the job or not. Then it is asked again, for
+        :data:`SETTLE_S` seconds; the id makes sure that there is one job in the end.
+
         Raises
         ------
         QueueFull
@@ -123,16 +171,21 @@ class JobStore:
                 # The job that held the key has been removed since.
 
     def _insert(self, row: dict[str, Any], max_queued: int | None) -> JobRow:
-        new: Any = insert(jobs).values(row)
-        if max_queued is not None:
-            # Counted by the statement that inserts, so that many who come at once cannot all find the last place.
-            queued = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(max_queued).subquery()
-            place = select(func.count()).select_from(queued).scalar_subquery() < max_queued
-            values = select(*(literal(value, jobs.c[name].type) for name, value in row.items())).where(place)
-            new = insert(jobs).from_select(list(row), values)
-        if not self._changed(new):
-            raise QueueFull
-        return JobRow(**{name: row[name] for name in _ROW})
+        asked_at: float | None = None
+        broken = False
+        while True:
+            try:
+                with self._engine.begin() as connection:
+                    asked_at = asked_at or time.monotonic()
+                    if not (broken and _there(connection, row["id"])) and not _inserted(connection, row, max_queued):
+                        raise QueueFull
+                return JobRow(**{name: row[name] for name in _ROW})
+            except SQLAlchemyError as error:
+                # Refused before anything was asked: nothing is stored, and the client may know at once.
+                broken = broken or getattr(error, "connection_invalidated", False)
+                if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
+                    raise
+                time.sleep(_SETTLE_PERIOD_S)
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
         query = select(*_WHOLE, jobs.c.request_hash).where(
@@ -189,12 +242,51 @@ class JobStore:
         with self._engine.connect() as connection:
             return [JobSummary(**_values(row)) for row in connection.execute(query).mappings()]
 
-    def claim(self, job_id: str) -> Claim | None:
-        """Take a queued job; None when it is not there to be taken. Only one of many claimants gets it."""
-        change = self._moved("claim", job_id, progress_message="running", started_at=now(), attempt=jobs.c.attempt + 1)
+    def claim(self, job_id: str, claim: str) -> Claim | None:
+        """Take a queued job under the mark ``claim``; None when it is not there to be taken.
+
+        Only one of many claimants gets it. Who has got it and does not know may ask again.
+        """
+        change = (
+            update(jobs)
+            .where(
+                jobs.c.id == job_id,
+                or_(
+                    jobs.c.status.in_(MOVES["claim"].sources),
+                    and_(jobs.c.status == MOVES["claim"].target, jobs.c.claim == claim),
+                ),
+            )
+            .values(
+                status=MOVES["claim"].target,
+                revision=jobs.c.revision + 1,
+                progress_message="running",
+                started_at=now(),
+                attempt=jobs.c.attempt + 1,
+                claim=claim,
+                due_at=StoreClock() + LEASE_S,
+            )
+        )
         with self._engine.begin() as connection:
             row = connection.execute(change.returning(jobs.c.attempt, jobs.c.kind, jobs.c.problem)).one_or_none()
         return None if row is None else Claim(*row)
+
+    def renew(self, claims: Mapping[str, str]) -> set[str]:
+        """Renew the leases of attempts, given as jobs by their claims; names the claims that are of no use any more.
+
+        Those are of jobs that were cancelled, or removed, or that another attempt has been given.
+        """
+        if not claims:
+            return set()
+        change = (
+            update(jobs)
+            .where(jobs.c.status == Status.RUNNING, jobs.c.claim.in_(claims))
+            .values(due_at=StoreClock() + LEASE_S)
+        )
+        query = select(jobs.c.id, jobs.c.status, jobs.c.claim).where(jobs.c.id.in_(set(claims.values())))
+        with self._engine.begin() as connection:
+            connection.execute(change)
+            found = {row.id: row for row in connection.execute(query)}
+        return {claim for claim, job_id in claims.items() if _useless(found.get(job_id), claim)}
 
     def progress(self, job_id: str, attempt: int, fraction: float, message: str) -> bool:
         """Note how far an attempt is; False when the attempt is no longer the one that counts."""
@@ -221,9 +313,10 @@ class JobStore:
         change = self._moved("fail", job_id, error=error, progress_message="failed", finished_at=now())
         return self._changed(change.where(jobs.c.attempt == attempt))
 
-    def give_up(self, job_id: str, error: str) -> bool:
-        """Fail the job from outside, whichever attempt it is at; for the executor that runs it."""
-        return self._changed(self._moved("give_up", job_id, error=error, progress_message="failed", finished_at=now()))
+    def give_up(self, job_id: str, claim: str, error: str) -> bool:
+        """Fail the job from outside; for the executor that has it run under this claim, or has been about to."""
+        change = self._moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
+        return self._changed(change.where(_not_anothers(claim)))
 
     def cancel(self, job_id: str) -> bool:
         """Cancel an unfinished job; False when there is none. No attempt can write to it afterwards."""
@@ -251,9 +344,9 @@ class JobStore:
         with self._engine.begin() as connection:
             return connection.execute(delete(jobs).where(jobs.c.id.in_(oldest))).rowcount
 
-    def requeue(self, job_id: str) -> bool:
-        """Put an unfinished job back into the queue because its executor stops."""
-        return self._changed(self._moved("requeue", job_id, **_BACK_IN_QUEUE))
+    def requeue(self, job_id: str, claim: str) -> bool:
+        """Put an unfinished job back into the queue because the executor that has it run under this claim stops."""
+        return self._changed(self._moved("requeue", job_id, **_BACK_IN_QUEUE).where(_not_anothers(claim)))
 
     def requeue_unfinished(self) -> list[str]:
         """Put all unfinished jobs back into the queue and name them, oldest first.
@@ -270,35 +363,83 @@ class JobStore:
             rows = connection.execute(select(jobs.c.id).where(jobs.c.status == move.target).order_by(jobs.c.id))
             return list(rows.scalars())
 
-    def crashed(self, job_id: str) -> Status | None:
-        """Note that the worker of a job died.
+    def crashed(self, job_id: str, claim: str, *, killed: bool) -> Status | None:
+        """Note that the worker of a job died, by itself or ``killed`` from outside.
 
         Returns
         -------
         Status or None
-            ``queued``: to be tried again; ``failed``: given up after :data:`MAX_CRASHES` retries; None: the job was
-            finished (or removed) already, nothing changed.
+            ``queued``: to be tried again; ``failed``: given up after :data:`MAX_CRASHES` retries (or, where the last
+            death was a kill, :data:`MAX_KILLS`); None: the job was finished (or removed) already, or another attempt
+            has it; nothing changed.
         """
-        again, over = MOVES["requeue"], MOVES["give_up"]
-        worn_out = jobs.c.crashes >= MAX_CRASHES
-        change = (
-            update(jobs)
-            .where(jobs.c.id == job_id, jobs.c.status.in_(again.sources & over.sources))
-            .values(
-                status=case((worn_out, over.target), else_=again.target),
-                error=case((worn_out, WORKER_DIED.as_json(job_id)), else_=None),
-                started_at=case((worn_out, jobs.c.started_at), else_=None),
-                finished_at=case((worn_out, now()), else_=None),
-                progress_fraction=case((worn_out, jobs.c.progress_fraction), else_=0.0),
-                progress_message=case((worn_out, "failed"), else_="queued"),
-                crashes=jobs.c.crashes + 1,
-                revision=jobs.c.revision + 1,
-            )
-            .returning(jobs.c.status)
-        )
+        change = _died(job_id, MAX_KILLS if killed else MAX_CRASHES)
         with self._engine.begin() as connection:
-            status = connection.execute(change).scalar_one_or_none()
+            status = connection.execute(change.where(_not_anothers(claim))).scalar_one_or_none()
         return None if status is None else Status(status)
+
+    def abandoned(self) -> list[tuple[str, Status]]:
+        """Take the running jobs whose leases are over back into the queue: whoever ran them is gone with its workers.
+
+        Returns
+        -------
+        list
+            These jobs, and what they are now; like :meth:`crashed`.
+        """
+        over = select(jobs.c.id).where(jobs.c.status == Status.RUNNING, jobs.c.due_at < StoreClock())
+        moved = []
+        with self._engine.connect() as connection:
+            found = connection.execute(over).scalars().all()
+        for job_id in found:
+            change = _died(job_id, MAX_KILLS).where(jobs.c.status == Status.RUNNING, jobs.c.due_at < StoreClock())
+            with self._engine.begin() as connection:
+                status = connection.execute(change).scalar_one_or_none()
+            if status is not None:
+                moved.append((job_id, Status(status)))
+        return moved
+
+    def due(self, at_most: int) -> list[str]:
+        """Queued jobs whose messages may be lost, oldest first, to be sent again by the caller and nobody else.
+
+        Whoever asks next does not get them before their next time.
+        """
+        waiting = (
+            select(jobs.c.id)
+            .where(jobs.c.status == Status.QUEUED, jobs.c.due_at < StoreClock())
+            .order_by(jobs.c.id)
+            .limit(at_most)
+            .with_for_update(skip_locked=True)
+        )
+        waited = StoreClock() - jobs.c.queued_at
+        pause = case((waited < RESEND_S, RESEND_S), (waited > MAX_RESEND_S, MAX_RESEND_S), else_=waited)
+        change = update(jobs).where(jobs.c.id.in_(waiting)).values(due_at=StoreClock() + pause).returning(jobs.c.id)
+        with self._engine.begin() as connection:
+            return sorted(connection.execute(change).scalars())
+
+    def not_sent(self, job_ids: Sequence[str]) -> None:
+        """Make jobs due again at once that :meth:`due` has given out and that could not be sent."""
+        for start in range(0, len(job_ids), _IDS_AT_ONCE):
+            ours = jobs.c.id.in_(job_ids[start : start + _IDS_AT_ONCE])
+            self._changed(update(jobs).where(ours, jobs.c.status == Status.QUEUED).values(due_at=StoreClock()))
+
+    def host_is_there(self, host_id: str, workers: int) -> None:
+        """Note a sign of life of a worker host, and how many of its workers are ready."""
+        values = {"workers": workers, "seen_at": StoreClock()}
+        with self._engine.begin() as connection:
+            if connection.execute(update(hosts).where(hosts.c.id == host_id).values(values)).rowcount == 0:
+                connection.execute(insert(hosts).values(id=host_id, **values))
+                connection.execute(delete(hosts).where(hosts.c.seen_at < StoreClock() - _HOST_FORGOTTEN_S))
+
+    def host_is_gone(self, host_id: str) -> None:
+        """Forget a worker host that has stopped."""
+        with self._engine.begin() as connection:
+            connection.execute(delete(hosts).where(hosts.c.id == host_id))
+
+    def workers(self) -> int:
+        """How many workers are ready on all hosts that are there."""
+        query = select(func.sum(hosts.c.workers)).where(hosts.c.seen_at > StoreClock() - LEASE_S)
+        with self._engine.connect() as connection:
+            return connection.execute(query).scalar() or 0
 
     def _moved(self, name: str, job_id: str, **values: Any) -> Any:
         move = MOVES[name]
@@ -314,7 +455,71 @@ class JobStore:
         return rows > 0
 
 
-_BACK_IN_QUEUE: Mapping[str, Any] = {"progress_fraction": 0.0, "progress_message": "queued", "started_at": None}
+_BACK_IN_QUEUE: Mapping[str, Any] = {
+    "progress_fraction": 0.0,
+    "progress_message": "queued",
+    "started_at": None,
+    "queued_at": StoreClock(),
+    "due_at": StoreClock(),
+}
+
+
+def _there(connection: Connection, job_id: str) -> bool:
+    return connection.execute(select(jobs.c.id).where(jobs.c.id == job_id)).first() is not None
+
+
+def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
+    """Insert a row unless ``max_queued`` jobs are queued already; tells whether."""
+    row = {**row, "queued_at": StoreClock(), "due_at": StoreClock() + RESEND_S}
+    if max_queued is None:
+        connection.execute(insert(jobs).values(row))
+        return True
+    # Counted by the statement that inserts, so that many who come at once cannot all find the last place.
+    queued = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(max_queued).subquery()
+    count = select(func.count()).select_from(queued)
+    if connection.dialect.name == "postgresql" and connection.execute(count).scalar_one() > max_queued - _CROWD:
+        # SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
+        connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK)))
+    values = (
+        value if isinstance(value, ColumnElement) else literal(value, jobs.c[name].type) for name, value in row.items()
+    )
+    new = insert(jobs).from_select(list(row), select(*values).where(count.scalar_subquery() < max_queued))
+    return connection.execute(new.execution_options(preserve_rowcount=True)).rowcount > 0
+
+
+def _not_anothers(claim: str) -> ColumnElement[bool]:
+    """The job has been claimed by nobody yet, or under this claim."""
+    return or_(jobs.c.status == Status.QUEUED, jobs.c.claim == claim)
+
+
+def _useless(row: Any, claim: str) -> bool:
+    # A job that is queued is about to be claimed, and one that has ended by itself is about to be done with.
+    if row is None:
+        return True
+    return bool(row.status == Status.CANCELLED or (row.status == Status.RUNNING and row.claim != claim))
+
+
+def _died(job_id: str, retries: int) -> ReturningUpdate[Any]:
+    """The job's worker is dead: to the queue with it, or to its end where that has come ``retries`` times already."""
+    again, over = MOVES["requeue"], MOVES["give_up"]
+    worn_out = jobs.c.crashes >= retries
+    return (
+        update(jobs)
+        .where(jobs.c.id == job_id, jobs.c.status.in_(again.sources & over.sources))
+        .values(
+            status=case((worn_out, over.target), else_=again.target),
+            error=case((worn_out, WORKER_DIED.as_json(job_id)), else_=None),
+            started_at=case((worn_out, jobs.c.started_at), else_=None),
+            finished_at=case((worn_out, now()), else_=None),
+            progress_fraction=case((worn_out, jobs.c.progress_fraction), else_=0.0),
+            progress_message=case((worn_out, "failed"), else_="queued"),
+            crashes=jobs.c.crashes + 1,
+            revision=jobs.c.revision + 1,
+            queued_at=StoreClock(),
+            due_at=StoreClock(),
+        )
+        .returning(jobs.c.status)
+    )
 
 
 def _new_row(tenant: str, kind: str, label: str | None, problem: str) -> dict[str, Any]:

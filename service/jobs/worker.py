@@ -13,14 +13,16 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, ParamSpec, TypeVar
 
 import structlog
+from sqlalchemy.exc import SQLAlchemyError
 
 from service import logs
 from service.jobs import faults
-from service.jobs.database import connect
+from service.jobs.database import connect, unreachable
 from service.jobs.orphans import die_with
 from service.jobs.store import Claim, JobStore
 
@@ -30,10 +32,16 @@ Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "supers
 PROGRESS_PERIOD_S = 0.2
 """Progress is stored at most this often: each time is a write to the disk that all workers share."""
 
+RETRY_PERIOD_S = 0.5
+"""Pause before a write to a store that is out of reach is tried again."""
+
 LIBRARIES_MB = 400
 """What solvers load after the worker has started, beside what a job is allowed: convex optimization, kernels."""
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 log = structlog.get_logger(__name__)
 
@@ -93,13 +101,14 @@ def hello() -> int:
     return os.getpid()
 
 
-def run(job_id: str) -> Ran:
-    """Run a queued job to its end. The store has the answer when this returns.
+def run(job_id: str, mark: str) -> Ran:
+    """Run a queued job to its end, claimed under ``mark``. The store has the answer when this returns.
 
-    Raises whatever the store raises: the executor then treats the worker as dead and the job is tried again.
+    While the store is out of reach this waits for it. What else the store raises is raised: the executor then treats
+    the worker as dead and the job is tried again.
     """
     assert _post is not None, "start() comes first"
-    claim = _post.store.claim(job_id)
+    claim = _stored(_post.store.claim, job_id, mark)
     if claim is None:
         return Ran("not claimed", None, 0.0)
     bound = log.bind(job=job_id, attempt=claim.attempt)
@@ -116,13 +125,28 @@ def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
         result = _solve(post.store, job_id, claim)
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
-        stored = post.store.fail(job_id, claim.attempt, fault.as_json(job_id))
+        stored = _stored(post.store.fail, job_id, claim.attempt, fault.as_json(job_id))
         return "out of memory" if stored else "superseded"
     except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
         log.exception("the solver raised", job=job_id, attempt=claim.attempt)
-        stored = post.store.fail(job_id, claim.attempt, faults.INTERNAL_ERROR.as_json(job_id))
+        stored = _stored(post.store.fail, job_id, claim.attempt, faults.INTERNAL_ERROR.as_json(job_id))
         return "failed" if stored else "superseded"
-    return "succeeded" if post.store.succeed(job_id, claim.attempt, result) else "superseded"
+    return "succeeded" if _stored(post.store.succeed, job_id, claim.attempt, result) else "superseded"
+
+
+def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
+    """Write to the store, and wait for it while it is out of reach: the answer is there, and would be lost.
+
+    Each write can be repeated where nobody knows whether it was done, since it names its claim or attempt.
+    """
+    while True:
+        try:
+            return write(*args, **options)
+        except SQLAlchemyError as error:
+            if not unreachable(error):
+                raise
+            log.warning("the store is out of reach", error=type(error).__name__)
+            time.sleep(RETRY_PERIOD_S)
 
 
 def _solve(store: JobStore, job_id: str, claim: Claim) -> str:
@@ -137,7 +161,11 @@ def _solve(store: JobStore, job_id: str, claim: Claim) -> str:
         now = time.monotonic()
         if now - stored_at >= PROGRESS_PERIOD_S:
             stored_at = now
-            store.progress(job_id, claim.attempt, fraction, message)
+            try:
+                store.progress(job_id, claim.attempt, fraction, message)
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    raise
 
     return dispatch.solve(problem, progress).model_dump_json()
 

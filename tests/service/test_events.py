@@ -253,7 +253,7 @@ def test_the_store_is_read_once_for_all_listeners(store):
         streams = [asyncio.create_task(stream(feed, job)) for _ in range(300)]
         await asyncio.sleep(1.0)  # the reads of a time are counted
         reads = store.reads
-        claim = store.claim(job.id)
+        claim = store.claim(job.id, "claim")
         store.succeed(job.id, claim.attempt, "{}")
         return reads, await asyncio.gather(*streams)
 

@@ -7,30 +7,50 @@ from importlib.resources import files
 import pytest
 from alembic import command
 from alembic.config import Config
-from sqlalchemy import insert, select, update
+from sqlalchemy import delete, insert, select, update
 
 from service.access.keys import api_keys
 from service.jobs.database import connect, upgrade
-from service.jobs.schema import jobs, metadata
+from service.jobs.schema import StoreClock, hosts, jobs, metadata
 from service.jobs.states import FINISHED, MOVES, Status
-from service.jobs.store import MAX_CRASHES, JobStore, KeyReused, QueueFull, Repeatable, _new_row
+from service.jobs.store import (
+    LEASE_S,
+    MAX_CRASHES,
+    MAX_KILLS,
+    MAX_RESEND_S,
+    RESEND_S,
+    JobStore,
+    KeyReused,
+    QueueFull,
+    Repeatable,
+    _new_row,
+)
+from tests.cluster.backend import CHOSEN
 
 ACTIONS = {
-    "claim": lambda store, job, attempt: store.claim(job) is not None,
+    "claim": lambda store, job, attempt: store.claim(job, "new") is not None,
     "succeed": lambda store, job, attempt: store.succeed(job, attempt, "{}"),
     "fail": lambda store, job, attempt: store.fail(job, attempt, "{}"),
-    "requeue": lambda store, job, attempt: store.requeue(job),
-    "give_up": lambda store, job, attempt: store.give_up(job, "{}"),
+    "requeue": lambda store, job, attempt: store.requeue(job, "old"),
+    "give_up": lambda store, job, attempt: store.give_up(job, "old", "{}"),
     "cancel": lambda store, job, attempt: store.cancel(job),
 }
 
 
-@pytest.fixture
-def engine(tmp_path):
-    engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=True)
+@pytest.fixture(scope="module")
+def upgraded(tmp_path_factory):
+    engine = connect(CHOSEN.store_url(tmp_path_factory.mktemp("store")), durable=True)
     upgrade(engine)
     yield engine
     engine.dispose()
+
+
+@pytest.fixture
+def engine(upgraded):
+    with upgraded.begin() as connection:
+        for table in metadata.sorted_tables:
+            connection.execute(delete(table))
+    return upgraded
 
 
 @pytest.fixture
@@ -45,7 +65,7 @@ def job(store):
 
 def put(engine, job_id, status, attempt=1):
     with engine.begin() as connection:
-        connection.execute(update(jobs).where(jobs.c.id == job_id).values(status=status, attempt=attempt))
+        connection.execute(update(jobs).where(jobs.c.id == job_id).values(status=status, attempt=attempt, claim="old"))
 
 
 def test_every_move_has_an_action():
@@ -70,9 +90,9 @@ def test_a_move_happens_from_its_sources_only(engine, store, job, name, status):
 
 @pytest.mark.parametrize("name", ["succeed", "fail"])
 def test_an_older_attempt_is_refused(store, job, name):
-    first = store.claim(job.id)
-    store.requeue(job.id)
-    second = store.claim(job.id)
+    first = store.claim(job.id, "first")
+    store.requeue(job.id, "first")
+    second = store.claim(job.id, "second")
     assert (first.attempt, second.attempt) == (1, 2)
     before = store.get(job.id)
     assert not ACTIONS[name](store, job.id, first.attempt)
@@ -85,11 +105,11 @@ def test_one_of_many_concurrent_claims_wins(engine, store, job):
     start = threading.Barrier(8)
     claims = []
 
-    def claim():
+    def claim(name):
         start.wait()
-        claims.append(store.claim(job.id))
+        claims.append(store.claim(job.id, name))
 
-    threads = [threading.Thread(target=claim) for _ in range(8)]
+    threads = [threading.Thread(target=claim, args=(f"claim {n}",)) for n in range(8)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -100,28 +120,28 @@ def test_one_of_many_concurrent_claims_wins(engine, store, job):
 
 def test_a_job_whose_worker_keeps_dying_is_given_up(store, job):
     for crash in range(MAX_CRASHES):
-        store.claim(job.id)
-        assert store.crashed(job.id) == Status.QUEUED
+        store.claim(job.id, "claim")
+        assert store.crashed(job.id, "claim", killed=False) == Status.QUEUED
         assert store.get(job.id).crashes == crash + 1
-    store.claim(job.id)
-    assert store.crashed(job.id) == Status.FAILED
+    store.claim(job.id, "claim")
+    assert store.crashed(job.id, "claim", killed=False) == Status.FAILED
     given_up = store.get(job.id)
     assert "/problems/worker-died" in given_up.error
     assert given_up.finished_at is not None
-    assert store.crashed(job.id) is None
+    assert store.crashed(job.id, "claim", killed=False) is None
 
 
 def test_the_death_of_the_worker_of_a_cancelled_job_changes_nothing(store, job):
-    store.claim(job.id)
+    store.claim(job.id, "claim")
     store.cancel(job.id)
     before = store.get(job.id)
-    assert store.crashed(job.id) is None
-    assert not store.requeue(job.id)
+    assert store.crashed(job.id, "claim", killed=False) is None
+    assert not store.requeue(job.id, "claim")
     assert store.get(job.id) == before
 
 
 def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
-    claim = store.claim(job.id)
+    claim = store.claim(job.id, "claim")
     assert not store.delete(job.id), "a running job must not be removed"
     store.cancel(job.id)
     assert store.delete(job.id)
@@ -131,8 +151,8 @@ def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
 
 def test_unfinished_jobs_are_queued_again_oldest_first(store):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
-    store.claim(ids[0])
-    store.claim(ids[2])
+    store.claim(ids[0], "claim")
+    store.claim(ids[2], "claim")
     store.succeed(ids[2], 1, "{}")
     assert store.requeue_unfinished() == [ids[0], ids[1], ids[3]]
     assert store.get(ids[0]).status == Status.QUEUED
@@ -141,7 +161,7 @@ def test_unfinished_jobs_are_queued_again_oldest_first(store):
 
 
 def test_progress_is_kept_within_bounds(store, job):
-    claim = store.claim(job.id)
+    claim = store.claim(job.id, "claim")
     assert store.progress(job.id, claim.attempt, 7.0, "x" * 1000)
     assert store.get(job.id).progress_fraction == 1.0
     assert len(store.get(job.id).progress_message) == 200
@@ -149,7 +169,7 @@ def test_progress_is_kept_within_bounds(store, job):
 
 def test_pages_are_newest_first_and_filtered(store):
     ids = [store.create(tenant="", kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
-    store.claim(ids[0])
+    store.claim(ids[0], "claim")
     assert [j.id for j in store.page(tenant="", limit=10)] == ids[::-1]
     assert [j.id for j in store.page(tenant="", limit=1, before=ids[2])] == [ids[1]]
     assert [j.id for j in store.page(tenant="", limit=10, kind="motion")] == [ids[2], ids[0]]
@@ -212,7 +232,7 @@ def test_the_queue_has_an_end(engine, store):
     assert store.create_once(**ours, repeatable=Repeatable("k", "a")) == (kept, False), "it has its place already"
     with pytest.raises(KeyReused):
         store.create_once(**ours, repeatable=Repeatable("k", "b"))
-    store.claim(created[0].id)
+    store.claim(created[0].id, "claim")
     assert store.create(**ours).status == Status.QUEUED, "a running job is not in the queue"
     assert store.unfinished() == {"queued": 3, "running": 1}
 
@@ -241,7 +261,7 @@ def test_old_finished_jobs_are_removed(engine, store):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
     for job_id in ids[:4]:
         store.cancel(job_id)
-    store.claim(ids[5])
+    store.claim(ids[5], "claim")
     cutoff = datetime.now(UTC)
     time.sleep(0.01)  # ids and times have milliseconds
     late = store.create(tenant="", kind="motion", label=None, problem="{}").id
@@ -289,3 +309,124 @@ def test_upgrading_twice_keeps_the_jobs(engine, store, job):
     upgrade(engine)
     with engine.connect() as connection:
         assert connection.execute(select(jobs.c.id)).scalars().all() == [job.id]
+
+
+def overdue(engine, *job_ids):
+    with engine.begin() as connection:
+        connection.execute(update(jobs).where(jobs.c.id.in_(job_ids)).values(due_at=jobs.c.due_at - 3600.0))
+
+
+def test_who_does_not_know_whether_it_has_claimed_a_job_may_ask_again(store, job):
+    first, again = store.claim(job.id, "mine"), store.claim(job.id, "mine")
+    assert (first.problem, again.problem) == (job.problem, job.problem)
+    assert again.attempt > first.attempt, "what the first one has begun, if anything, is refused"
+    assert store.claim(job.id, "another's") is None
+    assert store.succeed(job.id, again.attempt, "{}")
+    assert store.claim(job.id, "mine") is None
+
+
+@pytest.mark.parametrize("name", ["requeue", "give_up", "crashed"])
+def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, job, name):
+    store.claim(job.id, "first")
+    overdue(engine, job.id)
+    assert store.abandoned() == [(job.id, Status.QUEUED)]
+    store.claim(job.id, "second")
+    before = store.get(job.id)
+    late = {
+        "requeue": lambda: store.requeue(job.id, "first"),
+        "give_up": lambda: store.give_up(job.id, "first", "{}"),
+        "crashed": lambda: store.crashed(job.id, "first", killed=False),
+    }
+    assert not late[name]()
+    assert store.get(job.id) == before
+
+
+def test_only_abandoned_jobs_are_taken_back(engine, store):
+    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
+    for job_id in ids[:3]:
+        store.claim(job_id, f"claim of {job_id[-4:]}")
+    assert store.abandoned() == []
+    overdue(engine, *ids)
+    store.succeed(ids[0], 1, "{}")
+    assert store.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
+    assert store.abandoned() == [(ids[2], Status.QUEUED)]
+    assert store.abandoned() == []
+    assert [store.get(job_id).status for job_id in ids] == ["succeeded", "running", "queued", "queued"]
+
+
+def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store, job):
+    for kill in range(MAX_KILLS):
+        store.claim(job.id, f"claim {kill}")
+        overdue(engine, job.id)
+        assert store.abandoned() == [(job.id, Status.QUEUED)]
+    store.claim(job.id, "last")
+    overdue(engine, job.id)
+    assert store.abandoned() == [(job.id, Status.FAILED)]
+    assert "/problems/worker-died" in store.get(job.id).error
+
+
+def test_kills_are_forgiven_more_often_than_deaths(store, job):
+    for n in range(MAX_CRASHES + 3):
+        store.claim(job.id, f"claim {n}")
+        assert store.crashed(job.id, f"claim {n}", killed=True) == Status.QUEUED
+    store.claim(job.id, "one more")
+    assert store.crashed(job.id, "one more", killed=False) == Status.FAILED
+
+
+def test_claims_that_are_of_no_use_are_named(store):
+    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
+    _, _, cancelled, removed, done, taken = ids
+    for job_id in ids[1:]:
+        store.claim(job_id, job_id)
+    for job_id in (cancelled, removed):
+        store.cancel(job_id)
+    store.delete(removed)
+    store.succeed(done, 1, "{}")
+    store.requeue(taken, taken)
+    store.claim(taken, "another")
+    assert store.renew({job_id: job_id for job_id in ids}) == {cancelled, removed, taken}
+    assert store.renew({}) == set()
+
+
+def test_jobs_whose_messages_may_be_lost_are_due_once_and_later_again(engine, store):
+    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
+    assert store.due(10) == [], "new jobs are on their way"
+    overdue(engine, *ids)
+    store.claim(ids[3], "claim")
+    assert store.due(2) == ids[:2]
+    assert store.due(10) == [ids[2]]
+    assert store.due(10) == []
+    store.not_sent(ids[1:])
+    assert store.due(10) == ids[1:3]
+    store.claim(ids[0], "claim")
+    store.requeue(ids[0], "claim")
+    assert store.due(10) == [ids[0]], "nobody has a message for a job that has come back"
+
+
+def test_the_longer_a_job_waits_the_rarer_it_is_sent(engine, store, job):
+    pauses = []
+    for waited in (1.0, 60.0, 86_400.0):
+        with engine.begin() as connection:
+            connection.execute(update(jobs).values(queued_at=StoreClock() - waited, due_at=StoreClock() - 1.0))
+        assert store.due(1) == [job.id]
+        with engine.connect() as connection:
+            pauses.append(connection.execute(select(jobs.c.due_at - StoreClock())).scalar())
+    assert pauses == pytest.approx([RESEND_S, 60.0, MAX_RESEND_S], abs=2.0)
+
+
+def test_the_clock_of_the_store_is_the_time(engine):
+    with engine.connect() as connection:
+        assert connection.execute(select(StoreClock())).scalar() == pytest.approx(time.time(), abs=5.0)
+
+
+def test_hosts_are_there_as_long_as_they_say_so(engine, store):
+    assert store.workers() == 0
+    store.host_is_there("one", 2)
+    store.host_is_there("two", 3)
+    store.host_is_there("one", 1)
+    assert store.workers() == 4
+    with engine.begin() as connection:
+        connection.execute(update(hosts).where(hosts.c.id == "two").values(seen_at=hosts.c.seen_at - 2 * LEASE_S))
+    assert store.workers() == 1
+    store.host_is_gone("one")
+    assert store.workers() == 0
