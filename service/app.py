@@ -8,7 +8,6 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
-import structlog
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 from starlette.types import Lifespan
@@ -27,8 +26,6 @@ from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
 from service.metrics import Metrics
 from service.settings import Settings
-
-log = structlog.get_logger(__name__)
 
 _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
@@ -54,11 +51,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
             executor.subscribe(changes.publish)
             executor.start()
             await run_in_threadpool(upgrade, engine)
-            unfinished = await run_in_threadpool(store.requeue_unfinished)
-            for job_id in unfinished:
-                executor.submit(job_id)
-            if unfinished:
-                log.info("unfinished jobs taken up again", jobs=len(unfinished))
+            await run_in_threadpool(executor.resume)
             # A SQLite store has one server; of any other, another server may remove a job.
             finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
             app.state.desk = JobDesk(store, executor, changes, measured, settings.max_queued, finished)

@@ -29,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = _parser().parse_args(arguments)
     if command.name == "serve":
         return _serve()
+    if command.name == "worker":
+        return _worker()
     if command.name == "demo":
         from httpx import HTTPError
 
@@ -106,10 +108,31 @@ def _serve() -> int:
     return 0
 
 
+def _worker() -> int:
+    settings = _settings()
+    if settings is None:
+        return EXIT_USAGE
+    if settings.executor != "celery":
+        print("mechsynth worker: a worker host needs a broker; set MECHSYNTH_EXECUTOR=celery", file=sys.stderr)
+        return EXIT_USAGE
+    from sqlalchemy.exc import SQLAlchemyError
+
+    from service.jobs.host import run_host
+
+    try:
+        run_host(settings)
+    except (SQLAlchemyError, OSError) as error:
+        # Not the URL itself, which may hold a password.
+        print(f"mechsynth worker: cannot use the database ({type(error).__name__})", file=sys.stderr)
+        return EXIT_FAILURE
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mechsynth", description="A service that designs mechanisms.")
     commands = parser.add_subparsers(dest="name", required=True, metavar="command")
     commands.add_parser("serve", help="run the service; the environment variables MECHSYNTH_... set it up")
+    commands.add_parser("worker", help="run a worker host, which takes jobs from a broker; set up like the service")
     demo = commands.add_parser("demo", help="solve a problem through a service of its own, and draw the answer")
     demo.add_argument("--output", type=Path, default=Path("var/demo.svg"), help="where the drawing goes (SVG)")
     solve = commands.add_parser("solve", help="solve the problem in a file: print the answer, write the drawings")

@@ -17,6 +17,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from service import logs
 from service.access.keys import KeyStore
 from service.jobs.database import connect, sqlite_file
+from service.jobs.executor import Executor
 from service.jobs.local import LocalExecutor
 from service.metrics import Metrics
 from service.settings import Settings
@@ -67,8 +68,13 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
     raise _Ended
 
 
-def _executor(settings: Settings, metrics: Metrics) -> LocalExecutor:
+def _executor(settings: Settings, metrics: Metrics) -> Executor:
     try:
+        if settings.executor == "celery":
+            # Celery's import takes half a second, which a server with workers of its own has no use for.
+            from service.jobs.distributed import CeleryExecutor
+
+            return CeleryExecutor(settings)
         return LocalExecutor(settings, metrics)
     except (SQLAlchemyError, ImportError, OSError) as error:
         raise _no_database(error) from None
@@ -123,7 +129,13 @@ def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
 
 @contextmanager
 def _data_folder(settings: Settings) -> Iterator[None]:
-    """Keep other servers away from the data folder: each would take up the jobs that the other one runs."""
+    """Keep other servers away from the data folder: each would take up the jobs that the other one runs.
+
+    Servers that share their jobs through a broker have nothing in it.
+    """
+    if settings.executor == "celery":
+        yield
+        return
     try:
         settings.data_dir.mkdir(parents=True, exist_ok=True)
         lock = open(settings.data_dir / "server.lock", "w")  # noqa: SIM115 (closed below)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, Field, SecretStr, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 PREFIX = "MECHSYNTH_"
+
+BROKERS = ("amqp://", "amqps://", "redis://", "rediss://")
 
 
 class SettingsError(ValueError):
@@ -30,6 +32,15 @@ class Settings(BaseSettings):
     data_dir: Path = Field(default=Path("var"), description="Folder of the database; made when missing.")
     database_url: str | None = Field(
         default=None, description="SQLAlchemy URL of the job store; a SQLite file in data_dir when left out."
+    )
+    executor: Literal["local", "celery"] = Field(
+        default="local", description="Who runs the jobs: workers of the server, or worker hosts behind a broker."
+    )
+    broker_url: SecretStr | None = Field(
+        default=None, description="The broker between servers and worker hosts: amqp://... (RabbitMQ) or redis://..."
+    )
+    queue: Annotated[str, Field(pattern="^[A-Za-z0-9._-]{1,100}$", description="Name of the queue in the broker.")] = (
+        "mechsynth"
     )
     workers: Annotated[int, Field(ge=1, le=256, description="Worker processes.")] = min(2, os.cpu_count() or 1)
     max_body_bytes: Annotated[int, Field(ge=1024, le=1 << 30, description="Largest request body, bytes.")] = 1 << 20
@@ -63,6 +74,22 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     log_format: Literal["text", "json"] = "text"
 
+    @field_validator("broker_url")
+    @classmethod
+    def _broker(cls, url: SecretStr | None) -> SecretStr | None:
+        if url is not None and not url.get_secret_value().startswith(BROKERS):
+            raise ValueError(f"a broker's URL begins with {', '.join(BROKERS)}")
+        return url
+
+    @model_validator(mode="after")
+    def _distributed(self) -> Self:
+        if self.executor == "celery":
+            if self.broker_url is None:
+                raise ValueError(f"{PREFIX}EXECUTOR=celery needs a broker; set {PREFIX}BROKER_URL")
+            if not self.store_url.startswith("postgres"):
+                raise ValueError(f"{PREFIX}EXECUTOR=celery needs PostgreSQL; set {PREFIX}DATABASE_URL")
+        return self
+
     @property
     def rate_limit_rule(self) -> str | None:
         """The rate limit in force."""
@@ -85,5 +112,8 @@ def read_settings() -> Settings:
     try:
         return Settings()
     except ValidationError as error:
-        faults = (f"{PREFIX}{str(e['loc'][0]).upper()}: {e['msg']}" for e in error.errors())
+        faults = (
+            (f"{PREFIX}{str(e['loc'][0]).upper()}: " if e["loc"] else "") + e["msg"].removeprefix("Value error, ")
+            for e in error.errors()
+        )
         raise SettingsError("; ".join(faults)) from None

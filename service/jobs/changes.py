@@ -17,8 +17,8 @@ class Changes:
         self.closed = False
         """True once nobody should wait any longer, because the service stops."""
 
-    def publish(self, job_id: str) -> None:
-        """Wake the watchers of a job. Callable from any thread."""
+    def publish(self, job_id: str | None) -> None:
+        """Wake the watchers of a job, or of all jobs where it may be any. Callable from any thread."""
         # A job may end while the service stops. The loop may be closed between any question and the call, so it is
         # not asked; when it is gone, so are the watchers.
         with suppress(RuntimeError):
@@ -41,7 +41,10 @@ class Changes:
 
     @contextmanager
     def watch_all(self, told: Callable[[str | None], None]) -> Iterator[None]:
-        """Call ``told`` with the id of every job that changes, and with None at the end. On the event loop only."""
+        """Call ``told`` with the id of every job that changes, and with None where it may be any, as at the end.
+
+        On the event loop only.
+        """
         self._of_all.add(told)
         try:
             yield
@@ -56,8 +59,10 @@ class Changes:
         for told in list(self._of_all):
             told(None)
 
-    def _wake(self, job_id: str) -> None:
-        for event in self._watches.get(job_id, ()):
-            event.set()
+    def _wake(self, job_id: str | None) -> None:
+        watched = self._watches if job_id is None else [job_id]
+        for watched_id in watched:
+            for event in self._watches.get(watched_id, ()):
+                event.set()
         for told in self._of_all:
             told(job_id)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-Changed = Callable[[str], None]
-"""Called with the id of a job that a worker is done with; from any thread."""
+Changed = Callable[[str | None], None]
+"""Called with the id of a job that a worker is done with, or None where any job may be it; from any thread."""
 
 
 class Executor(Protocol):
@@ -14,6 +14,10 @@ class Executor(Protocol):
 
     def start(self) -> None:
         """Begin to take jobs; nothing happens when it has begun already. The workers may still be starting after."""
+        ...
+
+    def resume(self) -> None:
+        """Take up the jobs of the store that nobody runs. Called once, when the store has its tables."""
         ...
 
     def subscribe(self, changed: Changed) -> None:

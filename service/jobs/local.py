@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from queue import SimpleQueue
 
+import structlog
+
 from service.jobs.database import connect
 from service.jobs.executor import Changed
 from service.jobs.lane import Lane
@@ -15,6 +17,9 @@ from service.settings import Settings
 
 STOP_TIMEOUT_S = 5.0
 """A lane stops within half a second; one that does not is left to the end of the process, which kills its worker."""
+
+
+log = structlog.get_logger(__name__)
 
 
 class LocalExecutor:
@@ -68,6 +73,14 @@ class LocalExecutor:
         for lane in self._lanes:
             lane.start()
 
+    def resume(self) -> None:
+        """Take up what the server before this one has left; nobody else runs jobs of this store."""
+        unfinished = self._store.requeue_unfinished()
+        for job_id in unfinished:
+            self.submit(job_id)
+        if unfinished:
+            log.info("unfinished jobs taken up again", jobs=len(unfinished))
+
     def subscribe(self, changed: Changed) -> None:
         """Tell ``changed`` from now on of each job that a worker is done with."""
         self._subscriber = changed
@@ -80,6 +93,15 @@ class LocalExecutor:
         """Kill the worker that runs the job; one that no lane has begun cannot be claimed when its turn comes."""
         for lane in self._lanes:
             lane.cancel(job_id)
+
+    def claims(self) -> dict[str, str]:
+        """The jobs that the lanes see to now, by their claims."""
+        return dict(held for lane in self._lanes if (held := lane.held) is not None)
+
+    def drop(self, claim: str) -> None:
+        """Kill the worker that runs a job under a claim that is of no use any more."""
+        for lane in self._lanes:
+            lane.drop(claim)
 
     def ready(self) -> int:
         """How many workers have finished starting."""
@@ -95,6 +117,6 @@ class LocalExecutor:
             lane.join(STOP_TIMEOUT_S)
         self._engine.dispose()
 
-    def _changed(self, job_id: str) -> None:
+    def _changed(self, job_id: str | None) -> None:
         if self._subscriber is not None:
             self._subscriber(job_id)

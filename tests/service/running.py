@@ -2,12 +2,15 @@
 
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import httpx
+
+from tests.cluster.backend import CHOSEN
 
 ROOT = Path(__file__).parents[2]
 REAL = ("-m", "service.cli")
@@ -33,25 +36,28 @@ def until(condition, seconds=10.0, what="the condition"):
 
 def environment(folder: Path, **settings) -> dict[str, str]:
     clean = {key: value for key, value in os.environ.items() if not key.startswith("MECHSYNTH_")}
+    settings = {**CHOSEN.settings(folder), **settings}
     ours = {"MECHSYNTH_PORT": "0", "MECHSYNTH_DATA_DIR": str(folder / "data"), "SCRIPTED_FOLDER": str(folder)}
     return {**clean, "PYTHONPATH": str(ROOT), **ours, **{f"MECHSYNTH_{k.upper()}": str(v) for k, v in settings.items()}}
 
 
 class RunningServer:
-    """Starts ``mechsynth serve`` in ``folder`` and waits until it is ready."""
+    """Starts ``mechsynth serve`` in ``folder``, and a worker host where it needs one, and waits until it is ready."""
 
     def __init__(self, folder: Path, program=REAL, **settings):
         self.folder = folder
         self.log_path = folder / "log"
         announced = folder / "announced"
+        env = environment(folder, **settings)
         with announced.open("wb") as out, self.log_path.open("ab") as log:
             self.process = subprocess.Popen(
-                [sys.executable, *program, "serve"],
-                stdout=out,
-                stderr=log,
-                env=environment(folder, **settings),
-                cwd=folder,
+                [sys.executable, *program, "serve"], stdout=out, stderr=log, env=env, cwd=folder
             )
+            self.host = self.process
+            if CHOSEN.distributed:
+                self.host = subprocess.Popen(
+                    [sys.executable, *program, "worker"], stdout=log, stderr=log, env=env, cwd=folder
+                )
         try:
             self.url = until(lambda: self._url(announced), START_S, "the announcement").strip()
         except BaseException:
@@ -62,6 +68,7 @@ class RunningServer:
 
     def _url(self, announced):
         assert self.process.poll() is None, self.log()
+        assert self.host.poll() is None, self.log()
         words = announced.read_text().split()
         return words[-1] if words else ""
 
@@ -90,19 +97,38 @@ class RunningServer:
         return until(there, seconds, f"job {status}")
 
     def workers(self):
-        return workers_of(self.process.pid)
+        return workers_of(self.host.pid)
+
+    def stored(self, job_id, column):
+        """What the store has of a job, past the service."""
+        return stored(self.folder, job_id, column)
 
     def stop(self):
         """Ask the server to end; gives its exit status."""
         self.client.close()
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(STOP_S)
+        if self.host is not self.process:
+            self.host.send_signal(signal.SIGTERM)
+        return self.process.wait(STOP_S) or self.host.wait(STOP_S)
 
     def kill(self):
         if hasattr(self, "client"):
             self.client.close()
-        self.process.kill()
-        self.process.wait(STOP_S)
+        for process in (self.process, self.host):
+            process.kill()
+            process.wait(STOP_S)
+
+
+def stored(folder, job_id, column):
+    """What the store of the service in a folder has of a job."""
+    if CHOSEN.distributed:
+        rows = CHOSEN.postgres.query(CHOSEN.mark(folder), f"SELECT {column} FROM jobs WHERE id = %s", job_id)
+        return rows[0][0]
+    raw = sqlite3.connect(folder / "data" / "mechsynth.sqlite3")
+    try:
+        return raw.execute(f"SELECT {column} FROM jobs WHERE id = ?", (job_id,)).fetchone()[0]
+    finally:
+        raw.close()
 
 
 def workers_of(server_pid):

@@ -3,7 +3,6 @@
 import asyncio
 import os
 import signal
-import sqlite3
 import subprocess
 import sys
 import threading
@@ -12,7 +11,7 @@ import time
 import pytest
 
 from service.jobs.changes import Changes
-from tests.service.running import SCRIPTED, RunningServer, alive, environment, until, workers_of
+from tests.service.running import SCRIPTED, RunningServer, alive, environment, stored, until, workers_of
 from tests.service.scripted_server import (
     BROKEN,
     CONVEX,
@@ -58,14 +57,6 @@ def restarting(tmp_path):
     yield start
     for running in started:
         running.kill()
-
-
-def stored(folder, job_id, column):
-    raw = sqlite3.connect(folder / "data" / "mechsynth.sqlite3")
-    try:
-        return raw.execute(f"SELECT {column} FROM jobs WHERE id = ?", (job_id,)).fetchone()[0]
-    finally:
-        raw.close()
 
 
 def test_a_job_in_native_code_is_cancelled_within_two_seconds(server):

@@ -1,0 +1,95 @@
+"""The executor for several machines: jobs go through a broker to worker hosts (``mechsynth worker``).
+
+This side only sends ids and hears what has become of the jobs; :mod:`service.jobs.host` is the other side.
+"""
+
+from __future__ import annotations
+
+import threading
+from queue import SimpleQueue
+
+import structlog
+
+from service.jobs.broker import BrokerUnreachable, Publisher
+from service.jobs.database import connect
+from service.jobs.executor import Changed
+from service.jobs.news import News
+from service.jobs.store import JobStore
+from service.jobs.watch import Watch
+from service.settings import Settings
+
+STOP_TIMEOUT_S = 2.0
+
+log = structlog.get_logger(__name__)
+
+
+class CeleryExecutor:
+    """Has jobs run by whatever worker hosts there are.
+
+    Raises
+    ------
+    SQLAlchemyError, OSError, ImportError
+        When the store cannot be reached.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._engine = connect(settings.store_url, durable=False)
+        self._store = JobStore(self._engine)
+        self._store.ping()
+        self._publisher = Publisher(settings)
+        self._queue: SimpleQueue[str | None] = SimpleQueue()
+        self._sender = threading.Thread(target=self._send, name="sender", daemon=True)
+        self._watch = Watch(self._store, self._publisher, self._count_workers)
+        self._news: News | None = None
+        self._workers = 0
+
+    def start(self) -> None:
+        """Begin to send jobs."""
+        if not self._sender.is_alive():
+            self._sender.start()
+
+    def resume(self) -> None:
+        """Begin to watch over the jobs of all servers, and to hear of them."""
+        self._count_workers()
+        self._watch.start()
+        if self._news is not None:
+            self._news.start()
+
+    def subscribe(self, changed: Changed) -> None:
+        """Tell ``changed`` from now on of each job that has moved from one state to another."""
+        self._news = News(self._settings.store_url, changed)
+
+    def submit(self, job_id: str) -> None:
+        """Send the queued job to the worker hosts."""
+        self._queue.put(job_id)
+
+    def cancel(self, job_id: str) -> None:
+        """Nothing: the host that runs the job sees within half a second that its claim is of no use any more."""
+
+    def ready(self) -> int:
+        """How many workers there are on all hosts; none while the broker does not answer."""
+        return self._workers if self._publisher.reachable else 0
+
+    def stop(self) -> None:
+        """Stop sending. What is not sent yet is due in the store, and another server sends it."""
+        self._queue.put(None)
+        threads = [self._sender, self._watch, *([] if self._news is None else [self._news])]
+        self._watch.stop()
+        if self._news is not None:
+            self._news.stop()
+        for thread in threads:
+            if thread.is_alive():
+                thread.join(STOP_TIMEOUT_S)
+        self._publisher.close()
+        self._engine.dispose()
+
+    def _count_workers(self) -> None:
+        self._workers = self._store.workers()
+
+    def _send(self) -> None:
+        while (job_id := self._queue.get()) is not None:
+            try:
+                self._publisher.send(job_id)
+            except BrokerUnreachable:
+                log.warning("job not sent", job=job_id, next="it is sent again when the broker answers")

@@ -1,0 +1,183 @@
+"""A worker host: takes jobs from the broker and runs them in workers of its own (``mechsynth worker``).
+
+The lanes and workers are those of the local executor (:mod:`service.jobs.lane`), with all that they know of cancelling,
+timeouts, memory and death; Celery only brings the ids of the jobs. Its task waits until a lane is done with the job, so
+that a host has as many messages as workers and no more. While a job runs the host renews its lease in the store, and is
+told there when the job is not wanted any more.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from types import FrameType
+from typing import Any
+
+import structlog
+from celery.concurrency.base import BasePool
+from celery.exceptions import WorkerShutdown
+from kombu.asynchronous import get_event_loop
+from sqlalchemy.exc import SQLAlchemyError
+from ulid import ULID
+
+from service import logs
+from service.jobs.broker import TASK, Publisher, celery_app
+from service.jobs.database import connect, unreachable, upgrade
+from service.jobs.local import LocalExecutor
+from service.jobs.store import JobStore
+from service.jobs.watch import Watch
+from service.metrics import Metrics
+from service.settings import Settings
+
+BEAT_PERIOD_S = 0.5
+"""How often a host renews its leases and looks for jobs that were cancelled: that has to be within two seconds."""
+
+log = structlog.get_logger(__name__)
+
+
+class Host:
+    """The lanes of a host, and who waits for their jobs."""
+
+    def __init__(self, settings: Settings, metrics: Metrics) -> None:
+        self.id = str(ULID())
+        self.lanes = LocalExecutor(settings, metrics)
+        self._engine = connect(settings.store_url, durable=False)
+        self._store = JobStore(self._engine)
+        self._publisher = Publisher(settings)
+        self._watch = Watch(self._store, self._publisher, lambda: None)
+        self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
+        self._stopping = threading.Event()
+        self._lock = threading.Lock()
+        self._waiting: dict[str, list[threading.Event]] = {}
+
+    def start(self) -> None:
+        """Make the tables where they are missing, and start the lanes."""
+        upgrade(self._engine)
+        self.lanes.subscribe(self._done_with)
+        self.lanes.start()
+        self._beating.start()
+        self._watch.start()
+
+    def work(self, job_id: str) -> None:
+        """Have a lane run the job, and wait until it is done with it."""
+        done = threading.Event()
+        with self._lock:
+            self._waiting.setdefault(job_id, []).append(done)
+        self.lanes.submit(job_id)
+        while not done.wait(BEAT_PERIOD_S):
+            if self._stopping.is_set():
+                return
+
+    def stop(self) -> None:
+        """Put the running jobs back into the queue and end the workers. May be called again."""
+        if self._stopping.is_set():
+            return
+        self._stopping.set()
+        self._watch.stop()
+        self.lanes.stop()
+        try:
+            self._store.host_is_gone(self.id)
+        except SQLAlchemyError as error:  # then its signs of life grow old
+            log.warning("the store does not answer", error=type(error).__name__)
+        self._publisher.close()
+
+    def _done_with(self, job_id: str | None) -> None:
+        with self._lock:
+            waiting = self._waiting.pop(job_id or "", [])
+        for done in waiting:
+            done.set()
+
+    def _beat(self) -> None:
+        while not self._stopping.wait(BEAT_PERIOD_S):
+            try:
+                for claim in self._store.renew(self.lanes.claims()):
+                    self.lanes.drop(claim)
+                self._store.host_is_there(self.id, self.lanes.ready())
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    log.exception("the leases could not be renewed")
+            except Exception:  # whatever it is, the next beat must come
+                log.exception("the leases could not be renewed")
+
+
+def run_host(settings: Settings) -> None:
+    """Run a worker host until SIGINT or SIGTERM."""
+    logs.configure(settings.log_level, settings.log_format)
+    host = Host(settings, Metrics())
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGINT, _end)
+    try:
+        host.start()
+        app = celery_app(settings, publisher=False)
+        app.task(host.work, name=TASK)
+        announcement = threading.Thread(target=_announce, args=(host,), name="announcement", daemon=True)
+        announcement.start()
+        app.WorkController(
+            hostname=f"{host.id}@{os.uname().nodename}",
+            pool_cls=_pool_of(host),
+            concurrency=settings.workers,
+            without_mingle=True,
+            without_gossip=True,
+            without_heartbeat=True,
+        ).start()
+    except WorkerShutdown:
+        pass
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        host.stop()
+
+
+def _end(_signal: int, _frame: FrameType | None) -> None:
+    raise WorkerShutdown(0)
+
+
+def _announce(host: Host) -> None:
+    while host.lanes.ready() == 0:
+        time.sleep(BEAT_PERIOD_S / 10)
+    print(f"mechsynth worker {host.id} is ready", flush=True)  # noqa: T201 (for whoever started it)
+
+
+def _pool_of(host: Host) -> type[BasePool]:
+    """A pool of Celery whose tasks wait in threads for the lanes of a host.
+
+    Celery's own pool of threads acknowledges a message in the thread that has run its task, over a connection that
+    stands one thread only. Here the loop that has the connection is asked to.
+    """
+
+    class LanePool(BasePool):
+        """Runs tasks in threads and tells of their ends in the loop's thread."""
+
+        body_can_be_buffer = True
+        signal_safe = False
+
+        def __init__(self, *args: Any, **options: Any) -> None:
+            super().__init__(*args, **options)
+            self._threads = ThreadPoolExecutor(max_workers=self.limit, thread_name_prefix="task")
+
+        def on_apply(
+            self,
+            target: Callable[..., Any],
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            callback: Callable[[Any], None],
+            accept_callback: Callable[[int, float], None],
+            **_options: Any,
+        ) -> None:
+            accept_callback(os.getpid(), time.monotonic())
+            loop = get_event_loop()
+
+            def run() -> None:
+                loop.call_soon(callback, target(*args, **kwargs))
+
+            self._threads.submit(run)
+
+        def on_stop(self) -> None:
+            host.stop()
+            self._threads.shutdown(cancel_futures=True)
+
+    return LanePool

@@ -1,0 +1,79 @@
+"""Watches over the jobs of several servers: takes up those whose worker host is gone, sends again what seems lost.
+
+Every server and every worker host has such a watch, so that it goes on as long as any of them does; the store sees to
+it that each job is taken up by one of them.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.jobs.broker import BrokerUnreachable, Publisher
+from service.jobs.database import unreachable
+from service.jobs.states import Status
+from service.jobs.store import LEASE_S, JobStore
+
+PERIOD_S = 1.0
+
+AT_ONCE = 200
+"""Jobs that are sent again in one go."""
+
+log = structlog.get_logger(__name__)
+
+
+class Watch(threading.Thread):
+    """Looks after all jobs once a second until it is stopped; calls ``beside`` as often."""
+
+    def __init__(self, store: JobStore, publisher: Publisher, beside: Callable[[], None]) -> None:
+        super().__init__(name="watch", daemon=True)
+        self._store = store
+        self._publisher = publisher
+        self._beside = beside
+        self._stopping = threading.Event()
+        self._trusted_from = float("-inf")
+
+    def stop(self) -> None:
+        """Make the thread end soon; join it after."""
+        self._stopping.set()
+
+    def run(self) -> None:
+        """Look after the jobs until told to stop."""
+        while not self._stopping.wait(PERIOD_S):
+            try:
+                self._publisher.probe()
+                self._beside()
+                self._take_up_abandoned()
+                self._send_again()
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    log.exception("the jobs could not be looked after")
+                # Nobody could renew a lease meanwhile, so for a while none that is over means anything.
+                self._trusted_from = time.monotonic() + LEASE_S
+            except Exception:  # whatever it is, the next round must come
+                log.exception("the jobs could not be looked after")
+
+    def _take_up_abandoned(self) -> None:
+        if time.monotonic() < self._trusted_from:
+            return
+        for job_id, status in self._store.abandoned():
+            log.warning("job abandoned by its worker host", job=job_id, job_is_now=status)
+            if status == Status.FAILED:
+                log.warning("job failed", job=job_id, reason="its workers died too often")
+
+    def _send_again(self) -> None:
+        if not self._publisher.reachable:
+            return
+        due = self._store.due(AT_ONCE)
+        for n, job_id in enumerate(due):
+            try:
+                self._publisher.send(job_id)
+            except BrokerUnreachable:
+                self._store.not_sent(due[n:])
+                return
+        if due:
+            log.info("jobs sent again", jobs=len(due))
