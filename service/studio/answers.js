@@ -1,10 +1,10 @@
 /** The answer of a job: what is known, the designs as cards, and the selected design in full. */
 
 import * as api from "./api.js";
-import { el, shown, svg, words } from "./dom.js";
+import { el, words } from "./dom.js";
 import { Shown } from "./design.js";
 import { figures, text } from "./figures.js";
-import { View } from "./view.js";
+import { thumbnail } from "./thumbnail.js";
 
 /** @type {Shown | null} */
 let chosen = null;
@@ -53,21 +53,8 @@ function known(search, found) {
 function card(design, n, choose) {
   const passed = design.verification?.passed;
   return el("button", { type: "button", class: "card", "aria-pressed": "false", onclick: choose },
-    thumbnail(design.mechanism.skeleton),
+    thumbnail(design),
     el("strong", {}, `${n + 1}. ${words(design.mechanism.type)}`),
     el("span", { class: passed ? "good" : "bad" }, passed ? "✓ verified" : "✗ fails a check"),
     ...figures(design).slice(0, 4).map(([name, value]) => el("span", { class: "figure" }, el("span", {}, words(name)), el("span", {}, text(value)))));
-}
-
-/** A linkage in its first position. @param {any} skeleton */
-function thumbnail(skeleton) {
-  if (!skeleton?.joints) return null;
-  const view = new View(Object.values(skeleton.joints), 150, 84, 12);
-  return svg("svg", { viewBox: "0 0 150 84", class: "thumbnail", "aria-hidden": "true" },
-    ...skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-      svg("path", { class: "link", d: `${view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name]))}${link.joints.length > 2 ? "Z" : ""}` })),
-    ...Object.values(skeleton.joints).map((/** @type {any} */ [x, y]) => {
-      const [u, v] = view.at(x, y);
-      return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
-    }));
 }

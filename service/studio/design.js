@@ -1,16 +1,27 @@
 /** One design in full: its motion, its numbers, its checks, its drawing and its files. */
 
 import * as api from "./api.js";
+import { Barrel } from "./barrel.js";
+import { Disc } from "./cam.js";
 import { cognates, picker } from "./cognates.js";
 import { overTheCycle, withSkeleton } from "./cycle.js";
 import { el, words } from "./dom.js";
 import { downloads } from "./downloads.js";
 import { Explorer } from "./explorer.js";
+import { Gears } from "./gears.js";
 import { checks, dimensions, figures, table } from "./figures.js";
 import { Mover } from "./mover.js";
 
 /** Samples of a cycle. */
 const STEPS = 240;
+
+/** Of a turn of what has no toggles: a sample a degree. */
+const TURN_STEPS = 360;
+
+/** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
+const VIEWS = {
+  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears,
+};
 
 /** @typedef {{stop: () => void}} Moving */
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
@@ -53,9 +64,14 @@ export class Shown {
 
   async move() {
     const { mechanism } = this.design;
-    if (!mechanism.skeleton) return;
     this.stage.append(el("p", { class: "note" }, "The motion is being computed …"));
     try {
+      const View = VIEWS[mechanism.type];
+      if (View) {
+        const turning = await api.motion(this.job.id, this.n, TURN_STEPS);
+        if (this.current) this.show(() => new View(this.stage, this.design, turning, this.job.problem));
+        return;
+      }
       const at = mechanism.reference_input_angle;
       const question = { mechanism, ...(Number.isFinite(at) ? { motion: { at } } : {}), include: ["branches"] };
       const [motion, circuits, choices] = await Promise.all([

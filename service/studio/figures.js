@@ -40,6 +40,7 @@ export function dimensions(design) {
   const rows = [];
   const walk = (/** @type {string} */ name, /** @type {any} */ value) => {
     if (Array.isArray(value)) {
+      if (!value.length) return;
       if (value.length <= 4 && value.every((one) => typeof one === "number")) rows.push([name, value.map(shown).join(", ")]);
       else if (value.length <= 8 && value.every((one) => typeof one === "object")) value.forEach((one, k) => walk(`${name} ${k + 1}`, one));
     } else if (value && typeof value === "object") {

@@ -9,6 +9,7 @@ const CYCLE_S = 4;
  * @typedef {object} Moved
  * @property {number} count samples of the motion
  * @property {boolean} closed whether the last sample is the first again: it then goes on, and otherwise back and forth
+ * @property {boolean} [endless] the place counts on beyond the last sample: what turns need not come back after a cycle
  * @property {string} label what the scrubber moves
  * @property {(at: number) => string} reading what stands beside the scrubber
  * @property {(at: number) => void} show called with a place of the arrays, between two samples as a fraction
@@ -56,7 +57,7 @@ export class Player {
   /** @param {number} at */
   seek(at) {
     this.at = at;
-    this.slider.value = at;
+    this.slider.value = this.moved.endless && at > this.last ? at % this.last : at;
     const reading = this.moved.reading(at);
     this.reading.value = reading;
     this.slider.setAttribute("aria-valuetext", reading);
@@ -72,7 +73,8 @@ export class Player {
       if (!this.playing) return;
       let at = this.at + (this.sense * this.rate * this.last * Math.max(0, now - before)) / 1000 / CYCLE_S;
       before = now;
-      if (this.moved.closed) at %= this.last;
+      if (this.moved.endless) at = Math.max(0, at);
+      else if (this.moved.closed) at %= this.last;
       else if (at > this.last || at < 0) {
         this.sense = -this.sense;
         at = Math.min(this.last, Math.max(0, at));

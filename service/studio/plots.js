@@ -68,7 +68,7 @@ function plot({ title, lines, limit, used, least = 0 }, input, lead) {
     low < 0 && high > 0 && svg("line", { class: "zero", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(0), y2: y(0) }),
     ...ticks.map((value) => svg("g", {},
       svg("line", { class: "grid", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(value), y2: y(value) }),
-      svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value)))),
+      svg("text", { class: "tick", x: EDGE.left - 5, y: y(value) + 4, "text-anchor": "end" }, brief(value, 1e-6 * range)))),
     typeof limit === "number" && svg("line", { class: "limit", x1: EDGE.left, x2: WIDTH - EDGE.right, y1: y(limit), y2: y(limit) }),
     input && svg("text", { class: "tick", x: EDGE.left, y: HEIGHT - 5 }, `${Math.round(input[0])}°`),
     input && svg("text", { class: "tick", x: WIDTH - EDGE.right, y: HEIGHT - 5, "text-anchor": "end" }, `${Math.round(input[last])}°`),

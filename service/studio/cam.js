@@ -1,0 +1,208 @@
+/** A cam that turns under its follower: the roller rolls on it, or the face slides; s v a j and pressure angle beside it. */
+
+import { el, shown, svg } from "./dom.js";
+import { Gauge } from "./gauge.js";
+import { Player, between } from "./player.js";
+import { plots } from "./plots.js";
+import { along } from "./quantities.js";
+import { View } from "./view.js";
+
+const WIDTH = 640;
+const HEIGHT = 420;
+
+/** Length of a follower's stem beyond its roller or face, as a share of the base radius. */
+const STEM = 0.8;
+
+/** @typedef {[number, number]} Point */
+
+/** Displacement and its derivatives over the motion, with the pressure angle. @param {any} mechanism @param {any} motion @param {any} problem @returns {import("./plots.js").Plotted[]} */
+export function diagrams(mechanism, motion, problem) {
+  const { program } = mechanism;
+  // A turn of the cam comes back to its beginning.
+  const angles = [...program.angle, 360];
+  const over = (/** @type {string} */ name) => along(angles, [...program[name], program[name][0]], motion.input_angle);
+  const swings = mechanism.follower.type.startsWith("oscillating");
+  const unit = swings ? "°" : problem.length_unit;
+  const titles = { s: `Displacement s (${unit})`, v: "Velocity v (by rad)", a: "Acceleration a (by rad²)", j: "Jerk j (by rad³)" };
+  const lift = Math.max(...program.s) - Math.min(...program.s);
+  return [
+    ...Object.entries(titles).map(([name, title]) => ({ title, lines: { "": over(name) }, least: lift })),
+    { title: "Pressure angle (°)", lines: { "": motion.pressure_angle }, limit: problem.limits?.pressure_angle, least: 1 },
+  ];
+}
+
+/** What a disc cam and a barrel have in common: clock, gauge and diagrams. */
+export class Turning {
+  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem @param {string} label */
+  constructor(place, design, motion, problem, label) {
+    this.motion = motion;
+    this.mechanism = design.mechanism;
+    this.count = motion.input_angle.length;
+    const scene = this.scene();
+    // A flat face that only moves along has none.
+    this.gauge = motion.pressure_angle.some((/** @type {any} */ one) => one > 0.01)
+      ? new Gauge("Pressure angle", motion.pressure_angle, { limit: problem.limits?.pressure_angle, atMost: true }) : null;
+    this.player = new Player({ count: this.count, closed: true, label: "Cam", reading: (at) => this.reading(at), show: (at) => this.show(at) });
+    this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
+    this.facts = el("dl", { class: "facts" });
+    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": label },
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...scene);
+    place.replaceChildren(el("div", { class: "stage" }, picture, el("div", { class: "beside" }, this.gauge?.node, this.facts)),
+      this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
+    this.displacement = /** @type {any} */ (diagrams(this.mechanism, motion, problem)[0].lines)[""];
+    this.player.begin();
+  }
+
+  /** @returns {Element[]} */
+  scene() {
+    return [];
+  }
+
+  /** @param {number} at @param {number} _angle radians that the cam has turned */
+  put(at, _angle) {}
+
+  /** @param {number} at */
+  show(at) {
+    const degrees = Number(between(this.motion.input_angle, at));
+    this.put(at, (degrees * Math.PI) / 180);
+    this.gauge?.show(between(this.motion.pressure_angle, at));
+    for (const mark of this.marks) mark.show(at);
+  }
+
+  /** @param {number} at */
+  reading(at) {
+    return `${shown(Math.round(10 * Number(between(this.motion.input_angle, at))) / 10)}°`;
+  }
+
+  stop() {
+    this.player.stop();
+  }
+}
+
+export class Disc extends Turning {
+  scene() {
+    const { follower, profile, pitch_curve: pitch, outer_wall: wall } = this.mechanism;
+    this.sense = this.mechanism.rotation === "cw" ? -1 : 1;
+    this.radius = follower.roller_radius ?? 0;
+    this.rolls = follower.type.endsWith("roller");
+    this.swings = follower.type.startsWith("oscillating");
+    this.base = this.mechanism.base_radius ?? this.mechanism.prime_radius - this.radius;
+    const outline = ring(profile);
+    const far = Math.max(...outline.map(([x, y]) => Math.hypot(x, y)), ...(wall ? ring(wall).map(([x, y]) => Math.hypot(x, y)) : []));
+    const high = Math.max(...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])));
+    const reach = this.swings ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base] : [high + this.radius + STEM * this.base, 0];
+    const wide = Math.max(far, high);
+    this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], WIDTH, HEIGHT, 24);
+    const { view } = this;
+    const [u, v] = view.at(0, 0);
+    const circle = (/** @type {string} */ kind, /** @type {number} */ radius) => svg("circle", { class: kind, cx: u, cy: v, r: view.scale * radius });
+    this.cam = svg("g", { class: "cam" },
+      wall && svg("circle", { class: "disc", cx: u, cy: v, r: 1.06 * view.scale * far }),
+      wall && svg("path", { class: "hollow", d: `${view.path(ring(wall))}Z` }),
+      svg("path", { class: "profile", d: `${view.path(outline)}Z` }),
+      this.rolls && svg("path", { class: "pitch", d: `${view.path(ring(pitch))}Z` }),
+      svg("path", { class: "spoke", d: view.path([[0, 0], [0.5 * this.base, 0]]) }));
+    this.spin = this.rolling();
+    this.wheel = svg("g", { class: "roller" }, svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }),
+      this.radius > 0 && svg("path", { d: [0, 60, 120].map((turn) => {
+        const [c, s] = [0.85 * view.scale * this.radius * Math.cos((turn * Math.PI) / 180), 0.85 * view.scale * this.radius * Math.sin((turn * Math.PI) / 180)];
+        return `M${-c} ${-s}L${c} ${s}`;
+      }).join("") }));
+    this.holder = svg("path", { class: "holder" });
+    this.touch = svg("circle", { class: "touch", r: 3.5 });
+    this.normal = svg("line", { class: "normal" });
+    const pivot = this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance, 0)[0], cy: v });
+    return [circle("rim", this.base), this.cam, circle("pin", 4 / view.scale), this.normal, this.holder, ...(this.rolls ? [this.wheel] : []), this.touch, ...(pivot ? [pivot] : [])];
+  }
+
+  /** How far the roller has turned at each sample: its contact has gone along it as far as along the profile. @returns {number[]} radians */
+  rolling() {
+    const { x, y } = this.motion.contact;
+    if (!this.rolls || !(this.radius > 0)) return [];
+    let travelled = 0;
+    let before = 0;
+    return x.map((/** @type {number} */ one, /** @type {number} */ k) => {
+      if (k > 0) travelled += Math.hypot(one - x[k - 1], y[k] - y[k - 1]);
+      const angle = (this.motion.input_angle[k] * Math.PI) / 180;
+      const [[cx, cy], [tx, ty]] = [this.centre(angle), turned([one, y[k]], this.sense * angle)];
+      let toward = Math.atan2(ty - cy, tx - cx);
+      toward += 2 * Math.PI * Math.round((before - toward) / (2 * Math.PI));
+      before = toward;
+      return toward - (this.sense * travelled) / this.radius;
+    });
+  }
+
+  /** Of the roller, in the ground's frame. @param {number} angle @returns {Point} */
+  centre(angle) {
+    const { angle: at, x, y } = this.mechanism.pitch_curve;
+    const degrees = ((angle * 180) / Math.PI) % 360;
+    const step = 360 / at.length;
+    const k = Math.min(at.length - 1, Math.max(0, Math.floor((degrees - at[0]) / step)));
+    const next = (k + 1) % at.length;
+    const share = (degrees - at[k]) / step;
+    return turned([x[k] + share * (x[next] - x[k]), y[k] + share * (y[next] - y[k])], this.sense * angle);
+  }
+
+  /** @param {number} at @param {number} angle */
+  put(at, angle) {
+    const { view, mechanism: { follower } } = this;
+    const [u, v] = view.at(0, 0);
+    this.cam.setAttribute("transform", `rotate(${(-this.sense * angle * 180) / Math.PI} ${u} ${v})`);
+    const [across, up] = [between(this.motion.contact.x, at), between(this.motion.contact.y, at)];
+    if (across === null || up === null) return;
+    const touching = turned([across, up], this.sense * angle);
+    const [tu, tv] = view.at(...touching);
+    this.touch.setAttribute("cx", String(tu));
+    this.touch.setAttribute("cy", String(tv));
+    if (this.rolls) {
+      const centre = this.centre(angle);
+      const [cu, cv] = view.at(...centre);
+      const spin = this.spin.length ? Number(between(this.spin, at)) : 0;
+      this.wheel.setAttribute("transform", `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`);
+      for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv })) this.normal.setAttribute(name, String(value));
+      const end = /** @type {Point} */ (this.swings ? [follower.pivot_distance, 0] : [centre[0] + this.radius + STEM * this.base, centre[1]]);
+      this.holder.setAttribute("d", view.path([centre, end]));
+    } else this.holder.setAttribute("d", this.face(touching));
+    const what = this.swings ? "Arm" : "Follower";
+    this.facts.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
+  }
+
+  /** Displacement of the follower. @param {number} at */
+  place(at) {
+    const { s } = this.mechanism.program;
+    const value = Number(between(this.displacement ?? [0, 0], at));
+    const lift = Math.max(...s) - Math.min(...s);
+    return `${shown(Math.abs(value) < 1e-9 * lift ? 0 : Number(value.toPrecision(4)))}${this.swings ? "°" : ""}`;
+  }
+
+  /** A flat face through the contact, with what carries it. @param {Point} touching */
+  face(touching) {
+    const { view, mechanism: { follower }, base } = this;
+    const [x, y] = touching;
+    if (!this.swings) {
+      const half = Math.max(0.45 * base, 1.1 * Math.abs(y));
+      return view.path([[x, -half], [x, half]]) + view.path([[x, 0], [x + STEM * base, 0]]);
+    }
+    const [rx, ry] = [x - follower.pivot_distance, y];
+    const offset = follower.face_offset ?? 0;
+    const foot = Math.sqrt(Math.max(rx * rx + ry * ry - offset * offset, 0));
+    // reach / (foot − i offset·sense): the direction of the face, away from the pivot.
+    const [c, s] = [foot, -offset * (follower.sense ?? 1)];
+    const size = c * c + s * s || 1;
+    const [ax, ay] = [(rx * c + ry * s) / size, (ry * c - rx * s) / size];
+    const near = rx * ax + ry * ay;
+    const start = /** @type {Point} */ ([x - near * ax, y - near * ay]);
+    return view.path([start, [x + 0.35 * base * ax, y + 0.35 * base * ay]]) + view.path([start, [follower.pivot_distance, 0]]);
+  }
+}
+
+/** @param {Point} point @param {number} angle @returns {Point} */
+function turned([x, y], angle) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [c * x - s * y, s * x + c * y];
+}
+
+/** @param {{x: number[], y: number[]}} curve @returns {Point[]} */
+function ring({ x, y }) {
+  return x.map((one, k) => [one, y[k]]);
+}

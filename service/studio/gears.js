@@ -1,0 +1,108 @@
+/** Gears that turn: pitch circles and teeth, each at its own speed; of gearboxes with the gear that is engaged. */
+
+import * as api from "./api.js";
+import { el, shown, svg, words } from "./dom.js";
+import { Player, between } from "./player.js";
+import { wheels } from "./trains.js";
+import { View } from "./view.js";
+import { drawn, place, radius } from "./wheels.js";
+
+const WIDTH = 640;
+const HEIGHT = 420;
+
+export class Gears {
+  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
+  constructor(place, design, motion, problem) {
+    this.design = design;
+    this.problem = problem;
+    this.motion = motion;
+    this.gone = new AbortController();
+    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The gears, turning" });
+    this.facts = el("dl", { class: "facts speeds" });
+    this.player = new Player({ count: motion.input_angle.length, closed: true, endless: true, label: "Input",
+      reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
+    place.replaceChildren(el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.engaging(), this.facts)), this.player.row,
+      el("p", { class: "note" }, "Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1."));
+    this.build();
+    this.player.begin();
+  }
+
+  build() {
+    const { mechanism } = this.design;
+    const listed = wheels(mechanism, this.motion, this.design, this.problem);
+    const corners = listed.flatMap((wheel) => [0, 1, 2, 3].flatMap((quarter) => {
+      const far = radius(wheel) + (wheel.internal ? 3 : 1) * wheel.module;
+      const [x, y] = place(wheel, wheel.orbit ? (quarter * Math.PI) / 2 / wheel.orbit : 0);
+      return /** @type {[number, number][]} */ ([[x - far, y - far], [x + far, y + far]]);
+    }));
+    const view = new View(corners, WIDTH, HEIGHT, 16);
+    // Rings lie behind, and what is not engaged behind those.
+    const order = [...listed].sort((one, other) => Number(other.internal ?? false) - Number(one.internal ?? false));
+    this.drawings = order.map((wheel) => drawn(view, wheel));
+    const arms = listed.filter((wheel) => wheel.orbit !== undefined && (wheel.centre[0] || wheel.centre[1]));
+    this.arms = arms.map((wheel) => ({ wheel, line: svg("line", { class: "arm" }) }));
+    this.view = view;
+    this.picture.replaceChildren(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+      ...this.drawings.map((one) => one.node), ...this.arms.map((one) => one.line));
+    this.facts.replaceChildren(...this.speeds().flatMap(([name, speed]) => [el("dt", {}, name), el("dd", {}, speed)]));
+  }
+
+  /** @returns {[string, string][]} */
+  speeds() {
+    const { bodies, shafts, gears } = this.motion;
+    const told = (/** @type {number | null} */ ratio) => (ratio === null ? "open" : `${shown(Number(ratio.toPrecision(6)))} × input`);
+    if (bodies) return bodies.map((/** @type {any} */ body) => [words(body.name), body.speed === 0 ? "held" : told(body.speed)]);
+    if (shafts?.[0]?.name) return shafts.map((/** @type {any} */ shaft) => [words(shaft.name), told(shaft.speed_ratio)]);
+    return gears.map((/** @type {any} */ gear) => [`Stage ${gear.stage} ${gear.role}, ${gear.teeth} teeth`, told(gear.speed_ratio)]);
+  }
+
+  /** Of a gearbox: which gear is engaged. */
+  engaging() {
+    const { mechanism } = this.design;
+    const { speeds } = this.motion;
+    if (!speeds?.[0]?.engaged) return null;
+    const boxed = mechanism.type === "gearbox";
+    const name = (/** @type {any} */ one) => (boxed ? `pairs ${one.engaged.map((/** @type {number} */ k) => k + 1).join(", ")}`
+      : one.engaged[0] === mechanism.gears.length ? "reverse" : `gear ${one.engaged[0] + 1}`);
+    const pick = el("select", { id: "engaged", onchange: () => this.engage(speeds[Number(pick.value)].engaged) },
+      ...speeds.map((/** @type {any} */ one, /** @type {number} */ k) => el("option", { value: k }, `${name(one)}: ${shown(Number(one.speed_ratio.toPrecision(4)))} × input`)));
+    pick.value = String(speeds.findIndex((/** @type {any} */ one) => String(one.engaged) === String(this.motion.engaged)));
+    return el("div", { class: "row" }, el("label", { for: "engaged" }, "Engaged"), pick);
+  }
+
+  /** @param {number[]} engaged */
+  async engage(engaged) {
+    const { mechanism } = this.design;
+    const which = mechanism.type === "gearbox" ? { engaged } : { gear: engaged[0] === mechanism.gears.length ? "reverse" : engaged[0] + 1 };
+    const motion = { from: 0, to: 360, steps: this.motion.input_angle.length - 1 };
+    const found = await api.analysis({ mechanism, motion, ...which }, this.gone.signal).catch((error) => {
+      if (!this.gone.signal.aborted) this.facts.replaceChildren(el("dt", {}, "Refused"), el("dd", {}, error.message));
+    });
+    if (!found || this.gone.signal.aborted) return;
+    this.motion = found;
+    this.build();
+    this.show(this.player.at);
+  }
+
+  /** Input angle, which goes on turn after turn. @param {number} at */
+  degrees(at) {
+    const last = this.motion.input_angle.length - 1;
+    const turns = Math.floor(at / last);
+    return 360 * turns + Number(between(this.motion.input_angle, at - turns * last));
+  }
+
+  /** @param {number} at */
+  show(at) {
+    const input = (this.degrees(at) * Math.PI) / 180;
+    for (const { turn } of this.drawings ?? []) turn(input);
+    for (const { wheel, line } of this.arms ?? []) {
+      const [[u, v], [x, y]] = [this.view.at(0, 0), this.view.at(...place(wheel, input))];
+      for (const [name, value] of Object.entries({ x1: u, y1: v, x2: x, y2: y })) line.setAttribute(name, value.toFixed(2));
+    }
+  }
+
+  stop() {
+    this.gone.abort();
+    this.player.stop();
+  }
+}

@@ -1,0 +1,76 @@
+/** A design as a small picture, from its dimensions alone. */
+
+import { svg } from "./dom.js";
+import { View } from "./view.js";
+
+const WIDTH = 150;
+const HEIGHT = 84;
+
+/** @typedef {[number, number]} Point */
+/** @typedef {{centre: Point, radius: number}} Circle */
+
+/** @param {any} design */
+export function thumbnail(design) {
+  const drawing = drawn(design);
+  return drawing && svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "thumbnail", "aria-hidden": "true" }, ...drawing);
+}
+
+/** @param {any} design @returns {Element[] | null} */
+function drawn({ mechanism, metrics }) {
+  if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton);
+  if (mechanism.profile) return outlines([mechanism.profile, mechanism.outer_wall].filter(Boolean), true);
+  if (mechanism.upper_wall) return outlines([mechanism.lower_wall, mechanism.upper_wall], false);
+  const listed = circles(mechanism, metrics);
+  if (!listed.length) return null;
+  const view = new View(listed.flatMap(({ centre: [x, y], radius }) => /** @type {Point[]} */ ([[x - radius, y - radius], [x + radius, y + radius]])), WIDTH, HEIGHT, 4);
+  return listed.map(({ centre, radius }) => {
+    const [u, v] = view.at(...centre);
+    return svg("circle", { class: "link", cx: u, cy: v, r: view.scale * radius });
+  });
+}
+
+/** In its first position. @param {any} skeleton */
+function linkage(skeleton) {
+  const view = new View(Object.values(skeleton.joints), WIDTH, HEIGHT, 12);
+  return [...skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
+    svg("path", { class: "link", d: `${view.path(link.joints.map((/** @type {string} */ name) => skeleton.joints[name]))}${link.joints.length > 2 ? "Z" : ""}` })),
+  ...Object.values(skeleton.joints).map((/** @type {any} */ [x, y]) => {
+    const [u, v] = view.at(x, y);
+    return svg("circle", { class: "pin", r: 2.5, cx: u, cy: v });
+  })];
+}
+
+/** Contours of a cam, or the walls of a groove. @param {any[]} curves @param {boolean} closed */
+function outlines(curves, closed) {
+  const lines = curves.map((curve) => curve.x.map((/** @type {number} */ x, /** @type {number} */ k) => /** @type {Point} */ ([x, curve.y[k]])));
+  const view = new View([...lines.flat(), .../** @type {Point[]} */ (closed ? [[0, 0]] : [])], WIDTH, HEIGHT, 6);
+  const [u, v] = view.at(0, 0);
+  return [...lines.map((line) => svg("path", { class: closed ? "link" : "link input", d: `${view.path(line)}${closed ? "Z" : ""}` })),
+    ...(closed ? [svg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : [])];
+}
+
+/** Pitch circles. @param {any} mechanism @param {any} metrics @returns {Circle[]} */
+function circles(mechanism, metrics) {
+  const { module } = mechanism;
+  const row = (/** @type {[number, number, number, number][]} */ pairs) => pairs.flatMap(([from, to, one, other]) =>
+    /** @type {Circle[]} */ ([{ centre: [from, 0], radius: one }, { centre: [to, 0], radius: other }]));
+  if (mechanism.type === "layshaft_gearbox") {
+    const pairs = [mechanism.head, ...mechanism.gears.filter((/** @type {any} */ one) => one.layshaft).map((/** @type {any} */ one) => ({ driver: one.mainshaft, driven: one.layshaft }))];
+    return row(pairs.map((pair) => [0, mechanism.centre_distance, (module * pair.driver) / 2, (module * pair.driven) / 2]));
+  }
+  if (mechanism.stages) {
+    let at = 0;
+    return mechanism.stages.flatMap((/** @type {any} */ stage, /** @type {number} */ n) => {
+      const pairs = stage.pairs ?? [stage];
+      const idle = (mechanism.idlers ?? []).filter((/** @type {any} */ one) => one.stage === n + 1).reduce((/** @type {number} */ sum, /** @type {any} */ one) => sum + one.teeth, 0);
+      const size = stage.module ?? module;
+      const from = at;
+      at += size * ((pairs[0].driver + pairs[0].driven) / 2 + idle);
+      return row(pairs.map((/** @type {any} */ pair) => [from, at, (size * pair.driver) / 2, (size * pair.driven) / 2]));
+    });
+  }
+  if (!mechanism.teeth) return [];
+  const far = Object.fromEntries((metrics?.meshes ?? []).flatMap((/** @type {any} */ mesh) => mesh.gears.map((/** @type {string} */ name) => [name, mesh.centre_distance])));
+  return Object.entries(mechanism.teeth).map(([name, teeth]) =>
+    ({ centre: name.startsWith("planet") ? [far[name] ?? 0, 0] : [0, 0], radius: (module * Number(teeth)) / 2 }));
+}

@@ -1,0 +1,212 @@
+/** Where the gears of each type of train stand, from its teeth and the speeds that the analysis gives. */
+
+import { facing, radius } from "./wheels.js";
+
+/** @typedef {import("./wheels.js").Wheel} Wheel */
+/** @typedef {import("./wheels.js").Point} Point */
+
+/** @param {any} mechanism @param {any} motion @param {any} design @param {any} problem @returns {Wheel[]} */
+export function wheels(mechanism, motion, design, problem) {
+  switch (mechanism.type) {
+    case "gear_train":
+      return ordinary(motion, problem);
+    case "planetary_train":
+      return planetary(mechanism, motion, design);
+    case "gearbox":
+      return gearbox(mechanism, motion);
+    default:
+      return layshaft(mechanism, motion);
+  }
+}
+
+/** An ordinary train: shafts in a line; those of a reverted train go to and fro, or round a triangle. @param {any} motion @param {any} problem */
+function ordinary(motion, problem) {
+  const distances = motion.centre_distances;
+  const stages = distances.length;
+  const back = problem.reverted && Math.max(...distances) - Math.min(...distances) <= 1e-9 * Math.max(...distances);
+  /** @type {Wheel[]} */
+  const found = [];
+  let shaft = /** @type {Point} */ ([0, 0]);
+  for (let stage = 1; stage <= stages; stage++) {
+    const ahead = !back ? 0 : stages === 3 ? (2 * Math.PI * (stage - 1)) / 3 : Math.PI * ((stage - 1) % 2);
+    /** @type {Wheel | null} */
+    let before = null;
+    for (const gear of motion.gears.filter((/** @type {any} */ one) => one.stage === stage)) {
+      /** @type {Wheel} */
+      const wheel = { name: `Stage ${stage} ${gear.role}`, teeth: gear.teeth, module: gear.module, centre: shaft, tooth: ahead, speed: gear.speed_ratio, tone: stage - 1 };
+      if (before) {
+        const far = radius(before) + radius(wheel);
+        wheel.centre = [before.centre[0] + far * Math.cos(ahead), before.centre[1] + far * Math.sin(ahead)];
+        wheel.tooth = facing(before, wheel, ahead);
+      }
+      found.push(wheel);
+      before = wheel;
+      shaft = wheel.centre;
+    }
+  }
+  return found;
+}
+
+/** A planetary train: which gear is on which body is told by the meshes. @param {any} mechanism @param {any} motion @param {any} design */
+function planetary(mechanism, motion, design) {
+  /** @type {{gears: string[], bodies: string[], carrier: string, distance: number}[]} */
+  const meshes = design.metrics.meshes.map((/** @type {any} */ mesh, /** @type {number} */ k) => ({
+    gears: mesh.gears, bodies: [motion.meshes[k].first, motion.meshes[k].second], carrier: motion.meshes[k].carrier,
+    // Bevel gears, whose axes cross, are shown as if spread out in one plane.
+    distance: mesh.centre_distance ?? 0.5 * mechanism.module * mesh.gears.reduce((/** @type {number} */ sum, /** @type {string} */ name) => sum + mechanism.teeth[name], 0),
+  }));
+  /** @type {Record<string, any>} */
+  const bodies = Object.fromEntries(motion.bodies.map((/** @type {any} */ body) => [body.name, body]));
+  const bodyOf = Object.fromEntries(meshes.flatMap((mesh) => mesh.gears.map((gear, k) => [gear, mesh.bodies[k]])));
+  const carrierOf = Object.fromEntries(meshes.flatMap((mesh) => mesh.bodies.filter((body) => bodies[body].planet).map((body) => [body, mesh.carrier])));
+  const pins = pinsOf(meshes, bodies);
+  const names = Object.keys(mechanism.teeth).filter((name) => name in bodyOf);
+  /** @type {Record<string, Wheel>} */
+  const first = Object.fromEntries(names.map((name, k) => {
+    const body = bodyOf[name];
+    return [name, { name, teeth: mechanism.teeth[name], module: mechanism.module, internal: name.startsWith("ring"), centre: pins[body] ?? [0, 0],
+      tooth: NaN, speed: bodies[body].speed ?? 0, orbit: bodies[carrierOf[body]]?.speed ?? 0, tone: k }];
+  }));
+  const mates = (/** @type {string} */ gear) => meshes.filter((mesh) => mesh.gears.includes(gear)).map((mesh) => mesh.gears[mesh.gears[0] === gear ? 1 : 0]);
+  // The first copies: from gear to gear, each facing the one before.
+  for (const start of names) {
+    if (!Number.isNaN(first[start].tooth)) continue;
+    first[start].tooth = 0;
+    for (const waiting = [start]; waiting.length;) {
+      const known = /** @type {string} */ (waiting.pop());
+      for (const mate of mates(known)) {
+        if (!Number.isNaN(first[mate].tooth)) continue;
+        first[mate].tooth = facing(first[known], first[mate], toward(first[known], first[mate]));
+        waiting.push(mate);
+      }
+    }
+  }
+  return names.flatMap((name) => {
+    const body = bodyOf[name];
+    if (!bodies[body].planet) return [first[name]];
+    const { divisions, steps } = mechanism.places[body] ?? { divisions: 1, steps: [0] };
+    return steps.map((/** @type {number} */ step, /** @type {number} */ copy) => {
+      const turn = (2 * Math.PI * step) / divisions;
+      const wheel = { ...first[name], name: `${name} ${copy + 1}`, centre: rotated(first[name].centre, turn) };
+      wheel.tooth = first[name].tooth + aside(names.filter((one) => bodyOf[one] === body), first, mates, turn);
+      return wheel;
+    });
+  });
+}
+
+/** How far a copy of a planet is turned itself so that all its gears mesh: the best of its first gear's tooth places. @param {string[]} own @param {Record<string, Wheel>} first @param {(gear: string) => string[]} mates @param {number} turn */
+function aside(own, first, mates, turn) {
+  const pairs = own.flatMap((gear) => mates(gear).filter((mate) => first[mate].centre[0] === 0 && first[mate].centre[1] === 0).map((mate) => [gear, mate]));
+  if (!pairs.length) return turn;
+  const wanted = ([gear, mate] = pairs[0]) => {
+    const there = { ...first[gear], centre: rotated(first[gear].centre, turn) };
+    return facing(first[mate], there, toward(first[mate], there)) - first[gear].tooth;
+  };
+  const base = wanted();
+  const pitch = (2 * Math.PI) / first[pairs[0][0]].teeth;
+  let best = base;
+  let least = Infinity;
+  for (let k = 0; k < first[pairs[0][0]].teeth; k++) {
+    const misfit = pairs.slice(1).reduce((sum, pair) => {
+      const tooth = (2 * Math.PI) / first[pair[0]].teeth;
+      const off = base + pitch * k - wanted(pair);
+      return sum + Math.abs(off - tooth * Math.round(off / tooth));
+    }, 0);
+    if (misfit < least - 1e-9) [least, best] = [misfit, base + pitch * k];
+  }
+  return best;
+}
+
+/** Pins of the first planets: by their distance from the axis, those of one set beside each other. @param {any[]} meshes @param {Record<string, any>} bodies @returns {Record<string, Point>} */
+function pinsOf(meshes, bodies) {
+  /** @type {Record<string, number>} */
+  const far = {};
+  for (const { bodies: [one, other], distance } of meshes) {
+    if (bodies[one].planet !== bodies[other].planet) far[bodies[one].planet ? one : other] = distance;
+  }
+  /** @type {Record<string, Point>} */
+  const found = {};
+  for (const planet of Object.keys(far)) {
+    const beside = meshes.find((mesh) => mesh.bodies.includes(planet) && mesh.bodies.some((/** @type {string} */ body) => body !== planet && body in found));
+    if (!beside) found[planet] = [far[planet], 0];
+    else {
+      const [x, y] = found[beside.bodies.find((/** @type {string} */ body) => body !== planet)];
+      const there = Math.hypot(x, y);
+      const cosine = (there ** 2 + far[planet] ** 2 - beside.distance ** 2) / (2 * there * far[planet]);
+      const angle = Math.atan2(y, x) + Math.acos(Math.min(1, Math.max(-1, cosine)));
+      found[planet] = [far[planet] * Math.cos(angle), far[planet] * Math.sin(angle)];
+    }
+  }
+  return found;
+}
+
+/** Direction from the centre of one gear to its contact with another. @param {Wheel} one @param {Wheel} other */
+function toward(one, other) {
+  const [[x, y], [u, v]] = [one.centre, other.centre];
+  // With internal teeth the contact lies beyond the planet, as seen from the axis.
+  if (one.internal || other.internal) return x || y ? Math.atan2(y, x) : Math.atan2(v, u);
+  return Math.atan2(v - y, u - x);
+}
+
+/** A machine-tool gearbox, its shafts in a line; the pairs that are not engaged are circles. @param {any} mechanism @param {any} motion */
+function gearbox(mechanism, motion) {
+  /** @type {Wheel[]} */
+  const found = [];
+  let at = 0;
+  mechanism.stages.forEach((/** @type {any} */ stage, /** @type {number} */ n) => {
+    const [from, to] = [at, at + stage.centre_distance];
+    stage.pairs.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
+      const idle = motion.engaged[n] !== k;
+      const common = { module: mechanism.module, tone: n, idle };
+      /** @type {Wheel} */
+      const one = { ...common, name: `Stage ${n + 1}, pair ${k + 1}, driver`, teeth: pair.driver, centre: [from, 0], tooth: 0, speed: motion.shafts[n].speed_ratio };
+      /** @type {Wheel} */
+      const other = { ...common, name: `Stage ${n + 1}, pair ${k + 1}, driven`, teeth: pair.driven, centre: [to, 0], tooth: 0, speed: motion.shafts[n + 1].speed_ratio };
+      other.tooth = facing(one, other, 0);
+      found.push(one, other);
+    });
+    at = to;
+  });
+  return found.sort((one, other) => Number(other.idle) - Number(one.idle));
+}
+
+/** A layshaft gearbox: input and main shaft on one axis, the layshaft beside it, reverse by an idler. @param {any} mechanism @param {any} motion */
+function layshaft(mechanism, motion) {
+  const { head, gears, reverse, module } = mechanism;
+  const [input, lay, main] = motion.shafts.map((/** @type {any} */ shaft) => shaft.speed_ratio);
+  const distance = mechanism.centre_distance;
+  const engaged = motion.engaged[0];
+  /** @type {Wheel[]} */
+  const found = [];
+  const add = (/** @type {string} */ name, /** @type {number} */ tone, /** @type {boolean} */ idle, /** @type {[number, number, Point, string][]} */ row) => {
+    /** @type {Wheel | null} */
+    let before = null;
+    for (const [teeth, speed, centre, shaft] of row) {
+      /** @type {Wheel} */
+      const wheel = { name: `${name}, on the ${shaft}`, teeth, module, centre, tooth: 0, speed, tone, idle };
+      if (before) wheel.tooth = facing(before, wheel, Math.atan2(centre[1] - before.centre[1], centre[0] - before.centre[0]));
+      found.push(wheel);
+      before = wheel;
+    }
+  };
+  const [axis, beside] = /** @type {[Point, Point]} */ ([[0, 0], [distance, 0]]);
+  gears.forEach((/** @type {any} */ pair, /** @type {number} */ k) => {
+    if (pair.layshaft !== null) add(`Gear ${k + 1}`, 1, k !== engaged, [[pair.layshaft, lay, beside, "layshaft"], [pair.mainshaft, main, axis, "main shaft"]]);
+  });
+  if (reverse) {
+    const [near, far] = [(module * (reverse.idler + reverse.layshaft)) / 2, (module * (reverse.idler + reverse.mainshaft)) / 2];
+    const x = (distance ** 2 + far ** 2 - near ** 2) / (2 * distance);
+    const centre = /** @type {Point} */ ([x, Math.sqrt(Math.max(far ** 2 - x ** 2, 0))]);
+    const back = engaged === gears.length;
+    add("Reverse", 2, !back, [[reverse.layshaft, lay, beside, "layshaft"],
+      [reverse.idler, (-lay * reverse.layshaft) / reverse.idler, centre, "idler's pin"], [reverse.mainshaft, main, axis, "main shaft"]]);
+  }
+  add("Head", 0, false, [[head.driver, input, axis, "input shaft"], [head.driven, lay, beside, "layshaft"]]);
+  return found.sort((one, other) => Number(other.idle) - Number(one.idle));
+}
+
+/** @param {Point} point @param {number} angle @returns {Point} */
+function rotated([x, y], angle) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [c * x - s * y, s * x + c * y];
+}
