@@ -91,7 +91,8 @@ def _analysed(body: Any) -> bytes:
         request = parse_request(body)
     except ValidationError as error:
         found = error.errors(include_url=False, include_context=False, include_input=False)
-        raise RequestValidationError([{**fault, "loc": ("body", *fault["loc"])} for fault in found]) from None
+        located = [{**fault, "loc": ("body", *fault["loc"])} for fault in found]
+        raise RequestValidationError(located, body=body) from None
     faults = request.faults()
     if faults:
         raise invalid_request([(path, sentence(detail)) for path, detail in faults])

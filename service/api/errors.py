@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -29,9 +28,6 @@ MAX_STEP = 100
 
 STORE_RETRY_AFTER_S = 2
 """When to ask again while the store is out of reach; PostgreSQL restarts within a second or two."""
-
-_MODEL = re.compile("<[a-z_]+>")
-
 
 log = structlog.get_logger(__name__)
 
@@ -152,7 +148,8 @@ async def _refused(request: Request, refusal: Exception) -> Response:
 
 async def _invalid(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
-    faults = [(_place(fault), _explained(fault)) for fault in error.errors()]
+    # Several models that a part was tried as may say the same of it.
+    faults = list(dict.fromkeys((_place(fault, error.body), _explained(fault)) for fault in error.errors()))
     if all(path.startswith("/problem/") for path, _ in faults):
         return await _refused(request, invalid_problem(faults))
     if all(path.startswith("/mechanism/") for path, _ in faults):
@@ -214,18 +211,30 @@ def _answer(
     return Response(to_json(content), status_code=status, headers=dict(headers or {}), media_type=PROBLEM_JSON)
 
 
-def _place(fault: Mapping[str, Any]) -> str:
+def _place(fault: Mapping[str, Any], body: Any) -> str:
     location = tuple(fault["loc"])
     # The framework puts the part of the request first; in a body the pointer starts at the body itself.
-    if location[:1] == ("body",):
-        location = location[1:]
-    # A fault of a key of an object is at that key.
+    if location[:1] != ("body",):
+        return pointer(location)
+    steps = _steps(location[1:], body, fault["type"] == "missing")
     if fault["type"] == "unknown_kind" and isinstance(fault["input"], dict):
-        location = (*location, "kind")
-    if location[-1:] == ("[key]",) and fault["type"] != "extra_forbidden":
-        location = location[:-1]
-    # Which of several models has read a part is no step of the body.
-    return pointer(step for step in location if not (isinstance(step, str) and _MODEL.fullmatch(step)))
+        steps.append("kind")
+    return pointer(steps)
+
+
+def _steps(location: Sequence[str | int], body: Any, missing: bool) -> list[str | int]:
+    """The way of a location into the body. Which of several models has read a part is told between, and that it is
+    the key of an object after its name; both are no steps of the body."""
+    steps: list[str | int] = []
+    value = body
+    for step in location:
+        member = isinstance(value, list) and isinstance(step, int) and step < len(value)
+        if member or (isinstance(value, dict) and step in value):
+            value = value[step]
+        elif not (missing and step is location[-1] and isinstance(value, dict)):
+            continue
+        steps.append(step)
+    return steps
 
 
 def _explained(fault: Mapping[str, Any]) -> str:

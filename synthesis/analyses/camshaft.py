@@ -14,6 +14,7 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cam import EXAMPLE, Load
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
+from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.problems import Number, Statement
 
@@ -83,9 +84,12 @@ class CamshaftAnalysisRequest(AnalysisRequest):
         """The shaft's torque over the motion, in the shape of :class:`CamshaftAnalysis`."""
         at, _, _ = self.motion.inputs()
         cams = []
-        for stated in self.mechanism.cams:
+        for n, stated in enumerate(self.mechanism.cams):
             cam = stated.cam
-            program = measured_program(cam.contour(), cam.core_follower(), cam.rotation, MEASURED)
+            try:
+                program = measured_program(cam.contour(), cam.core_follower(), cam.rotation, MEASURED)
+            except MechanismError as error:
+                raise MechanismError(f"/cams/{n}/cam{error.path}", error.detail) from None
             cams.append(RunningCam(program, stated.load.core(), self.motion.rate, math.radians(stated.phase)))
         shaft = Camshaft(cams)
         peaks, fluctuation = shaft.torque_extremes, self.mechanism.fluctuation
