@@ -9,6 +9,10 @@
 const KEY = "mechsynth.key";
 const RECONNECT_MS = 1000;
 
+/** How often a busy service is asked, and how long after each time. */
+const BUSY_TRIES = 4;
+const BUSY_MS = 5000;
+
 /** An answer that says what went wrong (problem+json). */
 export class Refused extends Error {
   /** @param {any} problem @param {number} status */
@@ -44,6 +48,21 @@ async function ask(path, options = {}) {
   return answer;
 }
 
+/**
+ * Ask again where the service is busy with other analyses (503), as long after as it says.
+ * @template T @param {() => Promise<T>} asked @param {AbortSignal} [signal] @returns {Promise<T>}
+ */
+async function patiently(asked, signal) {
+  for (let left = BUSY_TRIES; ; left--) {
+    try {
+      return await asked();
+    } catch (error) {
+      if (!(error instanceof Refused) || error.status !== 503 || left <= 1 || signal?.aborted) throw error;
+      await new Promise((done) => setTimeout(done, BUSY_MS));
+    }
+  }
+}
+
 /** @param {string} path @param {any} body @param {AbortSignal} [signal] */
 function post(path, body, signal) {
   const headers = { "Content-Type": "application/json" };
@@ -58,6 +77,12 @@ export async function kinds() {
 /** @param {any} problem @param {string | null} label @returns {Promise<Job>} */
 export async function solve(problem, label) {
   return (await post("/v1/jobs", { problem, label })).json();
+}
+
+/** Solve a small problem, and wait for its answer. @param {any} problem @param {string} label @param {AbortSignal} signal @returns {Promise<Job>} */
+export async function solved(problem, label, signal) {
+  const headers = { "Content-Type": "application/json", Prefer: "wait=20" };
+  return (await ask("/v1/jobs", { method: "POST", headers, body: JSON.stringify({ problem, label }), signal })).json();
 }
 
 /** @param {string} id @returns {Promise<Job>} */
@@ -78,22 +103,23 @@ export async function remove(id) {
   await ask(`/v1/jobs/${encodeURIComponent(id)}`, { method: "DELETE" });
 }
 
-/** @param {string} id @param {number} design @param {number} steps */
-export async function motion(id, design, steps) {
-  return (await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`)).json();
+/** @param {string} id @param {number} design @param {number} steps @param {AbortSignal} [signal] */
+export async function motion(id, design, steps, signal) {
+  const path = `/v1/jobs/${encodeURIComponent(id)}/designs/${design}/motion?steps=${steps}`;
+  return (await patiently(() => ask(path, { signal }), signal)).json();
 }
 
 /** @param {any} question @param {AbortSignal} signal */
 export async function analysis(question, signal) {
-  return (await post("/v1/analyses", question, signal)).json();
+  return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
 }
 
 /**
  * A file of a design, as something that a picture or a download can refer to; whoever gets it revokes it.
- * @param {string} id @param {number} design @param {string} form
+ * @param {string} id @param {number} design @param {string} form @param {AbortSignal} [signal]
  */
-export async function file(id, design, form) {
-  const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}.${form}`);
+export async function file(id, design, form, signal) {
+  const answer = await ask(`/v1/jobs/${encodeURIComponent(id)}/designs/${design}.${form}`, { signal });
   return URL.createObjectURL(await answer.blob());
 }
 

@@ -3,6 +3,7 @@
 import * as api from "./api.js";
 import { Barrel } from "./barrel.js";
 import { Disc } from "./cam.js";
+import { Burmester } from "./burmester.js";
 import { cognates, picker } from "./cognates.js";
 import { overTheCycle, withSkeleton } from "./cycle.js";
 import { el, words } from "./dom.js";
@@ -10,7 +11,7 @@ import { downloads } from "./downloads.js";
 import { Explorer } from "./explorer.js";
 import { Gears } from "./gears.js";
 import { checks, dimensions, figures, table } from "./figures.js";
-import { Mover } from "./mover.js";
+import { Mover, demanded } from "./mover.js";
 
 /** Samples of a cycle. */
 const STEPS = 240;
@@ -29,61 +30,76 @@ const VIEWS = {
 export class Shown {
   /** @param {HTMLElement} place @param {api.Job} job @param {number} n @param {(problem: any) => void} state begins another statement */
   constructor(place, job, n, state) {
-    this.job = job;
-    this.n = n;
-    this.design = job.result.designs[n];
+    this.state = state;
+    /** @type {Moving | null} */
+    this.curves = null;
     this.gone = new AbortController();
+    this.url = "";
     /** @type {Moving | null} */
     this.moving = null;
     /** @type {Moving | null} */
     this.explorer = null;
-    this.url = "";
-    this.stage = el("div", { class: "moving" });
-    this.drawing = el("figure", { class: "drawing" });
+    this.title = el("h3", {});
     this.before = el("div", {});
-    place.replaceChildren(el("h3", {}, `Design ${n + 1}: ${words(this.design.mechanism.type)}`), this.before, this.stage, ...this.explored(state),
-      downloads(job, n, this.drawing),
+    this.stage = el("div", { class: "moving" });
+    this.exploring = el("div", {});
+    this.numbers = el("div", {});
+    place.replaceChildren(this.title, this.before, this.stage, ...this.burmester(job, n), this.exploring, this.numbers);
+    this.present(job, n, `Design ${n + 1}`);
+  }
+
+  /** Show a design of a job. @param {api.Job} job @param {number} n @param {string} title */
+  present(job, n, title) {
+    this.leave();
+    this.job = job;
+    this.n = n;
+    this.design = job.result.designs[n];
+    this.gone = new AbortController();
+    this.drawing = el("figure", { class: "drawing" });
+    this.title.replaceChildren(`${title}: ${words(this.design.mechanism.type)}`);
+    this.before.replaceChildren();
+    this.exploring.replaceChildren(...this.explored());
+    this.numbers.replaceChildren(downloads(job, n, this.drawing),
       el("div", { class: "columns" }, checks(this.design), table("Quantities", figures(this.design)), dimensions(this.design)), this.drawing);
-    this.move();
-    this.draw();
+    this.move(this.gone.signal);
+    this.draw(this.gone.signal);
   }
 
-  get current() {
-    return !this.gone.signal.aborted;
-  }
-
-  async draw() {
-    const url = await api.file(this.job.id, this.n, "svg").catch((error) => {
-      this.drawing.replaceChildren(el("figcaption", {}, error.message));
+  /** @param {AbortSignal} gone */
+  async draw(gone) {
+    const url = await api.file(this.job.id, this.n, "svg", gone).catch((error) => {
+      if (!gone.aborted) this.drawing.replaceChildren(el("figcaption", {}, error.message));
     });
     if (!url) return;
-    if (!this.current) return URL.revokeObjectURL(url);
+    if (gone.aborted) return URL.revokeObjectURL(url);
     this.url = url;
     this.drawing.replaceChildren(el("img", { src: url, alt: `Drawing of design ${this.n + 1} with its dimensions` }));
   }
 
-  async move() {
+  /** @param {AbortSignal} gone */
+  async move(gone) {
     const { mechanism } = this.design;
-    this.stage.append(el("p", { class: "note" }, "The motion is being computed …"));
+    if (!this.stage.childElementCount) this.stage.append(el("p", { class: "note" }, "The motion is being computed …"));
     try {
       const View = VIEWS[mechanism.type];
       if (View) {
-        const turning = await api.motion(this.job.id, this.n, TURN_STEPS);
-        if (this.current) this.show(() => new View(this.stage, this.design, turning, this.job.problem));
+        const turning = await api.motion(this.job.id, this.n, TURN_STEPS, gone);
+        if (!gone.aborted) this.show(() => new View(this.stage, this.design, turning, this.job.problem));
         return;
       }
       const at = mechanism.reference_input_angle;
       const question = { mechanism, ...(Number.isFinite(at) ? { motion: { at } } : {}), include: ["branches"] };
-      const [motion, circuits, choices] = await Promise.all([
-        api.motion(this.job.id, this.n, STEPS),
-        // Without other circuits the motion is still worth seeing.
-        api.analysis(question, this.gone.signal).catch(() => null),
-        cognates(this.design, this.job.problem, this.gone.signal),
-      ]);
-      const films = await Promise.all(choices.map((choice, k) => (k ? this.film(choice) : { choice, design: this.design, motion, circuits })));
-      if (this.current) this.offer(films.filter((one) => one !== null));
+      // One after the other: the service analyses for others too.
+      const motion = await api.motion(this.job.id, this.n, STEPS, gone);
+      // Without other circuits the motion is still worth seeing.
+      const circuits = await api.analysis(question, gone).catch(() => null);
+      const choices = await cognates(this.design, this.job.problem, gone);
+      /** @type {(Film | null)[]} */
+      const films = [{ choice: choices[0], design: this.design, motion, circuits }];
+      for (const choice of choices.slice(1)) films.push(await this.film(choice));
+      if (!gone.aborted) this.offer(films.filter((one) => one !== null));
     } catch (error) {
-      if (this.current) this.stage.replaceChildren(el("p", { class: "error" }, /** @type {Error} */ (error).message));
+      if (!gone.aborted) this.stage.replaceChildren(el("p", { class: "error" }, /** @type {Error} */ (error).message));
     }
   }
 
@@ -110,33 +126,43 @@ export class Shown {
     }
   }
 
-  /** The place where a linkage's pins are dragged. @param {(problem: any) => void} state */
-  explored(state) {
-    const { type, skeleton } = this.design.mechanism;
+  /** The place where a linkage's pins are dragged. */
+  explored() {
+    const { mechanism } = this.design;
     const { problem } = this.job;
-    if (type !== "fourbar" || !skeleton?.joints.P) return [];
+    if (!mechanism.skeleton) return [];
     const inside = el("div");
     const details = el("details", { id: "explore", ontoggle: () => {
       this.explorer?.stop();
-      this.explorer = details.open ? new Explorer(inside, this.design.mechanism, problem, (joints) => state(begun(problem, joints))) : null;
+      this.explorer = details.open ? new Explorer(inside, mechanism, problem, demanded(problem, this.design), this.state) : null;
     } }, el("summary", {}, "Explore: drag its pins"), inside);
     return [details];
   }
 
-  stop() {
+  /** Burmester's curves, where the job has them. @param {api.Job} job @param {number} n */
+  burmester(job, n) {
+    const { mechanism } = job.result.designs[n];
+    if (!job.result.curves?.length || mechanism.type !== "fourbar") return [];
+    const inside = el("div");
+    const details = el("details", { id: "burmester", ontoggle: () => {
+      this.curves?.stop();
+      this.curves = details.open ? new Burmester(inside, job, job.result.designs[n], (solved) => this.present(solved, 0, "On these pivots")) : null;
+      if (!details.open && this.job !== job) this.present(job, n, `Design ${n + 1}`);
+    } }, el("summary", {}, "Burmester's curves: draw its pivots along them"), inside);
+    return [details];
+  }
+
+  leave() {
     this.gone.abort();
     this.moving?.stop();
     this.explorer?.stop();
+    [this.moving, this.explorer] = [null, null];
     if (this.url) URL.revokeObjectURL(this.url);
+    this.url = "";
   }
-}
 
-/** The problem with fixed pivots demanded, where its kind can. @param {any} problem @param {Record<string, [number, number]>} joints */
-function begun(problem, { O2, O4 }) {
-  const round = (/** @type {[number, number]} */ at) => at.map((one) => Number(one.toPrecision(6)));
-  if (problem.kind === "motion") {
-    const side = (/** @type {any} */ choices, /** @type {[number, number]} */ at) => ({ dyad: choices.dyad, fixed_pivot: round(at) });
-    return { ...problem, input_side: side(problem.input_side, O2), output_side: side(problem.output_side, O4) };
+  stop() {
+    this.leave();
+    this.curves?.stop();
   }
-  return "fixed_pivots" in problem ? { ...problem, fixed_pivots: { input: round(O2), output: round(O4) } } : problem;
 }

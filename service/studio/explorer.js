@@ -1,7 +1,13 @@
-/** A fourbar whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
+/** A linkage whose pins are dragged: what it does then, as the analysis core says, while it is dragged. */
 
 import * as api from "./api.js";
+import { telling } from "./circuits.js";
+import { stands } from "./cycle.js";
 import { el, shown, svg, words } from "./dom.js";
+import { degrees } from "./gauge.js";
+import { Linkage, drawn } from "./linkage.js";
+import { Player, between } from "./player.js";
+import { beginnings } from "./beginnings.js";
 import { View } from "./view.js";
 
 const WIDTH = 640;
@@ -12,37 +18,44 @@ const STEPS = 180;
 
 export class Explorer {
   /**
-   * @param {HTMLElement} place @param {any} mechanism a fourbar with its skeleton @param {any} problem
-   * @param {(joints: Record<string, Point>) => void} keep called to begin a statement with these pivots
+   * @param {HTMLElement} place @param {any} mechanism with its skeleton @param {any} problem @param {any[]} targets as demanded
+   * @param {(problem: any) => void} state called to begin a statement
    */
-  constructor(place, mechanism, problem, keep) {
+  constructor(place, mechanism, problem, targets, state) {
+    this.type = mechanism.type;
+    this.problem = problem;
     this.skeleton = structuredClone(mechanism.skeleton);
     /** @type {Record<string, Point>} */
     this.joints = this.skeleton.joints;
-    this.targets = (problem.positions ?? problem.points ?? []).filter((/** @type {any} */ one) => Number.isFinite(one?.x));
+    this.anchors = anchors(this.skeleton);
+    this.targets = targets;
+    this.state = state;
     this.asking = false;
     this.stale = false;
+    this.motion = null;
     this.gone = new AbortController();
-    const around = Object.values(this.joints).concat(this.targets.map((/** @type {any} */ one) => [one.x, one.y]));
+    const around = Object.values(this.joints).concat(targets.map((one) => [one.x, one.y]));
     this.view = new View(around, WIDTH, HEIGHT, 110);
     this.curve = svg("path", { class: "curve" });
-    this.links = this.skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === this.skeleton.input_link ? "input" : ""}` }) }));
-    this.handles = Object.keys(this.joints).map((name) => this.handle(name));
+    this.linkage = new Linkage(this.view, this.skeleton, { names: false });
+    this.ghost = new Linkage(this.view, this.skeleton, { names: false, faint: true });
+    this.handles = drawn(this.skeleton).map((name) => this.handle(name));
     this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas drag", role: "group", "aria-label": "The linkage, its pins to be dragged" },
       svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.curve,
-      ...this.targets.map((/** @type {any} */ one) => {
+      ...targets.map((one) => {
         const [u, v] = this.view.at(one.x, one.y);
         return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 5 }));
       }),
-      ...this.links.map((/** @type {any} */ link) => link.path), ...this.handles.map((handle) => handle.group));
+      this.ghost.node, this.linkage.node, ...this.handles.map((handle) => handle.group));
+    this.player = new Player({ count: STEPS + 1, closed: true, name: "explore-", label: "Input", reading: (at) => this.reading(at), show: (at) => this.move(at) });
     this.facts = el("dl", { class: "facts", "aria-live": "polite" });
+    this.checks = el("ul", { class: "checks" });
+    this.buttons = el("p", { class: "row" });
     place.replaceChildren(
-      el("p", { class: "note" }, "Drag a pin, or move it with the arrow keys: the curve and the figures are those of the linkage as it is then."),
-      this.picture, this.facts,
-      el("button", { type: "button", class: "small", onclick: () => keep(this.joints) }, "Begin a statement with these fixed pivots"));
+      el("p", { class: "note" }, "Drag a pin, or move it with the arrow keys: curve, motion and figures are those of the linkage as it is then."),
+      this.picture, this.player.row, el("div", { class: "columns" }, this.facts, this.checks), this.buttons);
     this.draw();
-    this.ask();
+    this.ask().then(() => this.motion && this.player.begin());
   }
 
   /** @param {string} name */
@@ -52,6 +65,9 @@ export class Explorer {
     const group = svg("g", { class: "target", tabindex: 0, role: "button" }, text, dot);
     const put = (/** @type {Point} */ at) => {
       this.joints[name] = at;
+      const doubled = "P" in this.joints && !drawn(this.skeleton).includes("P") ? "P" : null;
+      if (doubled) this.joints.P = [...at];
+      this.carry();
       this.draw();
       this.ask();
     };
@@ -71,10 +87,20 @@ export class Explorer {
     return { name, dot, text, group };
   }
 
+  /** Lines of slides go with the joints that they pass: turned about the pivot that they pass too, or shifted. */
+  carry() {
+    this.skeleton.slides?.forEach((/** @type {any} */ slide, /** @type {number} */ k) => {
+      const [x, y] = this.joints[slide.joint];
+      const through = this.anchors[k] && this.joints[this.anchors[k]];
+      if (through) {
+        slide.point = [...through];
+        slide.angle = (Math.atan2(y - through[1], x - through[0]) * 180) / Math.PI;
+      } else slide.point = [x, y];
+    });
+  }
+
   draw() {
-    for (const { joints, path } of this.links) {
-      path.setAttribute("d", `${this.view.path(joints.map((/** @type {string} */ name) => this.joints[name]))}${joints.length > 2 ? "Z" : ""}`);
-    }
+    this.linkage.show(this.joints);
     for (const { name, dot, text, group } of this.handles) {
       const [x, y] = this.joints[name];
       const [u, v] = this.view.at(x, y);
@@ -95,16 +121,19 @@ export class Explorer {
     this.asking = true;
     do {
       this.stale = false;
-      const { O2, A } = this.joints;
-      const from = (Math.atan2(A[1] - O2[1], A[0] - O2[0]) * 180) / Math.PI;
-      const question = { mechanism: { type: "fourbar", skeleton: this.skeleton }, motion: { from, to: from + 360, steps: STEPS } };
+      const from = stands(this.skeleton);
+      const motion = from === null ? {} : { motion: { from, to: from + 360, steps: STEPS } };
       try {
-        this.tell(await api.analysis(question, this.gone.signal));
+        this.tell(await api.analysis({ mechanism: { type: this.type, skeleton: this.skeleton }, ...motion }, this.gone.signal));
       } catch (error) {
         if (this.gone.signal.aborted) return;
+        this.motion = null;
         this.curve.removeAttribute("d");
+        this.ghost.node.setAttribute("hidden", "");
         const refused = /** @type {api.Refused} */ (error);
         this.facts.replaceChildren(el("dt", {}, "Refused"), el("dd", {}, refused.errors?.[0]?.detail ?? refused.message));
+        this.checks.replaceChildren();
+        this.buttons.replaceChildren();
       }
     } while (this.stale);
     this.asking = false;
@@ -112,23 +141,82 @@ export class Explorer {
 
   /** @param {any} answer */
   tell(answer) {
-    const { x, y } = answer.joints.P;
+    this.motion = answer;
+    const { x, y } = answer.joints[telling(this.skeleton)];
     /** @type {Point[]} */
     const points = x.map((/** @type {number | null} */ one, /** @type {number} */ k) => (one === null ? [NaN, NaN] : [one, y[k]]));
     this.curve.setAttribute("d", this.view.path(points));
     const angles = answer.transmission_angle.filter((/** @type {number | null} */ one) => one !== null);
-    const missed = this.targets.map((/** @type {any} */ target) =>
-      points.reduce((least, [px, py]) => (px === px ? Math.min(least, Math.hypot(px - target.x, py - target.y)) : least), Infinity));
+    const least = angles.length ? Math.min(...angles) : null;
+    const missed = "P" in this.joints ? this.targets.map((target) =>
+      points.reduce((nearest, [px, py]) => (px === px ? Math.min(nearest, Math.hypot(px - target.x, py - target.y)) : nearest), Infinity)) : [];
+    const turns = answer.valid.every(Boolean);
+    const { grashof } = answer.classification;
     const facts = {
-      "Grashof": words(answer.classification.grashof ?? "unknown"),
-      "Input turns through": answer.valid.every(Boolean) ? "yes" : "no",
-      "Least transmission angle": angles.length ? `${shown(Math.round(10 * Math.min(...angles)) / 10)}°` : "–",
+      ...(grashof ? { "Grashof": words(grashof) } : {}),
+      "Input turns through": turns ? "yes" : "no",
+      "Least transmission angle": degrees(least),
       ...(missed.length ? { "Farthest target from the curve": shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
+      "Circuits": shown(answer.circuits.length),
     };
     this.facts.replaceChildren(...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+    this.judge(turns, least, grashof, missed);
+    this.buttons.replaceChildren(...beginnings(this.problem, this.skeleton, answer, this.targets).map(({ text, statement }) =>
+      el("button", { type: "button", class: "small", onclick: () => this.state(statement()) }, text)));
+    this.move(this.player.at);
+  }
+
+  /** The checks of the problem, as far as they can be told at once. @param {boolean} turns @param {number | null} least @param {string | null} grashof @param {number[]} missed */
+  judge(turns, least, grashof, missed) {
+    const wanted = this.problem.constraints ?? {};
+    const size = Math.max(...Object.values(this.joints).map(([x, y]) => Math.hypot(x - this.joints.O2?.[0], y - this.joints.O2?.[1])));
+    /** @type {[string, boolean][]} */
+    const checks = [];
+    // The curve is known at so many places only: nearer than their distance nothing can be told.
+    if (missed.length) checks.push([`Passes the targets within ${shown(Number((0.01 * size).toPrecision(2)))}`, Math.max(...missed) <= 0.01 * size]);
+    if (wanted.full_rotation) checks.push(["Full rotation", turns]);
+    if (wanted.min_transmission_angle) checks.push([`Transmission angle of ${shown(wanted.min_transmission_angle)}° in the whole motion`, least !== null && least >= wanted.min_transmission_angle]);
+    if (wanted.grashof && wanted.grashof !== "any" && grashof) {
+      checks.push([words(wanted.grashof), wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof]);
+    }
+    this.checks.replaceChildren(...checks.map(([name, passed]) => el("li", { class: passed ? "good" : "bad" },
+      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, passed ? " passed" : " failed"))));
+  }
+
+  /** @param {number} at */
+  move(at) {
+    const { motion } = this;
+    this.ghost.node.toggleAttribute("hidden", !motion);
+    if (!motion) return;
+    this.ghost.show(Object.fromEntries(Object.entries(motion.joints).map(([name, track]) => {
+      const x = between(/** @type {any} */ (track).x, at);
+      return [name, x === null ? null : [x, Number(between(/** @type {any} */ (track).y, at))]];
+    })));
+  }
+
+  /** @param {number} at */
+  reading(at) {
+    const input = this.motion && between(this.motion.input_angle, Math.min(at, this.motion.input_angle.length - 1));
+    return input === null ? "–" : `${shown(Math.round(10 * input) / 10)}${stands(this.skeleton) === null ? "" : "°"}`;
   }
 
   stop() {
     this.gone.abort();
+    this.player.stop();
   }
+}
+
+/** Of each slide the joint of its own link that its line passes, if there is one. @param {any} skeleton @returns {(string | null)[]} */
+function anchors(skeleton) {
+  const places = /** @type {Point[]} */ (Object.values(skeleton.joints));
+  const size = Math.max(...places.map(([x, y]) => Math.hypot(x - places[0][0], y - places[0][1])));
+  return (skeleton.slides ?? []).map((/** @type {any} */ slide) => {
+    if (slide.link === "ground") return null;
+    const on = skeleton.links.find((/** @type {any} */ link) => link.name === slide.link)?.joints ?? [];
+    const angle = (slide.angle * Math.PI) / 180;
+    return on.find((/** @type {string} */ name) => {
+      const [dx, dy] = [skeleton.joints[name][0] - slide.point[0], skeleton.joints[name][1] - slide.point[1]];
+      return name !== slide.joint && Math.abs(dy * Math.cos(angle) - dx * Math.sin(angle)) < 1e-9 * size;
+    }) ?? null;
+  });
 }

@@ -11,6 +11,7 @@ const CYCLE_S = 4;
  * @property {boolean} closed whether the last sample is the first again: it then goes on, and otherwise back and forth
  * @property {boolean} [endless] the place counts on beyond the last sample: what turns need not come back after a cycle
  * @property {string} label what the scrubber moves
+ * @property {string} [name] before the ids of its controls, where a page has a second one
  * @property {(at: number) => string} reading what stands beside the scrubber
  * @property {(at: number) => void} show called with a place of the arrays, between two samples as a fraction
  */
@@ -19,6 +20,7 @@ export class Player {
   /** @param {Moved} moved */
   constructor(moved) {
     this.moved = moved;
+    const [scrub, speeds] = [`${moved.name ?? ""}scrub`, `${moved.name ?? ""}speed`];
     this.at = 0;
     this.sense = 1;
     this.rate = 1;
@@ -26,7 +28,7 @@ export class Player {
     this.frame = 0;
     this.last = moved.count - 1;
     this.button = el("button", { type: "button", class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
-    this.slider = el("input", { type: "range", id: "scrub", min: 0, max: this.last, step: "any", value: 0,
+    this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
       oninput: () => this.lead(this.slider.valueAsNumber),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
@@ -34,12 +36,12 @@ export class Player {
         event.preventDefault();
         this.lead(Math.round(this.at) + by);
       } });
-    const speed = el("select", { id: "speed", onchange: () => (this.rate = Number(speed.value)) },
+    const speed = el("select", { id: speeds, onchange: () => (this.rate = Number(speed.value)) },
       ...[0.25, 0.5, 1, 2, 4].map((rate) => el("option", { value: rate }, `${rate} ×`)));
     speed.value = "1";
-    this.reading = el("output", { for: "scrub", class: "reading" });
-    this.row = el("div", { class: "row player" }, this.button, el("label", { for: "scrub" }, moved.label), this.slider, this.reading,
-      el("label", { for: "speed" }, "Speed"), speed);
+    this.reading = el("output", { for: scrub, class: "reading" });
+    this.row = el("div", { class: "row player" }, this.button, el("label", { for: scrub }, moved.label), this.slider, this.reading,
+      el("label", { for: speeds }, "Speed"), speed);
   }
 
   /** Begin: at the first sample, and moving unless the system asks for little motion. */

@@ -5,10 +5,18 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import sync_playwright
 
-from tests.service.running import ROOT, RunningServer
+from tests.service.running import ROOT, RunningServer, until
 
 CHROMIUM = "/usr/bin/chromium"
 SCREENS = ROOT / "var" / "screens"
+
+FOURBAR = {
+    "mechanism": {
+        "type": "fourbar",
+        "fixed_pivots": {"input": [0, 0], "output": [6, 0]},
+        "links": {"input": 2, "coupler": 7, "output": 9},
+    }
+}
 
 REPORT_VIOLATIONS = """
 addEventListener("securitypolicyviolation", (event) =>
@@ -19,6 +27,9 @@ addEventListener("securitypolicyviolation", (event) =>
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     running = RunningServer(tmp_path_factory.mktemp("studio"))
+    # On a busy machine the analysis core is loaded some time after the server is ready; until then it answers 503,
+    # which the page bears, but the browser reports.
+    until(lambda: running.client.post("/v1/analyses", json=FOURBAR).status_code == 200, 120, "the analysis core")
     yield running
     assert running.stop() == 0
 

@@ -259,7 +259,7 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     studio.solve()
     page.click("#explore summary")
     page.wait_for_selector("#explore .curve[d]")
-    until(lambda: page.locator("#explore dd").count() == 4, 30, "the figures")
+    until(lambda: page.locator("#explore dd").count() == 5, 30, "the figures")
     curve, figures = page.get_attribute("#explore .curve", "d"), page.inner_text("#explore .facts")
     drag(page, "#explore .target:has(text:text-is('O4')) .dot", (40, 25))
     until(lambda: page.get_attribute("#explore .curve", "d") != curve, 30, "another curve")

@@ -1,0 +1,176 @@
+/** Burmester's curves of four positions: a pivot is drawn along them, and the linkage on it is solved anew. */
+
+import * as api from "./api.js";
+import { el, shown, svg } from "./dom.js";
+import { View } from "./view.js";
+
+const WIDTH = 640;
+const HEIGHT = 420;
+
+/** So long a pivot must stand before its linkage is solved, ms. */
+const REST = 150;
+
+/** @typedef {[number, number]} Point */
+/** @typedef {{circle_points: Point[], centre_points: Point[], closed: boolean}} Branch */
+/** A dyad: where on which branch. @typedef {{branch: number, at: number}} Dyad */
+
+const SIDES = /** @type {const} */ ([
+  { side: "input_side", moving: "A", fixed: "O2" },
+  { side: "output_side", moving: "B", fixed: "O4" },
+]);
+
+export class Burmester {
+  /**
+   * @param {HTMLElement} place @param {api.Job} job of four positions @param {any} design whose dyads stand first
+   * @param {(job: api.Job) => void} show called with the job of the new linkage
+   */
+  constructor(place, job, design, show) {
+    this.problem = job.problem;
+    /** @type {Branch[]} */
+    this.branches = job.result.curves;
+    this.showSolved = show;
+    this.gone = new AbortController();
+    this.asking = new AbortController();
+    this.timer = 0;
+    /** The job of the linkage that is shown; it goes when the next comes, unless it is kept. */
+    this.trial = "";
+    const { joints } = design.mechanism.skeleton;
+    const around = Object.values(joints).concat(job.problem.positions.map((/** @type {any} */ one) => [one.x, one.y]));
+    this.view = new View(/** @type {Point[]} */ (around), WIDTH, HEIGHT, 90);
+    this.dyads = SIDES.map(({ moving }) => this.nearest("circle_points", joints[moving]));
+    this.handles = SIDES.flatMap((names, k) => [this.handle(k, "circle_points", names.moving), this.handle(k, "centre_points", names.fixed)]);
+    this.lines = SIDES.map((_, k) => svg("line", { class: k ? "arm" : "arm input" }));
+    this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas drag", role: "group", "aria-label": "Burmester's curves, pivots to be drawn along them" },
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }),
+      ...this.branches.flatMap((branch) => [
+        svg("path", { class: "centre-points", d: this.view.path(branch.centre_points) + (branch.closed ? "Z" : "") }),
+        svg("path", { class: "circle-points", d: this.view.path(branch.circle_points) + (branch.closed ? "Z" : "") })]),
+      ...job.problem.positions.map((/** @type {any} */ one, /** @type {number} */ k) => this.position(one, k)),
+      ...this.lines, ...this.handles.map((handle) => handle.group));
+    this.told = el("p", { class: "note", role: "status" }, "Draw a pivot along its curve, or move it with the arrow keys: the linkage on these pivots is solved.");
+    this.keep = el("button", { type: "button", class: "small", hidden: true, onclick: () => {
+      const kept = this.trial;
+      this.trial = "";
+      location.hash = `job=${kept}`;
+    } }, "Keep this linkage as a job");
+    place.replaceChildren(el("p", { class: "note" },
+      el("span", { class: "key circle-key" }, "Circle points"), ": where the moving pivots may be in the first position; ",
+      el("span", { class: "key centre-key" }, "centre points"), ": their fixed pivots."), this.picture, this.told, this.keep);
+    this.draw();
+  }
+
+  /** @param {any} one @param {number} k */
+  position(one, k) {
+    const [u, v] = this.view.at(one.x, one.y);
+    const angle = (one.angle * Math.PI) / 180;
+    return svg("g", { class: "goal" }, svg("circle", { cx: u, cy: v, r: 4 }),
+      svg("line", { x1: u, y1: v, x2: u + 22 * Math.cos(angle), y2: v - 22 * Math.sin(angle) }), svg("text", { x: u, y: v, dx: 7, dy: 14 }, k + 1));
+  }
+
+  /** The dyad whose pivot is nearest to a place. @param {"circle_points" | "centre_points"} which @param {Point} place @returns {Dyad} */
+  nearest(which, [x, y]) {
+    let least = Infinity;
+    let found = { branch: 0, at: 0 };
+    this.branches.forEach((branch, n) => branch[which].forEach(([px, py], k) => {
+      const away = Math.hypot(px - x, py - y);
+      if (away < least) [least, found] = [away, { branch: n, at: k }];
+    }));
+    return found;
+  }
+
+  /** @param {number} k side @param {"circle_points" | "centre_points"} which @param {string} name */
+  handle(k, which, name) {
+    const dot = svg("circle", { class: which === "circle_points" ? "dot circle" : "dot centre", r: 7 });
+    const text = svg("text", { dx: 10, dy: -9 }, name);
+    const group = svg("g", { class: "target", tabindex: 0, role: "slider", "aria-valuemin": 0 }, text, dot);
+    dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+      dot.setPointerCapture(event.pointerId);
+      const move = (/** @type {PointerEvent} */ now) => this.put(k, this.nearest(which, this.view.under(this.picture, now)));
+      dot.addEventListener("pointermove", move);
+      dot.addEventListener("lostpointercapture", () => dot.removeEventListener("pointermove", move), { once: true });
+    });
+    group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
+      const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
+      if (!by) return;
+      event.preventDefault();
+      const { branch, at } = this.dyads[k];
+      const { circle_points: points, closed } = this.branches[branch];
+      const next = closed ? (at + by + points.length) % points.length : Math.min(points.length - 1, Math.max(0, at + by));
+      this.put(k, { branch, at: next });
+    });
+    return { k, which, name, dot, text, group };
+  }
+
+  /** @param {number} k @param {Dyad} dyad */
+  put(k, dyad) {
+    if (dyad.branch === this.dyads[k].branch && dyad.at === this.dyads[k].at) return;
+    this.dyads[k] = dyad;
+    this.draw();
+    clearTimeout(this.timer);
+    this.asking.abort();
+    this.timer = window.setTimeout(() => this.solve(), REST);
+  }
+
+  draw() {
+    for (const { k, which, name, dot, text, group } of this.handles) {
+      const { branch, at } = this.dyads[k];
+      const [x, y] = this.branches[branch][which][at];
+      const [u, v] = this.view.at(x, y);
+      for (const [part, values] of /** @type {[Element, Record<string, number>][]} */ ([[dot, { cx: u, cy: v }], [text, { x: u, y: v }]])) {
+        for (const [attribute, value] of Object.entries(values)) part.setAttribute(attribute, String(value));
+      }
+      group.setAttribute("aria-label", `${name} on ${which === "circle_points" ? "the circle points" : "the centre points"}, branch ${branch + 1}`);
+      group.setAttribute("aria-valuemax", String(this.branches[branch][which].length - 1));
+      group.setAttribute("aria-valuenow", String(at));
+      group.setAttribute("aria-valuetext", `x ${shown(x)}, y ${shown(y)}`);
+    }
+    this.lines.forEach((line, k) => {
+      const { branch, at } = this.dyads[k];
+      const [[x1, y1], [x2, y2]] = [this.branches[branch].centre_points[at], this.branches[branch].circle_points[at]].map((one) => this.view.at(...one));
+      for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, String(value));
+    });
+  }
+
+  /** The problem with both moving pivots chosen: one linkage, or the reason why there is none. */
+  async solve() {
+    const asking = (this.asking = new AbortController());
+    const chosen = Object.fromEntries(SIDES.map(({ side }, k) =>
+      [side, { moving_pivot: this.branches[this.dyads[k].branch].circle_points[this.dyads[k].at] }]));
+    this.told.replaceChildren("The linkage on these pivots is being solved …");
+    try {
+      const job = await api.solved({ ...this.problem, ...chosen, include_failed: true, max_designs: 1 }, "Pivots on Burmester's curves", asking.signal);
+      if (asking.signal.aborted || this.gone.signal.aborted) {
+        await api.remove(job.id).catch(() => undefined);
+        return;
+      }
+      const before = this.trial;
+      this.trial = job.id;
+      this.keep.hidden = false;
+      if (!job.result) this.told.replaceChildren(`The job is ${job.status}; open it to follow it.`);
+      else {
+        const found = job.result.designs.length;
+        this.told.replaceChildren(found ? `Solved: ${job.result.designs[0].verification.passed ? "it passes all checks." : "it fails a check; see below which."}` : job.result.summary);
+        if (found) this.showSolved(job);
+      }
+      // Only now, when nothing of it is asked for any more.
+      if (before) api.remove(before).catch(() => undefined);
+    } catch (error) {
+      if (asking.signal.aborted || this.gone.signal.aborted) return;
+      const refused = /** @type {api.Refused} */ (error);
+      this.told.replaceChildren(el("span", { class: "error" }, refused.errors?.[0]?.detail ?? refused.message));
+    }
+  }
+
+  /** The job of the linkage before is not needed any more. */
+  drop() {
+    if (this.trial) api.remove(this.trial).catch(() => undefined);
+    this.trial = "";
+  }
+
+  stop() {
+    clearTimeout(this.timer);
+    this.gone.abort();
+    this.asking.abort();
+    this.drop();
+  }
+}

@@ -1,0 +1,148 @@
+"""A person explores: draws pivots along Burmester's curves, drags pins of any linkage, begins anew with the find."""
+
+import math
+import re
+
+import pytest
+
+from synthesis.kinds import examples
+from tests.browser.test_motion_view import number, solved
+from tests.browser.test_studio import drag, stated
+from tests.service.running import until
+
+pytestmark = pytest.mark.browser
+
+FOUR = examples("motion")[2]
+
+
+def at(page, selector):
+    return float(page.get_attribute(selector, "cx")), float(page.get_attribute(selector, "cy"))
+
+
+def test_a_pivot_is_drawn_along_burmesters_curve_and_solved(studio, server):
+    page = studio.page
+    solved(studio, FOUR)
+    first = page.url
+    page.click("#burmester summary")
+    page.wait_for_selector("#burmester .circle-points")
+    curve = page.locator("#burmester .circle-points").evaluate_all(
+        "paths => paths.map(one => one.getAttribute('d')).join('')"
+    )
+    places = [tuple(map(float, pair)) for pair in re.findall(r"([-\d.]+) ([-\d.]+)", curve)]
+    before, drawn = at(page, "#burmester .dot.circle"), page.locator(".live .link").first.get_attribute("d")
+    assert min(math.dist(before, place) for place in places) < 0.2
+    handle = "#burmester .target:has(text:text-is('A'))"
+    page.locator(handle).focus()
+    for _ in range(4):
+        page.keyboard.press("ArrowRight")
+    after = at(page, "#burmester .dot.circle")
+    assert after != before
+    assert min(math.dist(after, place) for place in places) < 0.2, "it stays on the curve"
+    until(lambda: "Solved" in page.inner_text("#burmester [role=status]"), 60, "the linkage on these pivots")
+    until(lambda: page.locator(".live .link").first.get_attribute("d") != drawn, 30, "the new linkage")
+    assert "On these pivots: Fourbar" in page.inner_text("#design h3")
+    assert page.locator(".checks li").count() >= 4
+    studio.screen("burmester")
+    page.get_by_role("button", name="Keep this linkage").click()
+    until(lambda: page.url != first and page.locator(".card").count() == 1, 30, "the job")
+    job = server.job(re.search(r"#job=(\w+)", page.url).group(1))
+    chosen = job["problem"]["input_side"]["moving_pivot"]
+    (design,) = job["result"]["designs"]
+    assert min(math.dist(chosen, joint) for joint in design["mechanism"]["skeleton"]["joints"].values()) < 1e-6
+    reached = next(one for one in design["verification"]["checks"] if one["name"] == "reaches_targets")
+    assert reached["passed"]
+
+
+def test_a_pivot_is_dragged_along_burmesters_curve(studio):
+    page = studio.page
+    solved(studio, FOUR)
+    page.click("#burmester summary")
+    page.wait_for_selector("#burmester .dot.centre")
+    before = at(page, "#burmester .dot.centre")
+    moving = at(page, "#burmester .dot.circle")
+    drag(page, "#burmester .target:has(text:text-is('O2')) .dot", (30, 20))
+    assert at(page, "#burmester .dot.centre") != before
+    assert at(page, "#burmester .dot.circle") != moving, "the moving pivot goes with its fixed pivot"
+    until(
+        lambda: (
+            "olved" in page.inner_text("#burmester [role=status]")
+            and "being" not in page.inner_text("#burmester [role=status]")
+        ),
+        60,
+        "an answer",
+    )
+    page.click("#burmester summary")
+    until(lambda: page.inner_text("#design h3") == "Design 1: Fourbar", 30, "the design again")
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "pin"),
+    [
+        ("motion", 6, "B"), ("motion", 7, "C"), ("quick_return", 1, "A"), ("quick_return", 0, "B"), ("dwell", 1, "P"),
+        ("parallel_motion", 0, "B"), ("straight_line", 1, "A"),
+    ],
+)  # fmt: skip
+def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
+    page = studio.page
+    solved(studio, examples(kind)[n])
+    page.click("#explore summary")
+    until(lambda: page.get_attribute("#explore .curve", "d"), 30, "the curve")
+    curve, angle = page.get_attribute("#explore .curve", "d"), page.inner_text("#explore .facts")
+    page.locator(f"#explore .target:has(text:text-is('{pin}'))").focus()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowRight")
+    until(
+        lambda: page.inner_text("#explore .facts") != angle or page.get_attribute("#explore .curve", "d") != curve,
+        30,
+        "another answer",
+    )
+    assert "Refused" not in page.inner_text("#explore .facts")
+    ghost = page.locator("#explore .faint .link").last
+    before = ghost.get_attribute("d")
+    page.focus("#explore-scrub")
+    for _ in range(3):
+        page.keyboard.press("PageUp")
+    assert ghost.get_attribute("d") != before, "it moves"
+    studio.screen(f"explore-{kind}-{n}")
+
+
+def test_a_statement_begins_with_what_was_found(studio):
+    page = studio.page
+    solved(studio, examples("motion")[0])
+    page.click("#explore summary")
+    page.wait_for_selector("#explore button:has-text('positions')")
+    assert page.locator("#explore .checks li").count() == 2
+    given = stated(page)["positions"]
+    drag(page, "#explore .target:has(text:text-is('B')) .dot", (12, -9))
+    page.get_by_role("button", name="the positions that it takes").click()
+    taken = stated(page)["positions"]
+    assert len(taken) == len(given)
+    assert taken != given
+    assert taken[0]["angle"] == pytest.approx(given[0]["angle"], abs=2.5)
+    page.get_by_role("button", name="path statement").click()
+    begun = stated(page)
+    assert begun["kind"] == "path"
+    assert begun["closed"] is True
+    assert len(begun["points"]) == 24
+    page.wait_for_selector("#sketch .target >> nth=23")
+
+
+def test_what_cannot_be_assembled_is_said(studio):
+    """A link of no length drives nothing: the reason stands there, and the page goes on."""
+    page = studio.page
+    solved(studio, examples("quick_return")[0])
+    page.click("#explore summary")
+    until(lambda: page.get_attribute("#explore .curve", "d"), 30, "the curve")
+    pivot, pin = "#explore .target:has(text:text-is('O2')) .dot", "#explore .target:has(text:text-is('A')) .dot"
+    (u, v), (x, y) = at(page, pivot), at(page, pin)
+    box = page.locator("#explore .canvas").bounding_box()
+    scale = box["width"] / 640
+    drag(page, pin, ((u - x) * scale, (v - y) * scale))
+    angle = page.locator("#explore dd")
+    until(lambda: angle.count() > 0, 30, "an answer")
+    drag(page, pivot, (-30, 0))
+    until(lambda: "Least" in page.inner_text("#explore .facts"), 30, "figures again")
+    assert number(page.locator("#explore dt:has-text('Least') + dd").inner_text()) >= 0.0
+    # The browser itself reports an answer 422, where the linkage was refused on the way.
+    assert [text for text in studio.wrong if "422" not in text] == []
+    studio.wrong.clear()
