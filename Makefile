@@ -70,6 +70,7 @@ bench: $(STAMP)
 	$(BIN)/python -m benchmarks.cam_core
 	$(BIN)/python -m benchmarks.cam
 	$(BIN)/python -m benchmarks.service
+	$(BIN)/python -m benchmarks.geometry_fuzz --cases 200
 
 # Rewrites what the service promises; see the difference before it is committed.
 openapi: $(STAMP)

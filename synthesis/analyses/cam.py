@@ -24,8 +24,8 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
 from synthesis.mechanisms.base import MechanismError
-from synthesis.mechanisms.cam import GivenCam, NonNegative
-from synthesis.problems import PositiveNumber, Statement
+from synthesis.mechanisms.cam import GivenCam
+from synthesis.problems import NonNegative, PositiveNumber, Statement
 
 Real = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from synthesis.problems import Count, Number, Statement
+from synthesis.problems import Count, Number, Sizable, Statement
 
 MOST_POSITIONS = 10_000
 """Positions of one analysis at most; a finer run is asked for in parts."""
@@ -69,7 +69,7 @@ class TimeSpan(Statement):
 
     start: Number = 0.0
     end: Number
-    step: Annotated[float, Field(strict=True, gt=0.0, le=1e9)]
+    step: Annotated[float, Field(strict=True, gt=0.0, le=1e9), Sizable]
 
 
 class Run(_Motion):

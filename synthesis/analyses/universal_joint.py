@@ -18,12 +18,10 @@ from kinematics.linkage.universal_joint import (
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.designs import Answer
-from synthesis.problems import Number, Statement
+from synthesis.problems import ABSURD, NonNegative, Number, Statement
 
 EVEN = 1e-12
 """Fluctuation of the speed that is rounding."""
-
-NonNegative = Annotated[Number, Field(ge=0.0)]
 
 
 class StatedJoint(Statement):
@@ -44,7 +42,7 @@ class SpeedLimits(Statement):
 
     fluctuation: NonNegative | None = Field(default=None, description="(ω_max − ω_min)/ω_mean.")
     least_ratio: Annotated[float, Field(strict=True, ge=0.0, le=1.0)] = 0.0
-    greatest_ratio: Annotated[Number, Field(ge=1.0)] | None = None
+    greatest_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD, allow_inf_nan=False)] | None = None
 
 
 class GivenUniversalJoint(Statement):

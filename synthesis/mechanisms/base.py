@@ -5,13 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from typing import Annotated, Literal
-
-from pydantic import Field
+from typing import Literal
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.mechanism import Mechanism
-from synthesis.problems import Number, Point, Statement
+from synthesis.problems import NonNegative, Number, Point, Statement
 
 AGREES = 1e-6
 """A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
@@ -47,7 +45,7 @@ class StatedPivots(Statement):
 class StatedCouplerPoint(Statement):
     """P: distance from A, and angle from the coupler's line (A towards its other pin) to the line A → P, degrees."""
 
-    distance: Annotated[Number, Field(ge=0.0)]
+    distance: NonNegative
     angle: Number = 0.0
 
     @property

@@ -14,12 +14,11 @@ from kinematics.cam import follower as core
 from kinematics.cam.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
-from synthesis.problems import Number, PositiveNumber, Statement
+from synthesis.problems import NonNegative, Number, PositiveNumber, Statement
 
 MOST_POINTS = 20_000
 """Points of a given profile at most."""
 
-NonNegative = Annotated[Number, Field(ge=0.0)]
 Coordinates = Annotated[list[Number], Field(min_length=16, max_length=MOST_POINTS)]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -22,7 +22,7 @@ from synthesis.mechanisms.base import (
     assembled,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.problems import Number, Point, PositiveNumber, Statement
+from synthesis.problems import NonNegative, Number, Point, PositiveNumber, Statement
 
 
 class SliderCrankLengths(Statement):
@@ -72,7 +72,7 @@ class InvertedLengths(Statement):
 
     ground: PositiveNumber | None = None
     input: PositiveNumber
-    output: Annotated[Number, Field(ge=0.0)]
+    output: NonNegative
 
 
 class OutputSlide(Statement):

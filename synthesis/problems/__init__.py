@@ -8,15 +8,18 @@ One module a kind; :mod:`synthesis.kinds` joins each to its answers and its solv
 """
 
 from synthesis.problems.base import (
+    ABSURD,
     Contradiction,
     ContradictionError,
     Count,
     Flag,
     Interval,
+    NonNegative,
     Number,
     PartialPoint,
     Point,
     PositiveNumber,
+    Sizable,
     StatedProblem,
     Statement,
 )
@@ -51,6 +54,7 @@ from synthesis.problems.steering import ArmLimits, SteeringProblem
 from synthesis.problems.straight_line import StraightLineProblem
 
 __all__ = [
+    "ABSURD",
     "ArmLimits",
     "CamProblem",
     "Constraints",
@@ -72,6 +76,7 @@ __all__ = [
     "LengthLimits",
     "LinkageProblem",
     "MotionProblem",
+    "NonNegative",
     "Number",
     "ParallelMotionProblem",
     "PartialPoint",
@@ -87,6 +92,7 @@ __all__ = [
     "QuickReturnProblem",
     "Region",
     "RockerPosition",
+    "Sizable",
     "StatedProblem",
     "Statement",
     "SteeringProblem",

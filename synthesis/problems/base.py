@@ -16,8 +16,22 @@ ABSURD = 1e9
 ROUNDED_OFF = 1e-10
 """Lengths below this share of the coordinates that they lie at have lost most of their digits there."""
 
-Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False)]
-PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False)]
+TINY = 1e-30
+"""Numbers nearer to 0, but not 0, are no measure of anything either; a few of them multiplied are 0."""
+
+
+def _sizable(number: float) -> float:
+    if number != 0.0 and -TINY < number < TINY:
+        raise ValueError(f"a number that is not 0 must be {TINY:g} at least in size")
+    return number
+
+
+Sizable = AfterValidator(_sizable)
+"""Of numbers that have bounds of their own: not so near to 0 that it makes no difference."""
+
+Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False), Sizable]
+NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable]
+PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False), Sizable]
 Flag = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True)]
 Point = tuple[Number, Number]

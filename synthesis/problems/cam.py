@@ -12,12 +12,13 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Discriminator, Field
 
 from synthesis.problems.base import (
-    ABSURD,
     Contradiction,
     Count,
     Flag,
+    NonNegative,
     Number,
     PositiveNumber,
+    Sizable,
     StatedProblem,
     Statement,
 )
@@ -32,7 +33,6 @@ SMOOTH = 1e-6
 Angle = Annotated[float, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
 """Of a segment, degrees: shorter ones are below what any shaft is set to, and rates over them are rounding."""
 
-NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False)]
 
 Law = Literal[
     "auto",
@@ -192,7 +192,7 @@ Follower = Annotated[
     TranslatingRoller | OscillatingRoller | TranslatingFlat | OscillatingFlat | BarrelRoller, Discriminator("type")
 ]
 
-LimitAngle = Annotated[float, Field(strict=True, gt=0.0, le=85.0)]
+LimitAngle = Annotated[float, Field(strict=True, gt=0.0, le=85.0), Sizable]
 
 
 class CamLimits(Statement):

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from synthesis.problems.base import ROUNDED_OFF, Contradiction, Count, Point, PositiveNumber, Statement
+from synthesis.problems.base import ROUNDED_OFF, Contradiction, Count, Point, PositiveNumber, Sizable, Statement
 from synthesis.problems.linkage import LinkageProblem
 
 DEFAULT_TOLERANCE = 0.01
@@ -20,7 +20,7 @@ class RockerOutput(Statement):
     """The output swings about a fixed pivot."""
 
     type: Literal["rocker"] = "rocker"
-    swing: Annotated[float, Field(strict=True, gt=0.0, lt=180.0)] = Field(description="Degrees.")
+    swing: Annotated[float, Field(strict=True, gt=0.0, lt=180.0), Sizable] = Field(description="Degrees.")
 
 
 class SliderOutput(Statement):
@@ -76,7 +76,7 @@ class DwellProblem(LinkageProblem):
     )
 
     kind: Literal["dwell"]
-    dwell_angle: Annotated[float, Field(strict=True, gt=0.0, lt=360.0)] = Field(
+    dwell_angle: Annotated[float, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
         description="Rotation of the crank during a dwell, degrees; of each of two."
     )
     output: Output = Field(description="What the output is, and how far it goes.")

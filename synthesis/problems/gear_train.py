@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from synthesis.gear_train.targets import LONGEST, Target, decimal, parse_target
-from synthesis.problems.base import Contradiction, Count, Flag, Number, PositiveNumber, StatedProblem, Statement
+from synthesis.problems.base import Contradiction, Count, Flag, Number, StatedProblem, Statement
 
 MOST_TEETH = 2000
 """More teeth are a typing error; the fourth power of it is exact in every number that the search uses."""
@@ -44,7 +44,7 @@ ExactRatio = Annotated[
 ]
 """A number or a text of the grammar of :mod:`synthesis.gear_train.targets`."""
 
-Pitch = Annotated[PositiveNumber, Field(ge=1e-6, le=1e6)]
+Pitch = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
 """A module or diametral pitch; beyond, lengths of trains would leave the numbers there are. Finer is a typing error."""
 
 ToothNumber = Annotated[Count, Field(ge=FEWEST_TEETH, le=MOST_TEETH)]

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.gear.gearbox import preferred_numbers, preferred_ratio, progression
-from synthesis.problems.base import Contradiction, Count, Flag, PositiveNumber, StatedProblem, Statement
+from synthesis.problems.base import Contradiction, Count, Flag, PositiveNumber, Sizable, StatedProblem, Statement
 from synthesis.problems.gear_train import Pitch
 from synthesis.problems.planetary_train import ToothRange
 
@@ -60,8 +60,8 @@ class SpindleSpeeds(Statement):
 class StageRatio(Statement):
     """Least and greatest driven speed over driving speed of a pair; 1/4 to 2 is usual in machine tools."""
 
-    min: Annotated[float, Field(strict=True, gt=0.0, le=1e3)] = 0.25
-    max: Annotated[float, Field(strict=True, gt=0.0, le=1e3)] = 2.0
+    min: Annotated[float, Field(strict=True, gt=0.0, le=1e3), Sizable] = 0.25
+    max: Annotated[float, Field(strict=True, gt=0.0, le=1e3), Sizable] = 2.0
 
     @model_validator(mode="after")
     def _min_below_max(self) -> Self:

@@ -6,7 +6,16 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from synthesis.problems.base import ABSURD, Contradiction, Flag, Interval, PositiveNumber, StatedProblem, Statement
+from synthesis.problems.base import (
+    ABSURD,
+    Contradiction,
+    Flag,
+    Interval,
+    PositiveNumber,
+    Sizable,
+    StatedProblem,
+    Statement,
+)
 
 ON_EDGE = 1e-9
 """Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
@@ -29,7 +38,7 @@ class Region(Statement):
 class LengthLimits(Statement):
     """Shortest and longest link allowed, in length units."""
 
-    min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False)] = 0.0
+    min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable] = 0.0
     max: PositiveNumber | None = None
 
     @model_validator(mode="after")

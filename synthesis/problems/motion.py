@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.problems.base import Contradiction, Flag, Number, PartialPoint, Point, PositiveNumber, Statement
+from synthesis.problems.base import Contradiction, Flag, Number, PartialPoint, Point, PositiveNumber, Sizable, Statement
 from synthesis.problems.linkage import LinkageProblem, Region
 
 LEAST_LENGTH = 1e-12
@@ -40,7 +40,9 @@ class Tolerance(Statement):
 
     x: PositiveNumber | None = Field(default=None, description="Length units, either way.")
     y: PositiveNumber | None = Field(default=None, description="Length units, either way.")
-    angle: Annotated[PositiveNumber, Field(le=180.0)] | None = Field(default=None, description="Degrees, either way.")
+    angle: Annotated[float, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
+        default=None, description="Degrees, either way."
+    )
 
     @model_validator(mode="after")
     def _not_empty(self) -> Self:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.problems.base import ABSURD, Contradiction, Number, Point, PositiveNumber, Statement
+from synthesis.problems.base import ABSURD, Contradiction, Number, Point, PositiveNumber, Sizable, Statement
 from synthesis.problems.linkage import LinkageProblem
 
 QuickReturnType = Literal[
@@ -72,7 +72,7 @@ class QuickReturnProblem(LinkageProblem):
     time_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD, allow_inf_nan=False)] = Field(
         description="Time of the slow stroke over time of the fast one."
     )
-    swing: Annotated[float, Field(strict=True, gt=0.0, lt=360.0)] | None = Field(
+    swing: Annotated[float, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
         default=None, description="Angle between the output's limit positions, degrees; for an output that swings."
     )
     stroke: PositiveNumber | None = Field(

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.problems.base import Contradiction, PositiveNumber, Statement
+from synthesis.problems.base import Contradiction, PositiveNumber, Sizable, Statement
 from synthesis.problems.linkage import LinkageProblem
 
 ARM = (0.1, 0.25)
@@ -49,7 +49,7 @@ class SteeringProblem(LinkageProblem):
     track: PositiveNumber | None = Field(
         default=None, description="Between the front wheels; for the turning circle. The pivot distance if left out."
     )
-    lock: Annotated[float, Field(strict=True, gt=0.0, lt=90.0)] = Field(
+    lock: Annotated[float, Field(strict=True, gt=0.0, lt=90.0), Sizable] = Field(
         description="Greatest angle of the inner wheel, degrees."
     )
     mechanism: Literal["ackermann", "davis", "auto"] = "auto"
@@ -59,7 +59,7 @@ class SteeringProblem(LinkageProblem):
     arm_length: ArmLimits | None = Field(
         default=None, description="Of the steering arms; 0.1 to 0.25 of the pivot distance if left out."
     )
-    max_steering_error: Annotated[float, Field(strict=True, gt=0.0, lt=90.0)] | None = Field(
+    max_steering_error: Annotated[float, Field(strict=True, gt=0.0, lt=90.0), Sizable] | None = Field(
         default=None, description="Greatest error of the outer wheel's angle that is allowed, degrees."
     )
 

@@ -1,0 +1,199 @@
+"""Random problems, most of them absurd: each must be answered or refused, never with NaN, a defect, or a hang.
+
+``python -m benchmarks.geometry_fuzz --cases 2000 --kind motion`` prints what became of the cases of
+:mod:`benchmarks.geometry_cases`; without ``--kind`` all kinds. A case goes the way of a job: it is read, solved,
+written as JSON and read again, and for a part of the answers every file of the first design is made and its motion
+computed. Each case has 30 s of CPU; one that needs more is a hang and its process is ended, native code included. The
+exit status is 1 where anything is wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import resource
+import sys
+import time
+import traceback
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import TimeoutError as TooLate
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from typing import Any
+
+from pebble import ProcessExpired, ProcessPool
+from pydantic import ValidationError
+
+from benchmarks.geometry_cases import case
+from synthesis.kinds import KINDS, parse_problem
+
+CPU_S = 30
+"""What a case may take; nothing that is asked here is a long search."""
+
+WALL_S = 600.0
+"""After so long a case is given up on even where the machine has not given it its CPU time."""
+
+_FIELD = re.compile("[a-z_]+")
+
+DRAWN = 5
+"""Of so many answers with designs one is drawn in every form."""
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of one case."""
+
+    what: str
+    where: str = ""
+    cpu_s: float = 0.0
+    wrong: bool = False
+
+
+@dataclass(slots=True)
+class Tally:
+    """What became of all of them."""
+
+    results: Counter[str] = field(default_factory=Counter)
+    refusals: Counter[str] = field(default_factory=Counter)
+    wrong: list[tuple[int, Outcome]] = field(default_factory=list)
+    slowest: tuple[float, int] = (0.0, -1)
+
+    def add(self, number: int, outcome: Outcome) -> None:
+        """One more."""
+        self.slowest = max(self.slowest, (outcome.cpu_s, number))
+        if outcome.wrong:
+            self.wrong.append((number, outcome))
+        self.results[outcome.what] += 1
+        if outcome.what == "refused":
+            self.refusals[outcome.where] += 1
+
+
+def run(kind: str, number: int) -> Outcome:
+    """One case, in this process."""
+    began = time.process_time()
+    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (int(began) + CPU_S + 1, hard))
+    try:
+        outcome = _way(kind, number)
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        said = f"{type(error).__name__}: {error} ({place.filename.rpartition('/')[2]}:{place.lineno})"
+        outcome = Outcome("exception", said[:300], wrong=True)
+    finally:
+        resource.setrlimit(resource.RLIMIT_CPU, (soft, hard))
+    outcome.cpu_s = time.process_time() - began
+    return outcome
+
+
+def _way(kind: str, number: int) -> Outcome:
+    from synthesis.dispatch import solve
+
+    try:
+        problem = parse_problem(case(kind, number))
+    except ValidationError as error:
+        return Outcome("refused", _field(error.errors()[0]["loc"]))
+    faults = problem.contradictions()
+    if faults:
+        return Outcome("refused", re.sub("/[0-9]+", "", faults[0].path))
+    result = solve(problem, lambda fraction, message: None)
+    numbers = result.model_dump(mode="python")
+    if _not_finite(numbers):
+        return Outcome("NaN", _not_finite(numbers), wrong=True)
+    stored = result.model_dump_json()
+    json.loads(stored, parse_constant=_no_constant)
+    designs = KINDS[kind].result.model_validate_json(stored).designs
+    if not problem.include_failed and not all(design.verification.passed for design in designs):
+        return Outcome("unverified", "a design that failed its checks", wrong=True)
+    if designs and number % DRAWN == 0:
+        nan = _drawn(designs[0], problem) or _moved(json.loads(stored)["designs"][0]["mechanism"])
+        if nan:
+            return Outcome("NaN", nan, wrong=True)
+    if designs:
+        return Outcome("designs")
+    return Outcome("none exists" if result.search.complete else "none found")
+
+
+def _field(location: Iterable[str | int]) -> str:
+    """A place without the numbers of list members and the names of models."""
+    return "/" + "/".join(step for step in location if isinstance(step, str) and _FIELD.fullmatch(step))
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} in the JSON of the result")
+
+
+def _not_finite(value: Any, path: str = "") -> str:
+    """Where there is a number that is none; empty where all are."""
+    if isinstance(value, float):
+        return "" if value - value == 0.0 else f"{path} is {value}"
+    members: Iterator[tuple[Any, Any]] = iter(())
+    if isinstance(value, dict):
+        members = iter(value.items())
+    elif isinstance(value, list | tuple):
+        members = enumerate(value)
+    return next((found for key, member in members if (found := _not_finite(member, f"{path}/{key}"))), "")
+
+
+def _drawn(design: Any, problem: Any) -> str:
+    from service import render
+
+    for form in render.forms(problem.kind, design.mechanism.type):
+        drawn = render.exported(design, problem, "fuzz", form)
+        if isinstance(drawn, str) and form != "dxf" and any(word in drawn for word in ('"nan', ",nan", ">nan", "inf,")):
+            return f"the .{form} file has a number that is none"
+    return ""
+
+
+def _moved(mechanism: dict[str, Any]) -> str:
+    from synthesis.analyses import family
+
+    answer = family(mechanism).request.over_the_cycle(mechanism, 36)
+    if "valid" in answer and not any(answer["valid"]):
+        return "the motion of the design is not valid anywhere"
+    return ""
+
+
+def tally(kind: str, numbers: Iterable[int], workers: int = 1) -> Tally:
+    """All the cases, each in a process that can be ended."""
+    counted = Tally()
+    # A process that has run out of its time is replaced, and nobody else waits.
+    with ProcessPool(max_workers=workers, context=get_context("spawn")) as pool:
+        asked = [(number, pool.schedule(run, args=[kind, number], timeout=WALL_S)) for number in numbers]
+        for number, answer in asked:
+            try:
+                outcome = answer.result()
+            except ProcessExpired:
+                outcome = Outcome("hang", f"more than {CPU_S} s of CPU, or the process died", CPU_S, wrong=True)
+            except TooLate:
+                outcome = Outcome("hang", f"more than {WALL_S:g} s", CPU_S, wrong=True)
+            counted.add(number, outcome)
+    return counted
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--kind", choices=list(KINDS), action="append", help="only these kinds; all when left out")
+    parser.add_argument("--cases", type=int, default=2000)
+    parser.add_argument("--first", type=int, default=0, help="the number of the first case")
+    parser.add_argument("--workers", type=int, default=1)
+    given = parser.parse_args()
+    wrong = 0
+    for kind in given.kind or KINDS:
+        began = time.perf_counter()
+        counted = tally(kind, range(given.first, given.first + given.cases), given.workers)
+        wrong += len(counted.wrong)
+        cpu_s, number = counted.slowest
+        results = ", ".join(f"{n} {what}" for what, n in counted.results.most_common())
+        print(f"{kind}: {given.cases} cases in {time.perf_counter() - began:.0f} s: {results}")
+        print(f"    slowest: case {number}, {cpu_s:.2f} s of CPU")
+        print(f"    refused: {', '.join(f'{n} {where}' for where, n in counted.refusals.most_common(12))}")
+        for number, outcome in counted.wrong:
+            print(f"    WRONG: case {number}: {outcome.what}: {outcome.where}")
+        sys.stdout.flush()
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
