@@ -12,6 +12,9 @@ const POINTS = 400;
 /** Values that differ by less than this share of their size are equal but for rounding. */
 const NOISE = 1e-9;
 
+/** A line whose range is so many times that of its middle four fifths is shown without its peaks. */
+const STEEP = 8;
+
 /** @typedef {(number | null)[]} Series */
 
 /**
@@ -38,14 +41,15 @@ function plot({ title, lines, limit, used, least = 0 }, input, lead) {
   const all = Object.values(lines);
   const known = /** @type {number[]} */ (all.flat().filter(Number.isFinite));
   const extremes = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
-  let [low, high] = typeof limit === "number" ? [Math.min(extremes[0], limit), Math.max(extremes[1], limit)] : extremes;
+  const telling = middle(known, extremes);
+  let [low, high] = typeof limit === "number" ? [Math.min(telling[0], limit), Math.max(telling[1], limit)] : telling;
   const steady = high - low <= NOISE * Math.max(Math.abs(low), Math.abs(high), least);
   const range = steady ? Math.max(1, Math.abs(high)) : high - low;
   const ticks = steady ? [low] : [low, high];
   [low, high] = [low - 0.05 * range, high + 0.05 * range];
   const last = all[0].length - 1;
   const x = (/** @type {number} */ k) => EDGE.left + ((WIDTH - EDGE.left - EDGE.right) * k) / last;
-  const y = (/** @type {number} */ value) => EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - value)) / (high - low);
+  const y = (/** @type {number} */ value) => EDGE.top + ((HEIGHT - EDGE.top - EDGE.bottom) * (high - Math.min(high, Math.max(low, value)))) / (high - low);
   const data = (/** @type {Series} */ series) => {
     let path = "";
     let pen = "M";
@@ -92,6 +96,15 @@ function plot({ title, lines, limit, used, least = 0 }, input, lead) {
     reading.textContent = all.map((series) => brief(series[Math.round(at)], NOISE * range)).join(", ");
   };
   return { figure: el("figure", { class: "plot" }, caption, picture), show };
+}
+
+/** The range worth seeing: towards a toggle rates grow beyond all bounds, and would flatten what is between. @param {number[]} known @param {number[]} extremes */
+function middle(known, extremes) {
+  const order = [...known].sort((one, other) => one - other);
+  const [least, most] = [order[Math.floor(0.1 * (order.length - 1))], order[Math.ceil(0.9 * (order.length - 1))]];
+  const spread = most - least;
+  if (!(extremes[1] - extremes[0] > STEEP * spread) || !(spread > 0)) return extremes;
+  return [Math.max(extremes[0], least - spread), Math.min(extremes[1], most + spread)];
 }
 
 /** First and last of every run of samples. @param {boolean[]} used @returns {[number, number][]} */

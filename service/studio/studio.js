@@ -52,14 +52,19 @@ function edited(parts) {
 /** Begin with another statement. @param {any} statement */
 function state(statement) {
   problem = structuredClone(statement);
+  introduce();
+  faults.clear(fields, byId("faults"));
+  fields.replaceChildren();
+  show();
+}
+
+/** The kind, its examples, and what it is about. */
+function introduce() {
   byId("kind").value = problem.kind;
   const examples = kind().schema.examples ?? [kind().example];
   byId("example").replaceChildren(el("option", { value: "" }, "as edited"),
     ...examples.map((/** @type {any} */ _, /** @type {number} */ n) => el("option", { value: n }, `Example ${n + 1}`)));
   byId("about").textContent = kind().description.split("\n\n")[0].replaceAll("\n", " ");
-  faults.clear(fields, byId("faults"));
-  fields.replaceChildren();
-  show();
 }
 
 function choices() {
@@ -156,7 +161,7 @@ text.addEventListener("input", () => {
     problem = stated;
     text.removeAttribute("aria-invalid");
     byId("json-error").replaceChildren();
-    if (other) byId("kind").value = stated.kind;
+    if (other) introduce();
     edited({ json: false });
   } catch (error) {
     text.setAttribute("aria-invalid", "true");

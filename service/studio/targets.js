@@ -1,9 +1,10 @@
-/** The positions or points of a statement on a canvas: dragged, turned, added, and sketched. */
+/** A statement on a canvas: what it places in the plane is dragged, turned, added and removed, and curves are sketched. */
 
 import { el, shown, svg } from "./dom.js";
+import { stated } from "./handles.js";
 import { View } from "./view.js";
 
-/** @typedef {{x: number, y: number, angle?: number}} Target */
+/** @typedef {import("./handles.js").Handle} Handle */
 
 const WIDTH = 640;
 const HEIGHT = 380;
@@ -12,130 +13,162 @@ const ARM = 44;
 /** How many points a sketched curve becomes. */
 const SKETCHED = 24;
 
-/** Which list of a problem is drawn. @param {any} problem @returns {"positions" | "points" | null} */
-export function drawn(problem) {
-  return problem.kind === "motion" ? "positions" : problem.kind === "path" ? "points" : null;
-}
-
 /**
  * @param {HTMLElement} place @param {any} problem changed in place
  * @param {(rebuilt: boolean) => void} changed
  */
 export function canvas(place, problem, changed) {
-  const name = drawn(problem);
-  if (!name || !Array.isArray(problem[name])) return place.replaceChildren();
-  /** @type {Target[]} */
-  const targets = problem[name];
-  const known = targets.filter((one) => Number.isFinite(one?.x) && Number.isFinite(one?.y));
-  const view = new View(known.map((one) => [one.x, one.y]), WIDTH, HEIGHT, 80);
-  const turning = name === "positions";
-  const word = turning ? "Position" : "Point";
-  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "group", "aria-label": `${word}s of the problem` });
+  const found = readable(problem);
+  if (!found) return place.replaceChildren();
+  const { handles, lines, word, add, offers } = found;
+  const view = new View(handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), WIDTH, HEIGHT, 80);
+  const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
   picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...grid(view), trail, pen);
-  const redraw = () => trail.setAttribute("d", view.path(known.map((one) => [one.x, one.y])));
+  const redraw = () => trail.setAttribute("d", lines().map((/** @type {any} */ line) => view.path(line)).join(""));
+  const drawn = handles.map((handle) => held(handle, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
+  picture.append(...drawn.map((one) => one.group));
+  for (const one of drawn) one.show();
   redraw();
+
   const mode = el("input", { type: "checkbox", id: "freehand" });
-
-  targets.forEach((target, k) => {
-    if (!known.includes(target)) return;
-    const line = svg("line", { class: "arm" });
-    const knob = turning && svg("circle", { class: "knob", r: 7 });
-    const dot = svg("circle", { class: "dot", r: 8 });
-    const text = svg("text", { dx: 12, dy: 20 }, k + 1);
-    const group = svg("g", { class: "target", tabindex: 0, role: "button" }, line, text, dot, knob);
-    const show = () => {
-      const [u, v] = view.at(target.x, target.y);
-      dot.setAttribute("cx", u);
-      dot.setAttribute("cy", v);
-      text.setAttribute("x", u);
-      text.setAttribute("y", v);
-      const turn = turning ? `, angle ${shown(target.angle)}°` : "";
-      group.setAttribute("aria-label", `${word} ${k + 1}: x ${shown(target.x)}, y ${shown(target.y)}${turn}. Arrow keys move it${turning ? ", page keys turn it" : ""}, Delete removes it.`);
-      if (knob) {
-        const angle = ((target.angle ?? 0) * Math.PI) / 180;
-        const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];
-        knob.setAttribute("cx", ku);
-        knob.setAttribute("cy", kv);
-        for (const [attribute, value] of Object.entries({ x1: u, y1: v, x2: ku, y2: kv })) line.setAttribute(attribute, String(value));
-      }
-      redraw();
-    };
-    const put = (/** @type {Partial<Target>} */ values) => {
-      Object.assign(target, values);
-      for (const [field, value] of Object.entries(values)) {
-        const box = document.querySelector(`[data-path="/problem/${name}/${k}/${field}"]`);
-        if (box instanceof HTMLInputElement) box.value = String(value);
-      }
-      show();
-      changed(false);
-    };
-    const drag = (/** @type {SVGElement} */ grip, /** @type {(at: [number, number]) => void} */ moved) => {
-      grip.addEventListener("pointerdown", (event) => {
-        event.stopPropagation();
-        grip.setPointerCapture(event.pointerId);
-        const move = (/** @type {PointerEvent} */ now) => moved(view.under(picture, now));
-        grip.addEventListener("pointermove", move);
-        grip.addEventListener("lostpointercapture", () => {
-          grip.removeEventListener("pointermove", move);
-          changed(true);
-        }, { once: true });
-      });
-    };
-    drag(dot, ([x, y]) => put({ x: view.rounded(x), y: view.rounded(y) }));
-    if (knob) drag(knob, ([x, y]) => put({ angle: Math.round((Math.atan2(y - target.y, x - target.x) * 180) / Math.PI) }));
-    group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-      const step = view.step(event.shiftKey ? 1 : 10);
-      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-      const turn = { PageUp: 1, PageDown: -1 }[event.key];
-      if (by) put({ x: view.rounded(target.x + by[0]), y: view.rounded(target.y + by[1]) });
-      else if (turn && turning) put({ angle: (target.angle ?? 0) + turn * (event.shiftKey ? 1 : 5) });
-      else if (event.key === "Delete") {
-        targets.splice(k, 1);
-        changed(true);
-      } else return;
-      event.preventDefault();
-    });
-    show();
-    picture.append(group);
-  });
-
-  const add = (/** @type {[number, number]} */ [x, y]) => {
-    targets.push({ x: view.rounded(x), y: view.rounded(y), ...(turning ? { angle: targets.at(-1)?.angle ?? 0 } : {}) });
+  const put = (/** @type {[number, number]} */ [x, y]) => {
+    add?.(view.rounded(x), view.rounded(y));
     changed(true);
   };
-  picture.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => {
-    if (!mode.checked) add(view.under(picture, event));
-  });
-  picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-    if (!mode.checked) return;
-    /** @type {[number, number][]} */
-    const stroke = [view.under(picture, event)];
-    picture.setPointerCapture(event.pointerId);
-    const move = (/** @type {PointerEvent} */ now) => {
-      stroke.push(view.under(picture, now));
-      pen.setAttribute("d", view.path(stroke));
-    };
-    picture.addEventListener("pointermove", move);
-    picture.addEventListener("lostpointercapture", () => {
-      picture.removeEventListener("pointermove", move);
-      pen.removeAttribute("d");
-      const points = evenly(stroke, SKETCHED);
-      if (points.length < 3) return;
-      problem.points = points.map(([x, y]) => ({ x: view.rounded(x), y: view.rounded(y) }));
-      changed(true);
-    }, { once: true });
-  });
+  if (add) {
+    picture.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => {
+      if (!mode.checked) put(view.under(picture, event));
+    });
+  }
+  if (found.freehand) {
+    picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+      if (mode.checked) sketched(event, view, picture, pen, problem, changed);
+    });
+  }
   const focused = [...place.querySelectorAll(".target")].indexOf(/** @type {Element} */ (document.activeElement));
+  const last = handles.at(-1)?.get() ?? [0, 0];
+  const size = (0.4 * WIDTH) / view.scale;
+  const how = `Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
   place.replaceChildren(picture, el("div", { class: "row" },
-    el("button", { type: "button", class: "small", onclick: () => {
-      const last = targets.at(-1) ?? { x: 0, y: 0 };
-      add([last.x + 40 / view.scale, last.y]);
-    } }, `Add a ${word.toLowerCase()}`),
-    !turning && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
-    el("span", { class: "note" }, turning ? "Drag to move, drag the end to turn; double-click adds one." : "Drag to move; double-click adds one.")));
+    add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
+    ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {
+      make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
+      changed(true);
+    } }, text)),
+    found.freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
+    handles.length > 0 && el("span", { class: "note" }, how)));
   if (focused >= 0) /** @type {SVGElement[]} */ ([...place.querySelectorAll(".target")])[focused]?.focus();
+}
+
+/** What can be held; nothing while the JSON is not what its kind has. @param {any} problem */
+function readable(problem) {
+  try {
+    const found = stated(problem);
+    found?.lines();
+    return found;
+  } catch (error) {
+    if (error instanceof TypeError) return null;
+    throw error;
+  }
+}
+
+/**
+ * A handle on the canvas: a dot, and a knob where it turns.
+ * @param {Handle} handle @param {View} view @param {SVGSVGElement} picture
+ * @param {() => void} all shows all handles: some hang together @param {() => void} redraw draws what is between them
+ * @param {(rebuilt: boolean) => void} changed
+ */
+function held(handle, view, picture, all, redraw, changed) {
+  const { name, label, turn } = handle;
+  const line = svg("line", { class: "arm" });
+  const knob = turn && svg("circle", { class: "knob", r: 7 });
+  const dot = svg("circle", { class: "dot", r: 8 });
+  const text = svg("text", { dx: 12, dy: 20 }, name);
+  const group = svg("g", { class: "target", tabindex: 0, role: "button" }, line, text, dot, knob);
+  const show = () => {
+    const [x, y] = handle.get();
+    const [u, v] = view.at(x, y);
+    dot.setAttribute("cx", u);
+    dot.setAttribute("cy", v);
+    text.setAttribute("x", u);
+    text.setAttribute("y", v);
+    group.setAttribute("aria-label", `${label}: x ${shown(x)}, y ${shown(y)}${turn ? `, angle ${shown(turn.get())}°` : ""}. Arrow keys move it${turn ? ", page keys turn it" : ""}${handle.remove ? ", Delete removes it" : ""}.`);
+    if (!knob || !turn) return;
+    const angle = (turn.get() * Math.PI) / 180;
+    const [ku, kv] = [u + ARM * Math.cos(angle), v - ARM * Math.sin(angle)];
+    knob.setAttribute("cx", ku);
+    knob.setAttribute("cy", kv);
+    for (const [attribute, value] of Object.entries({ x1: u, y1: v, x2: ku, y2: kv })) line.setAttribute(attribute, String(value));
+  };
+  const altered = () => {
+    for (const field of handle.path ? ["x", "y", "angle"] : []) {
+      const box = document.querySelector(`[data-path="${handle.path}/${field}"]`);
+      if (box instanceof HTMLInputElement && handle.owner[field] !== undefined) box.value = String(handle.owner[field]);
+    }
+    all();
+    redraw();
+    changed(false);
+  };
+  const drag = (/** @type {SVGElement} */ grip, /** @type {(at: [number, number]) => void} */ moved) => {
+    grip.addEventListener("pointerdown", (event) => {
+      event.stopPropagation();
+      grip.setPointerCapture(event.pointerId);
+      const move = (/** @type {PointerEvent} */ now) => {
+        moved(view.under(picture, now));
+        altered();
+      };
+      grip.addEventListener("pointermove", move);
+      grip.addEventListener("lostpointercapture", () => {
+        grip.removeEventListener("pointermove", move);
+        changed(true);
+      }, { once: true });
+    });
+  };
+  drag(dot, ([x, y]) => handle.put(view.rounded(x), view.rounded(y)));
+  if (knob && turn) {
+    drag(knob, ([x, y]) => {
+      const [px, py] = handle.get();
+      turn.set(Math.round((Math.atan2(y - py, x - px) * 180) / Math.PI));
+    });
+  }
+  group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
+    const step = view.step(event.shiftKey ? 1 : 10);
+    const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+    const way = { PageUp: 1, PageDown: -1 }[event.key];
+    const [x, y] = handle.get();
+    if (by) handle.put(view.rounded(x + by[0]), view.rounded(y + by[1]));
+    else if (way && turn) turn.set(turn.get() + way * (event.shiftKey ? 1 : 5));
+    else if (event.key === "Delete" && handle.remove) {
+      handle.remove();
+      event.preventDefault();
+      return changed(true);
+    } else return;
+    event.preventDefault();
+    altered();
+  });
+  return { group, show };
+}
+
+/** A stroke becomes points at equal distances. @param {PointerEvent} event @param {View} view @param {SVGSVGElement} picture @param {SVGElement} pen @param {any} problem @param {(rebuilt: boolean) => void} changed */
+function sketched(event, view, picture, pen, problem, changed) {
+  /** @type {[number, number][]} */
+  const stroke = [view.under(picture, event)];
+  picture.setPointerCapture(event.pointerId);
+  const move = (/** @type {PointerEvent} */ now) => {
+    stroke.push(view.under(picture, now));
+    pen.setAttribute("d", view.path(stroke));
+  };
+  picture.addEventListener("pointermove", move);
+  picture.addEventListener("lostpointercapture", () => {
+    picture.removeEventListener("pointermove", move);
+    pen.removeAttribute("d");
+    const points = evenly(stroke, SKETCHED);
+    if (points.length < 3) return;
+    problem.points = points.map(([x, y]) => ({ x: view.rounded(x), y: view.rounded(y) }));
+    changed(true);
+  }, { once: true });
 }
 
 /** Points at equal distances along a stroke. @param {[number, number][]} stroke @param {number} count @returns {[number, number][]} */

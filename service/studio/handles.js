@@ -1,0 +1,219 @@
+/** What of a statement can be taken hold of on the canvas, kind by kind: positions, points, pivots, lines and regions. */
+
+/** @typedef {[number, number]} Point */
+
+/**
+ * @typedef {object} Handle
+ * @property {string} name what stands beside it
+ * @property {string} label what it is
+ * @property {() => Point} get
+ * @property {(x: number, y: number) => void} put
+ * @property {{get: () => number, set: (degrees: number) => void}} [turn]
+ * @property {() => void} [remove]
+ * @property {any} [owner] the object with x, y and angle, whose fields are those of the form
+ * @property {string} [path] JSON pointer of the owner
+ */
+
+/**
+ * @typedef {object} Stated
+ * @property {Handle[]} handles
+ * @property {() => Point[][]} lines drawn between them
+ * @property {string} [word] what a double click adds
+ * @property {(x: number, y: number) => void} [add]
+ * @property {boolean} [freehand] a curve may be drawn
+ * @property {{text: string, make: (at: Point, size: number) => void}[]} offers what may be stated on the canvas too
+ */
+
+/** @param {any} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
+export function stated(problem) {
+  const make = { motion, path, quick_return: quickReturn, straight_line: straightLine, dwell, steering, parallel_motion: parallelMotion, function: functionPairs }[problem.kind];
+  const found = make ? make(problem) : null;
+  if (found && problem.kind !== "function") regions(problem, found);
+  return found;
+}
+
+/** @param {any} value */
+const whole = (value) => Array.isArray(value) && value.length === 2 && value.every(Number.isFinite);
+
+/** A point `[x, y]` of an object. @param {any} owner @param {string} field @param {string} name @param {string} label @param {boolean} [removable] @returns {Handle[]} */
+function point(owner, field, name, label, removable = true) {
+  if (!whole(owner?.[field])) return [];
+  return [{ name, label, get: () => owner[field], put: (x, y) => (owner[field] = [x, y]), ...(removable ? { remove: () => (owner[field] = null) } : {}) }];
+}
+
+/** Objects with x and y, and an angle where they turn. @param {any[]} list @param {string} field @param {string} word @param {boolean} turning @param {boolean} [fixed] their number is */
+function listed(list, field, word, turning, fixed = false) {
+  return list.flatMap((one, k) => (Number.isFinite(one?.x) && Number.isFinite(one?.y) ? [/** @type {Handle} */ ({
+    name: String(k + 1), label: `${word} ${k + 1}`, owner: one, path: `/problem/${field}/${k}`,
+    get: () => [one.x, one.y], put: (x, y) => Object.assign(one, { x, y }),
+    ...(turning ? { turn: { get: () => one.angle ?? 0, set: (/** @type {number} */ angle) => (one.angle = angle) } } : {}),
+    ...(fixed ? {} : { remove: () => list.splice(list.indexOf(one), 1) }),
+  })] : []));
+}
+
+/** @param {any} problem @returns {Stated} */
+function motion(problem) {
+  const { positions } = problem;
+  const sides = /** @type {const} */ ([["input_side", "O2", "A"], ["output_side", "O4", "B"]]);
+  const line = problem.ground_line;
+  const chosen = sides.flatMap(([side, fixed, moving]) => [
+    ...point(problem[side], "fixed_pivot", fixed, `Fixed pivot ${fixed}`), ...point(problem[side], "moving_pivot", moving, `Moving pivot ${moving} in the first position`)]);
+  /** @type {Handle[]} */
+  const ground = line && whole(line.point) ? [{ name: "ground", label: "Ground line", get: () => line.point, put: (x, y) => (line.point = [x, y]),
+    turn: { get: () => line.angle, set: (angle) => (line.angle = angle) }, remove: () => (problem.ground_line = null) }] : [];
+  const offers = sides.filter(([side]) => !whole(problem[side]?.fixed_pivot)).map(([side, fixed], k) => ({ text: `Choose ${fixed}`, make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
+    problem[side] = { ...problem[side], fixed_pivot: [x + (k ? 0.5 : -0.5) * size, y - 0.6 * size] };
+  } }));
+  return { handles: [...listed(positions, "positions", "Position", true), ...chosen, ...ground], word: "position", offers,
+    lines: () => [positions.map((/** @type {any} */ one) => [one.x, one.y]), ...(ground.length ? [through(line.point, line.angle, 1e4)] : []), ...sides.flatMap(([side]) =>
+      (whole(problem[side]?.fixed_pivot) && whole(problem[side]?.moving_pivot) ? [[problem[side].fixed_pivot, problem[side].moving_pivot]] : []))],
+    add: (x, y) => positions.push({ x, y, angle: positions.at(-1)?.angle ?? 0 }) };
+}
+
+/** @param {any} problem @returns {Stated} */
+function path(problem) {
+  const pivots = problem.fixed_pivots;
+  return { handles: [...listed(problem.points, "points", "Point", false), ...point(pivots, "input", "O2", "Fixed pivot O2", false), ...point(pivots, "output", "O4", "Fixed pivot O4", false)],
+    lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])], word: "point", freehand: true,
+    add: (x, y) => problem.points.push({ x, y }),
+    offers: pivots ? [{ text: "Leave the pivots open", make: () => (problem.fixed_pivots = null) }]
+      : [{ text: "Choose the fixed pivots", make: ([x, y], size) => (problem.fixed_pivots = { input: [x - 0.5 * size, y - 0.7 * size], output: [x + 0.5 * size, y - 0.7 * size] }) }] };
+}
+
+/** @param {any} problem @returns {Stated} */
+function quickReturn(problem) {
+  const offers = [];
+  if (!problem.positions) {
+    offers.push({ text: "State both limit positions", make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => {
+      // They say how far the output swings; a swing or a stroke beside them would say it twice.
+      Object.assign(problem, { swing: null, stroke: null, positions: [{ x, y, angle: 0 }, { x: x + size, y: y + 0.3 * size, angle: 50 }] });
+    } });
+  }
+  if (problem.positions && !whole(problem.rotopole)) offers.push({ text: "Choose the rocker's pivot", make: (/** @type {Point} */ [x, y], /** @type {number} */ size) => (problem.rotopole = [x, y + size]) });
+  if (!problem.positions && !whole(problem.crank_pivot)) offers.push({ text: "Choose the crank's pivot", make: (/** @type {Point} */ [x, y]) => (problem.crank_pivot = [x, y]) });
+  const crank = point(problem, "crank_pivot", "O2", "Fixed pivot O2 of the crank");
+  for (const one of crank) one.turn = { get: () => problem.ground_angle ?? 0, set: (angle) => (problem.ground_angle = angle) };
+  return { handles: [...listed(problem.positions ?? [], "positions", "Limit position", true, true), ...point(problem, "rotopole", "O4", "Pivot of the rocker"), ...crank],
+    lines: () => (problem.positions ? [problem.positions.map((/** @type {any} */ one) => [one.x, one.y])] : []), offers: problem.positions
+      ? [...offers, { text: "Leave the positions open", make: () => Object.assign(problem, { positions: null, rotopole: null, swing: 45 }) }] : offers };
+}
+
+/** @param {any} problem @returns {Stated} */
+function straightLine(problem) {
+  const start = () => /** @type {Point} */ (problem.start ?? [0, 0]);
+  const end = () => {
+    const [x, y] = start();
+    const angle = ((problem.direction ?? 0) * Math.PI) / 180;
+    return /** @type {Point} */ ([x + problem.length * Math.cos(angle), y + problem.length * Math.sin(angle)]);
+  };
+  return { offers: [], lines: () => [[start(), end()]], handles: [
+    { name: "start", label: "Start of the line", get: start, put: (x, y) => (problem.start = [x, y]) },
+    { name: "end", label: "End of the line", get: end, put: (x, y) => {
+      const [dx, dy] = [x - start()[0], y - start()[1]];
+      if (!Math.hypot(dx, dy)) return;
+      Object.assign(problem, { length: Number(Math.hypot(dx, dy).toPrecision(6)), direction: Number(((Math.atan2(dy, dx) * 180) / Math.PI).toFixed(2)) });
+    } }] };
+}
+
+/** @param {any} problem @returns {Stated} */
+function dwell(problem) {
+  const get = () => /** @type {Point} */ (problem.pivot ?? [0, 0]);
+  const crank = () => problem.crank ?? 10;
+  return { offers: [], lines: () => [round(get(), crank())], handles: [
+    { name: "O2", label: "Fixed pivot O2 of the crank", get, put: (x, y) => (problem.pivot = [x, y]) },
+    ...(problem.crank ? [/** @type {Handle} */ ({ name: "crank", label: "Length of the crank", get: () => [get()[0] + crank(), get()[1]], put: (x, y) => (problem.crank = Number(Math.hypot(x - get()[0], y - get()[1]).toPrecision(6)) || problem.crank) })] : [])] };
+}
+
+/** A car from above: kingpins in front, the rear axle behind. @param {any} problem @returns {Stated} */
+function steering(problem) {
+  const half = () => problem.pivot_distance / 2;
+  const digits = (/** @type {number} */ value) => Number(Math.max(value, 1e-6).toPrecision(6));
+  const track = () => (problem.track ?? problem.pivot_distance) / 2;
+  return { offers: problem.track ? [] : [{ text: "State the track", make: () => (problem.track = digits(1.2 * problem.pivot_distance)) }],
+    lines: () => [[[-half(), 0], [half(), 0]], [[0, 0], [0, -problem.wheelbase]], [[-track(), -problem.wheelbase], [track(), -problem.wheelbase]]],
+    handles: [
+      { name: "kingpin", label: "Kingpin", get: () => [half(), 0], put: (x) => (problem.pivot_distance = digits(2 * Math.abs(x))) },
+      { name: "rear axle", label: "Rear axle", get: () => [0, -problem.wheelbase], put: (_, y) => (problem.wheelbase = digits(-y)) },
+      ...(problem.track ? [/** @type {Handle} */ ({ name: "wheel", label: "Rear wheel", get: () => [track(), -problem.wheelbase], put: (x) => (problem.track = digits(2 * Math.abs(x))), remove: () => (problem.track = null) })] : [])] };
+}
+
+/** The fourbar whose curve is followed, held by its joints. @param {any} problem @returns {Stated | null} */
+function parallelMotion(problem) {
+  const { linkage } = problem;
+  if (!linkage) return null;
+  const joints = assembled(linkage);
+  if (!joints) return null;
+  const restate = () => {
+    const { O2, O4, A, B, P } = joints;
+    const far = (/** @type {Point} */ [x, y], /** @type {Point} */ [u, v]) => Number(Math.max(Math.hypot(u - x, v - y), 1e-9).toPrecision(9));
+    const heading = (/** @type {Point} */ [x, y], /** @type {Point} */ [u, v]) => (Math.atan2(v - y, u - x) * 180) / Math.PI;
+    const cross = (O4[0] - A[0]) * (B[1] - A[1]) - (O4[1] - A[1]) * (B[0] - A[0]);
+    Object.assign(linkage, { fixed_pivots: { input: O2, output: O4 }, links: { input: far(O2, A), coupler: far(A, B), output: far(O4, B) },
+      coupler_point: { distance: far(A, P), angle: Number((heading(A, P) - heading(A, B)).toFixed(6)) }, assembly: cross < 0 ? "crossed" : "open",
+      reference_input_angle: Number(heading(O2, A).toFixed(6)) });
+  };
+  return { offers: [], lines: () => [[joints.O2, joints.A, joints.B, joints.O4], [joints.A, joints.P, joints.B]],
+    handles: Object.keys(joints).map((name) => ({ name, label: `Joint ${name} of the linkage`, get: () => joints[name], put: (x, y) => {
+      joints[name] = [x, y];
+      restate();
+    } })) };
+}
+
+/** Joints of a fourbar at its reference, or where it can first be assembled. @param {any} linkage @returns {Record<string, Point> | null} */
+function assembled(linkage) {
+  const { fixed_pivots: pivots, links, coupler_point: at, assembly, reference_input_angle: reference } = linkage;
+  if (!whole(pivots?.input) || !whole(pivots?.output)) return null;
+  for (let k = 0; k < 360; k++) {
+    const input = (((reference ?? 30) + k) * Math.PI) / 180;
+    const A = /** @type {Point} */ ([pivots.input[0] + links.input * Math.cos(input), pivots.input[1] + links.input * Math.sin(input)]);
+    const [dx, dy] = [pivots.output[0] - A[0], pivots.output[1] - A[1]];
+    const diagonal = Math.hypot(dx, dy);
+    const along = (links.coupler ** 2 - links.output ** 2 + diagonal ** 2) / (2 * diagonal);
+    const up = Math.sqrt(links.coupler ** 2 - along ** 2) * (assembly === "crossed" ? -1 : 1);
+    if (!Number.isFinite(up)) continue;
+    const B = /** @type {Point} */ ([A[0] + (along * dx - up * dy) / diagonal, A[1] + (along * dy + up * dx) / diagonal]);
+    const heading = Math.atan2(B[1] - A[1], B[0] - A[0]) + ((at.angle ?? 0) * Math.PI) / 180;
+    return { O2: [...pivots.input], O4: [...pivots.output], A, B, P: [A[0] + at.distance * Math.cos(heading), A[1] + at.distance * Math.sin(heading)] };
+  }
+  return null;
+}
+
+/** Pairs of a function as points of its graph. @param {any} problem @returns {Stated} */
+function functionPairs(problem) {
+  const pairs = problem.pairs ?? [];
+  return { word: "pair", lines: () => [pairs.map((/** @type {any} */ one) => [one.input, one.output])],
+    handles: pairs.map((/** @type {any} */ one, /** @type {number} */ k) => ({ name: String(k + 1), label: `Pair ${k + 1}, input across and output up`,
+      get: () => [one.input, one.output], put: (/** @type {number} */ x, /** @type {number} */ y) => Object.assign(one, { input: x, output: y }),
+      remove: () => pairs.splice(pairs.indexOf(one), 1) })),
+    ...(problem.pairs ? { add: (/** @type {number} */ x, /** @type {number} */ y) => pairs.push({ input: x, output: y }) } : {}),
+    offers: problem.pairs ? [] : [{ text: "State pairs instead", make: () => {
+      for (const name of ["function", "precision_points", "criterion", "input_range", "output_range", "scales", "zeros"]) delete problem[name];
+      problem.pairs = [{ input: 40, output: 70 }, { input: 55, output: 85 }, { input: 70, output: 95 }];
+    } }] };
+}
+
+/** Rectangles in which pivots may lie, held by two corners. @param {any} problem @param {Stated} found */
+function regions(problem, found) {
+  for (const [field, name] of [["fixed_pivot_region", "fixed pivots"], ["moving_pivot_region", "moving pivots"]]) {
+    const region = problem.constraints?.[field];
+    if (!region || !whole(region.x) || !whole(region.y)) continue;
+    const { lines } = found;
+    found.lines = () => [...lines(), [[region.x[0], region.y[0]], [region.x[1], region.y[0]], [region.x[1], region.y[1]], [region.x[0], region.y[1]], [region.x[0], region.y[0]]]];
+    found.handles.push(...[0, 1].map((k) => ({ name: k ? name : "", label: `Region of ${name}, ${k ? "upper right" : "lower left"} corner`,
+      get: () => /** @type {Point} */ ([region.x[k], region.y[k]]), put: (/** @type {number} */ x, /** @type {number} */ y) => {
+        region.x[k] = k ? Math.max(x, region.x[0]) : Math.min(x, region.x[1]);
+        region.y[k] = k ? Math.max(y, region.y[0]) : Math.min(y, region.y[1]);
+      }, remove: () => (problem.constraints[field] = null) })));
+  }
+}
+
+/** @param {Point} at @param {number} degrees @param {number} far @returns {Point[]} */
+function through([x, y], degrees, far) {
+  const angle = (degrees * Math.PI) / 180;
+  return [[x - far * Math.cos(angle), y - far * Math.sin(angle)], [x + far * Math.cos(angle), y + far * Math.sin(angle)]];
+}
+
+/** @param {Point} at @param {number} radius @returns {Point[]} */
+function round([x, y], radius) {
+  return Array.from({ length: 49 }, (_, k) => [x + radius * Math.cos((k * Math.PI) / 24), y + radius * Math.sin((k * Math.PI) / 24)]);
+}
