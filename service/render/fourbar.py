@@ -39,7 +39,10 @@ REFINEMENTS = 5
 """Times that long steps are halved."""
 
 OTHERS = 9
-"""Linkages that are drawn beside the first at most, where only points are demanded."""
+"""Linkages that are drawn beside the first at most: none where more points are demanded, some of more positions."""
+
+MARKED = 24
+"""Targets that are drawn and listed at most: of more, so many, evenly spread, with the first and the last."""
 
 SMALL_MOTION, SMALL_PART = 0.15, 0.04
 """All moving joints together, or one group of joints, within this share of the drawing's diagonal get a detail."""
@@ -79,7 +82,8 @@ class Scene:
     where the linkage does not close: over the input angles that the targets need, and over the whole branch (and the
     other branch, where a target lies on it). ``limits`` are the ends of the input's range, None for a crank; ``start``
     and ``end`` the input angles at the first and at the last target. ``target`` is the curve that is matched as a
-    whole, where the problem is that; its first point alone is a target then.
+    whole, where the problem is that; its first point alone is a target then. ``demanded`` counts all demands, of which
+    ``demands`` are those that are drawn, and ``met`` those at which the linkage can be assembled.
     """
 
     linkage: Fourbar
@@ -90,6 +94,8 @@ class Scene:
     limits: tuple[float, float] | None
     start: float
     end: float
+    demanded: int
+    met: int
     target: Points | None = None
 
     @property
@@ -101,7 +107,9 @@ class Scene:
     def others(self) -> list[Configuration]:
         """The configurations that are drawn beside the first: none where they would hide the path of a point."""
         others = [c for c in self.configurations if c.index != 0]
-        return others if self.guides_a_body or len(others) <= OTHERS else []
+        if len(others) <= OTHERS:
+            return others
+        return [others[k] for k in spread(len(others), OTHERS)] if self.guides_a_body else []
 
     @property
     def misses(self) -> bool:
@@ -175,7 +183,21 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
     )
     curve = _curve(linkage, *used, driven.assembly)
     rest = [_curve(linkage, lower, upper, sign) for sign in assemblies]
-    return Scene(linkage, configurations, demands, curve, rest, limits, start, end, target)
+    kept = set(spread(len(demands), MARKED))
+    shown = [demand for demand in demands if demand.index in kept]
+    standing = [c for c in configurations if c.index in kept]
+    return Scene(linkage, standing, shown, curve, rest, limits, start, end, len(demands), len(configurations), target)
+
+
+def spread(count: int, most: int) -> list[int]:
+    """At most so many of ``count`` places, evenly spread, with both ends.
+
+    >>> spread(3, 5), spread(200, 5)
+    ([0, 1, 2], [0, 50, 100, 149, 199])
+    """
+    if count <= most:
+        return list(range(count))
+    return sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
 
 
 def _demands(problem: MotionProblem | PathProblem) -> list[Demand]:

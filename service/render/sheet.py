@@ -94,7 +94,9 @@ def _description(design: LinkageDesign, problem: MotionProblem | PathProblem, sh
             ("output", links.output),
         )
     )
-    met = f"shown at {len(shown.configurations)} of {len(shown.demands)} demanded positions"
+    met = f"shown at {shown.met} of {shown.demanded} demanded positions"
+    if len(shown.demands) < shown.demanded:
+        met = f"{met}, of which {len(shown.demands)} are drawn"
     if shown.target is not None:
         met = f"shown at the first of {len(design.targets)} points of the demanded curve"
     failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]

@@ -73,7 +73,8 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     assembled = {c.index: c for c in scene.configurations}
     size = float(scene.linkage.ground + scene.linkage.coupler)
     rows = []
-    for k, demand in enumerate(scene.demands):
+    for demand in scene.demands:
+        k = demand.index
         place = (length(v, size, most=9) for v in (demand.point.real, demand.point.imag))
         cells = [f"{k + 1}", *place, "" if demand.angle is None else angle(math.degrees(demand.angle), 2)]
         target = found.get(k)
@@ -103,6 +104,10 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
             if note:
                 y += ROW - 3.0
                 block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
+        if len(scene.demands) < scene.demanded:
+            y += ROW
+            note = f"{len(scene.demands)} of {scene.demanded} targets"
+            block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
         return block, y + GAP
 
     return draw

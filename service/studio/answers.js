@@ -6,8 +6,12 @@ import { Shown } from "./design.js";
 import { figures, text } from "./figures.js";
 import { thumbnail } from "./thumbnail.js";
 
+/** How long keys must rest on a card before it is shown. */
+const PASSING_MS = 150;
+
 /** @type {Shown | null} */
 let chosen = null;
+let passing = 0;
 
 /** Show nothing of the job before. @param {HTMLElement} place */
 export function leave(place) {
@@ -34,9 +38,24 @@ export function answer(place, job, state) {
   place.append(
     el("p", { class: "summary" }, summary),
     el("p", { class: "note" }, known(search, designs.length)),
-    el("div", { class: "cards", role: "group", "aria-label": "Designs, best first" }, ...cards),
+    el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards),
     detail);
   cards[0]?.click();
+}
+
+/** Arrow keys, Home and End go from card to card and choose. @param {HTMLElement[]} cards @param {KeyboardEvent} event */
+function choose(cards, event) {
+  const at = cards.indexOf(/** @type {HTMLElement} */ (document.activeElement));
+  const to = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: cards.length - 1 }[event.key];
+  if (at < 0 || to === undefined) return;
+  event.preventDefault();
+  const next = cards[Math.min(cards.length - 1, Math.max(0, to))];
+  next.focus();
+  // A card that is only passed by is not shown.
+  clearTimeout(passing);
+  passing = setTimeout(() => {
+    if (next === document.activeElement && next.getAttribute("aria-pressed") !== "true") next.click();
+  }, PASSING_MS);
 }
 
 /** What the search has shown, in a sentence. @param {any} search @param {number} found */

@@ -4,7 +4,7 @@
 /** @typedef {{fraction: number, message: string}} Progress */
 /** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
 /** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
-/** @typedef {{kind: string, title: string, description: string, schema: any, example: any}} Kind */
+/** @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string, string[]>}} Kind */
 
 const KEY = "mechsynth.key";
 const RECONNECT_MS = 1000;
@@ -69,9 +69,28 @@ function post(path, body, signal) {
   return ask(path, { method: "POST", headers, body: JSON.stringify(body), signal });
 }
 
+/** @type {Kind[]} */
+let told = [];
+
 /** @returns {Promise<Kind[]>} */
 export async function kinds() {
-  return (await (await ask("/v1/problems")).json()).problems;
+  told = (await (await ask("/v1/problems")).json()).problems;
+  return told;
+}
+
+/** The forms of files that there are of a type of mechanism. @param {string} kind @param {string} mechanism @returns {string[]} */
+export function files(kind, mechanism) {
+  return told.find((one) => one.kind === kind)?.files[mechanism] ?? [];
+}
+
+/** Where the report of a job is. @param {string} id */
+export function reportAt(id) {
+  return `/v1/jobs/${encodeURIComponent(id)}/report.html`;
+}
+
+/** The report of a job, as something that a download can refer to; whoever gets it revokes it. @param {string} id */
+export async function report(id) {
+  return URL.createObjectURL(await (await ask(reportAt(id))).blob());
 }
 
 /** @param {any} problem @param {string | null} label @returns {Promise<Job>} */

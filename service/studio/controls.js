@@ -1,6 +1,6 @@
 /** Controls of a single value, as forms and tables have them. */
 
-import { el } from "./dom.js";
+import { el, words } from "./dom.js";
 
 /** @param {string[]} choices @param {any} value @param {boolean} nullable @param {(value: any) => void} set */
 export function choice(choices, value, nullable, set) {
@@ -18,4 +18,42 @@ export function numberBox(value, fallback, set) {
     oninput: () => set(box.value === "" ? undefined : box.valueAsNumber) });
   if (typeof value === "number") box.value = value;
   return box;
+}
+
+let ids = 0;
+
+/**
+ * Some of several words, in the order in which they are listed.
+ * @param {string} name @param {string} note @param {string} path @param {string[]} all @param {string[]} value @param {(value: any) => void} set
+ */
+export function choices(name, note, path, all, value, set) {
+  const boxes = all.map((one) => {
+    const box = el("input", { type: "checkbox", id: `c${++ids}`, onchange: () => {
+      const chosen = all.filter((_, k) => boxes[k].checked);
+      set(chosen);
+    } });
+    box.checked = value.includes(one);
+    return box;
+  });
+  return el("fieldset", { class: "field", "data-path": path, tabindex: -1 }, el("legend", {}, words(name)),
+    ...boxes.map((box, k) => el("label", { class: "flag", for: box.id }, box, all[k].replaceAll("_", " "))),
+    el("p", { class: "error" }), note && el("p", { class: "note" }, note));
+}
+
+/** Tooth numbers that there are, some of them several times: `20, 24 × 3, 30`. @param {any} value @param {(value: any) => void} set */
+export function stockBox(value, set) {
+  const written = (/** @type {any} */ one) => (typeof one === "object" && one !== null ? `${one.teeth} × ${one.count ?? 1}` : String(one));
+  const box = el("input", { type: "text", spellcheck: "false", oninput: () => {
+    const parts = box.value.split(/[,;\n\t]+/).map((/** @type {string} */ part) => part.trim()).filter(Boolean);
+    set(parts.length ? parts.map(stocked) : undefined);
+  } });
+  if (Array.isArray(value)) box.value = value.map(written).join(", ");
+  return box;
+}
+
+/** What is no number stays as it is written, and the service says so. @param {string} part */
+function stocked(part) {
+  const [, teeth, count] = /^(\d+)\s*[×x*]\s*(\d+)$/.exec(part) ?? [];
+  if (teeth) return { teeth: Number(teeth), count: Number(count) };
+  return Number.isFinite(Number(part)) ? Number(part) : part;
 }

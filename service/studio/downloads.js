@@ -3,25 +3,38 @@
 import * as api from "./api.js";
 import { el } from "./dom.js";
 
-const FORMS = ["svg", "dxf", "csv", "gif"];
-
 /** @param {api.Job} job @param {number} n @param {HTMLElement} drawing where the labelled drawing stands */
 export function downloads(job, n, drawing) {
-  const place = el("p", { class: "row", id: "downloads" }, el("span", {}, "Take home"));
-  place.append(...FORMS.map((form) => el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
-    const button = event.currentTarget;
-    button.disabled = true;
-    const url = await api.file(job.id, n, form).catch((error) => place.append(el("span", { class: "error" }, ` ${error.message}`)));
-    button.disabled = false;
-    if (url) save(url, `${job.kind}-${n}.${form}`);
-  } }, form.toUpperCase())), el("button", { type: "button", class: "small", onclick: async () => {
-    const image = drawing.querySelector("img");
-    const url = image && await raster(image);
-    if (url) save(url, `${job.kind}-${n}.png`);
-  } }, "PNG"), el("button", { type: "button", class: "small", onclick: () => {
-    const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
-    save(URL.createObjectURL(new Blob(parts, { type: "application/json" })), `${job.kind}.json`);
-  } }, "JSON"));
+  const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": "Files to take home" }, el("span", {}, "Take home"));
+  const fault = el("span", { class: "error", role: "alert" });
+  const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string | null>} */ make) =>
+    el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
+      const pressed = event.currentTarget;
+      pressed.disabled = true;
+      fault.replaceChildren();
+      try {
+        const url = await make();
+        if (url) save(url, name);
+      } catch (error) {
+        fault.replaceChildren(/** @type {Error} */ (error).message);
+      }
+      pressed.disabled = false;
+    } }, title);
+  place.append(
+    ...api.files(job.kind, job.result.designs[n].mechanism.type).map((form) =>
+      button(form.toUpperCase(), `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form))),
+    button("PNG", `${job.kind}-${n}.png`, async () => {
+      const image = drawing.querySelector("img");
+      return image && raster(image);
+    }),
+    button("JSON", `${job.kind}.json`, async () => {
+      const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
+      return URL.createObjectURL(new Blob(parts, { type: "application/json" }));
+    }),
+    button("Report", `${job.kind}.html`, () => api.report(job.id)),
+    // A link cannot send a key.
+    api.key() ? "" : el("a", { href: api.reportAt(job.id), target: "_blank", rel: "noopener" }, "Open the report"),
+    fault);
   return place;
 }
 

@@ -1,12 +1,17 @@
 /** What is wrong with a statement, said at the fields it belongs to. */
 
-import { el } from "./dom.js";
+import { el, words } from "./dom.js";
+
+let said_ids = 0;
 
 /** @param {HTMLElement} form @param {HTMLElement} list */
 export function clear(form, list) {
   list.replaceChildren();
   for (const slot of form.querySelectorAll(".error")) slot.replaceChildren();
-  for (const control of form.querySelectorAll("[aria-invalid]")) control.removeAttribute("aria-invalid");
+  for (const control of form.querySelectorAll("[aria-invalid]")) {
+    control.removeAttribute("aria-invalid");
+    control.removeAttribute("title");
+  }
 }
 
 /**
@@ -26,8 +31,15 @@ export function tell(form, list, refusal) {
     }
     place.control.setAttribute("aria-invalid", "true");
     const rest = fault.path.slice(place.path.length + 1);
-    const where = place.control.closest("td") ? `${fault.path.split("/").slice(-2).join(" ")}: ` : rest ? `${rest}: ` : "";
-    place.slot?.append(el("span", {}, `${where}${fault.detail} `));
+    const [row, name] = fault.path.split("/").slice(-2);
+    const cell = place.control.parentElement?.matches("td") && /^\d+$/.test(row);
+    const where = cell ? `Row ${Number(row) + 1}, ${words(name).toLowerCase()}: ` : rest ? `${rest}: ` : "";
+    const said = el("span", { id: `fault${++said_ids}` }, `${where}${fault.detail} `);
+    place.slot?.append(said);
+    if (cell) {
+      place.control.setAttribute("aria-describedby", said.id);
+      place.control.title = fault.detail;
+    }
     first ??= place.control;
   }
   list.append(el("p", { class: "error" }, refusal.message),
@@ -37,12 +49,17 @@ export function tell(form, list, refusal) {
 
 /** The control at a JSON pointer, or at the nearest place above it. @param {HTMLElement} form @param {string} pointer */
 function nearest(form, pointer) {
+  // Groups have their controls only when they are open.
+  const parts = pointer.split("/");
+  for (let k = 3; k <= parts.length; k++) {
+    const above = parts.slice(0, k).join("/");
+    for (const path of [above, `${above}/`]) form.querySelector(`details[data-path="${CSS.escape(path)}"]`)?.dispatchEvent(new Event("reveal"));
+  }
   for (let path = pointer; path.split("/").length > 2; path = path.slice(0, path.lastIndexOf("/"))) {
-    for (let found = /** @type {HTMLElement | null} */ (form.querySelector(`[data-path="${CSS.escape(path)}"]`)); found; ) {
-      for (let above = found.closest("details"); above; above = above.parentElement?.closest("details") ?? null) above.open = true;
-      const slot = found.matches(".field") ? found.querySelector(":scope > .error") : found.closest(".field")?.querySelector(":scope > .error");
-      return { control: found, path, slot };
-    }
+    const found = /** @type {HTMLElement | null} */ (form.querySelector(`[data-path="${CSS.escape(path)}"]`));
+    if (!found) continue;
+    const slot = found.matches(".field") ? found.querySelector(":scope > .error") : found.closest(".field")?.querySelector(":scope > .error");
+    return { control: found, path, slot };
   }
   return null;
 }

@@ -5,10 +5,11 @@
  * default holds. Each control carries its JSON pointer as `data-path`, by which errors find it.
  */
 
-import { choice, numberBox } from "./controls.js";
+import { choice, choices, numberBox, stockBox } from "./controls.js";
 import { el, words } from "./dom.js";
-import { discriminator, initial, kinded, optionOf, resolved, tagsOf } from "./schema.js";
+import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
 import { table } from "./table.js";
+import { unitOf } from "./units.js";
 
 /** @typedef {import("./schema.js").Schema} Schema */
 
@@ -16,6 +17,8 @@ import { table } from "./table.js";
  * What the controls of one form share.
  * @typedef {object} Sheet
  * @property {Schema} root
+ * @property {any} problem
+ * @property {(schema: Schema, owner: any, path: string, names: string[]) => (Node | null)[]} controls of some properties of an object
  * @property {() => void} changed a value was changed
  * @property {() => void} rebuild the form has other controls now
  */
@@ -31,7 +34,8 @@ let ids = 0;
  */
 export function fill(form, root, problem, changed) {
   /** @type {Sheet} */
-  const sheet = { root, changed: () => changed(false), rebuild: () => changed(true) };
+  const sheet = { root, problem, changed: () => changed(false), rebuild: () => changed(true),
+    controls: (schema, owner, path, names) => controls(sheet, schema, owner, path, names) };
   const names = Object.keys(root.properties);
   const must = names.filter((name) => root.required?.includes(name));
   const may = names.filter((name) => !must.includes(name) && !LAST.includes(name));
@@ -62,46 +66,112 @@ function field(sheet, schema, name, owner, path, required) {
   const set = (/** @type {any} */ value) => {
     if (value === undefined) delete owner[name];
     else owner[name] = value;
-    sheet.changed();
+    // The units beside the other fields are those of the length unit, or of the mechanism that is asked for.
+    if (name === "length_unit" || (name === "mechanism" && typeof value === "string")) sheet.rebuild();
+    else sheet.changed();
   };
   const value = owner[name];
+  const unit = unitOf(schema, sheet.problem);
   const about = schema.description ?? (what.options.length === 1 ? resolved(what.options[0], sheet.root).description : "");
   const note = (about ?? "").split("\n\n")[0].replace(/[`\n]+/g, (/** @type {string} */ one) => (one.includes("`") ? "" : " "));
   const fallback = schema.default ?? null;
-  // A list or one object: what is stated, or stands in for it, tells which of the two has the controls.
-  const single = what.options.find((one) => one.type === "object" && one.properties);
-  const control = what.control === "table" && single && !Array.isArray(value ?? fallback) ? "object" : what.control;
-  switch (control) {
+  switch (what.control) {
     case "fixed":
       return null;
     case "choice":
-      return labelled(name, note, path, required, choice(what.choices ?? [], value ?? fallback, what.nullable, set));
+      return labelled(name, "", note, path, required, choice(what.choices ?? [], value ?? fallback, what.nullable, set));
+    case "choices":
+      return choices(name, note, path, what.choices ?? [], value ?? fallback ?? [], set);
     case "flag":
       return flag(name, note, path, value ?? fallback, set);
     case "number":
-      return typeof value === "object" && value !== null
-        ? elsewhere(name, path)
-        : labelled(name, note, path, required, numberBox(value, fallback, set));
+      return labelled(name, unit, note, path, required, numberBox(value, fallback, set));
     case "text":
-      return labelled(name, note, path, required, textBox(value, fallback, set, plain));
+      return labelled(name, unit, note, path, required, textBox(value, fallback, set, plain));
     case "numbers":
-      return labelled(name, note, path, required, textBox(value, fallback, set, (text) => numbers(text, what.options)));
+      return labelled(name, unit, note, path, required, textBox(value, fallback, set, (text) => numbers(text, what.options)));
+    case "stock":
+      return labelled(name, unit, `${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
     case "table":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
         if (!Array.isArray(owner[name])) owner[name] = [];
-        return [table(sheet, what.item ?? {}, owner[name], path)];
+        return [table(sheet, what.item ?? {}, owner[name], path, what.count)];
       });
     case "object":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
         owner[name] ??= {};
-        return controls(sheet, single ?? what.options[0], owner[name], path);
+        return controls(sheet, what.options[0], owner[name], path);
       });
     case "union":
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>
         union(sheet, what.options, owner, name, path));
+    case "map":
+      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
+        owner[name] ??= {};
+        return members(sheet, what.item ?? {}, owner[name], path);
+      });
+    case "shapes":
+      return shapes(sheet, what, schema, name, note, path, required, owner, set);
     default:
       return elsewhere(name, path);
   }
+}
+
+/** The words for what a value can be. @param {Schema} option */
+function shapeName(option) {
+  const names = Object.keys(option.properties ?? {});
+  if (option.type === "object") return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? "a range" : "in detail";
+  return { boolean: "yes or no", array: "a list", string: "a word" }[/** @type {string} */ (option.type)] ?? "a number";
+}
+
+/**
+ * A value that is stated in one of several ways, as a number or a range: the way is chosen first.
+ * @param {Sheet} sheet @param {import("./schema.js").Kinded} what @param {Schema} schema @param {string} name @param {string} note
+ * @param {string} path @param {boolean} required @param {any} owner @param {(value: any) => void} set
+ * @returns {HTMLElement}
+ */
+function shapes(sheet, what, schema, name, note, path, required, owner, set) {
+  const value = owner[name] ?? schema.default ?? undefined;
+  const now = shapeOf(what.options, value) ?? what.options[0];
+  const dimension = schema["x-dimension"];
+  const ways = what.options.map(shapeName);
+  const way = choice(ways, shapeName(now), false, (chosen) => {
+    owner[name] = initial(what.options[ways.indexOf(chosen)], sheet.root);
+    sheet.rebuild();
+  });
+  way.setAttribute("aria-label", `${words(name)}: how it is stated`);
+  const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
+  // What is not stated yet stays unstated while it is only looked at.
+  const inside = now.type === "object" || now.type === "array"
+    ? group(sheet, { ...one, default: schema.default }, name, note, path, true, owner, set, () => {
+      if (shapeOf([now], owner[name]) === undefined) owner[name] = shapeOf([now], schema.default) ? structuredClone(schema.default) : initial(now, sheet.root);
+      return now.type === "array" ? [table(sheet, now.items, owner[name], path)] : controls(sheet, now, owner[name], path);
+    })
+    : field(sheet, { ...one, default: schema.default, description: note }, name, owner, path, required);
+  if (inside instanceof HTMLDetailsElement) {
+    inside.querySelector("summary")?.after(way);
+    if (shapeOf([now], owner[name])) inside.dispatchEvent(new Event("reveal"));
+  }
+  else /** @type {HTMLElement} */ (inside)?.querySelector(":scope > .error")?.before(way);
+  return /** @type {HTMLElement} */ (inside);
+}
+
+/** Objects by names that are given to them. @param {Sheet} sheet @param {Schema} item @param {Record<string, any>} found @param {string} path */
+function members(sheet, item, found, path) {
+  const name = el("input", { type: "text", "aria-label": "Name of another one", spellcheck: "false" });
+  const add = el("button", { type: "button", class: "small", onclick: () => {
+    const stated = name.value.trim();
+    if (!stated) return name.focus();
+    found[stated] ??= initial(item, sheet.root);
+    sheet.rebuild();
+  } }, "Add");
+  return [...Object.keys(found).flatMap((key) => [
+    el("div", { class: "row member" }, el("strong", {}, key), el("button", { type: "button", class: "small", "aria-label": `Remove ${key}`, onclick: () => {
+      delete found[key];
+      sheet.rebuild();
+    } }, "×")),
+    ...controls(sheet, resolved(item, sheet.root), found[key], `${path}/${key.replaceAll("~", "~0").replaceAll("/", "~1")}`)]),
+  el("div", { class: "row member" }, name, add)];
 }
 
 /** @param {Sheet} sheet @param {Schema[]} options @param {any} owner @param {string} name @param {string} path */
@@ -109,13 +179,13 @@ function union(sheet, options, owner, name, path) {
   const tag = discriminator(options) ?? "";
   owner[name] ??= initial(options[0], sheet.root);
   const option = optionOf(options, owner[name]);
-  const pick = choice(options.flatMap((one) => tagsOf(one, tag)), owner[name][tag], false, (value) => {
+  const pick = choice(options.flatMap((one) => tagsOf(one, tag)), owner[name][tag] ?? option.properties[tag].default, false, (value) => {
     const next = initial(options.find((one) => tagsOf(one, tag).includes(value)) ?? options[0], sheet.root);
     owner[name] = { ...next, [tag]: value };
     sheet.rebuild();
   });
   const others = Object.keys(option.properties).filter((one) => one !== tag);
-  return [labelled(tag, "", `${path}/${tag}`, true, pick), ...controls(sheet, option, owner[name], path, others)];
+  return [labelled(tag, "", "", `${path}/${tag}`, true, pick), ...controls(sheet, option, owner[name], path, others)];
 }
 
 /**
@@ -131,7 +201,10 @@ function group(sheet, schema, name, note, path, always, owner, set, inside) {
     if (!body.childElementCount) body.append(...inside().filter((one) => one !== null));
   };
   const open = stated && (required || Object.keys(owner[name]).length > 0);
-  const details = el("details", { class: "field group", "data-path": path, open, ontoggle: () => {
+  const details = el("details", { class: "field group", "data-path": path, open, onreveal: () => {
+    details.open = true;
+    if (always || stated) fillBody();
+  }, ontoggle: () => {
     // What is only looked at is not stated: an empty group leaves the problem again when it is closed.
     if (details.open && (always || stated)) fillBody();
     else if (!details.open && empty(owner[name]) && !required) set(undefined);
@@ -159,15 +232,18 @@ function empty(value) {
   return value !== undefined && value !== null && typeof value === "object" && Object.keys(value).length === 0;
 }
 
-/** @param {string} name @param {string} note @param {string} path @param {boolean} required @param {HTMLElement} control */
-function labelled(name, note, path, required, control) {
+/**
+ * @param {string} name @param {string} unit @param {string} note @param {string} path @param {boolean} required
+ * @param {HTMLElement} control
+ */
+function labelled(name, unit, note, path, required, control) {
   const id = `f${++ids}`;
   control.id = id;
   control.setAttribute("data-path", path);
   control.setAttribute("aria-describedby", `${id}e${note ? ` ${id}n` : ""}`);
   if (required) control.setAttribute("aria-required", "true");
   return el("div", { class: "field" },
-    el("label", { for: id }, words(name), required && el("span", { class: "required", title: "required" }, " *")),
+    el("label", { for: id }, words(name), unit && el("span", { class: "unit" }, ` (${unit})`), required && el("span", { class: "required", title: "required" }, " *")),
     control,
     el("p", { class: "error", id: `${id}e` }),
     note && el("p", { class: "note", id: `${id}n` }, note));
@@ -175,7 +251,6 @@ function labelled(name, note, path, required, control) {
 
 /** @param {string} name @param {string} note @param {string} path @param {any} value @param {(value: any) => void} set */
 function flag(name, note, path, value, set) {
-  if (typeof value === "object" && value !== null) return elsewhere(name, path);
   const id = `f${++ids}`;
   const box = el("input", { type: "checkbox", id, "data-path": path, "aria-describedby": `${id}e ${id}n`, onchange: () => set(box.checked) });
   box.checked = Boolean(value);

@@ -5,11 +5,12 @@
 /**
  * Of one field: which control states it.
  * @typedef {object} Kinded
- * @property {"choice" | "flag" | "number" | "numbers" | "text" | "object" | "union" | "table" | "json" | "fixed"} control
+ * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "text" | "stock" | "object" | "union" | "table" | "map" | "shapes" | "json" | "fixed"} control
  * @property {Schema[]} options what the value may be, null apart
  * @property {boolean} nullable
  * @property {string[]} [choices]
- * @property {Schema} [item] schema of the rows of a table
+ * @property {Schema} [item] schema of the rows of a table, or of the members of a map
+ * @property {number} [count] rows of a table that has always so many
  */
 
 /** The schema that a reference names. @param {Schema} schema @param {Schema} root @returns {Schema} */
@@ -32,6 +33,11 @@ function numeric(schema) {
   return schema.type === "number" || schema.type === "integer";
 }
 
+/** A thing and how many there are of it. @param {Schema} schema */
+function counted(schema) {
+  return schema.type === "object" && Object.keys(schema.properties ?? {}).length === 2 && schema.properties.count !== undefined;
+}
+
 /** A list or tuple of numbers, some of which may be left open. @param {Schema} schema @param {Schema} root */
 function listOfNumbers(schema, root) {
   if (schema.type !== "array") return false;
@@ -45,7 +51,8 @@ export function discriminator(options) {
   const names = Object.keys(options[0]?.properties ?? {});
   const constant = (/** @type {Schema} */ one, /** @type {string} */ name) =>
     one.properties?.[name]?.const !== undefined || one.properties?.[name]?.enum !== undefined;
-  return names.find((name) => options.every((one) => constant(one, name) && one.required?.includes(name)));
+  const stated = (/** @type {Schema} */ one, /** @type {string} */ name) => one.required?.includes(name) || one.properties[name].default !== undefined;
+  return names.find((name) => options.every((one) => constant(one, name)) && options.filter((one) => !stated(one, name)).length === 0);
 }
 
 /** The option that a discriminated value belongs to. @param {Schema[]} options @param {any} value */
@@ -72,19 +79,27 @@ export function kinded(schema, root) {
   if (options.every((one) => one.enum || one.const !== undefined)) {
     return is("choice", { choices: options.flatMap((one) => one.enum ?? [one.const]) });
   }
+  const shapes = new Set(options.map((one) => (numeric(one) ? "number" : one.type)));
+  if (shapes.size > 1 && shapes.has("object")) return is("shapes");
   if (options.some((one) => one.type === "boolean")) return is("flag");
   const lists = options.filter((one) => listOfNumbers(one, root));
   if (lists.length && options.every((one) => numeric(one) || listOfNumbers(one, root))) return is("numbers");
   if (options.every(numeric)) return is("number");
   if (options.every((one) => numeric(one) || one.type === "string")) return is("text");
   const array = options.find((one) => one.type === "array");
-  if (array?.items && alternatives(array.items, root).every((one) => one.type === "object")) {
-    return is("table", { item: array.items });
+  if (array) {
+    const rows = array.prefixItems ?? (array.items ? [array.items] : []);
+    const members = rows.flatMap((/** @type {Schema} */ one) => alternatives(one, root));
+    if (members.length && members.every((/** @type {Schema} */ one) => one.type === "object")) {
+      return is("table", { item: rows[0], count: array.prefixItems?.length });
+    }
+    if (members.length && members.every((/** @type {Schema} */ one) => one.enum)) return is("choices", { choices: members[0].enum });
+    if (members.some(counted)) return is("stock");
   }
   const objects = options.filter((one) => one.type === "object" && one.properties);
   if (objects.length === 1 && options.length === 1) return is("object");
   if (objects.length === options.length && discriminator(objects)) return is("union");
-  if (options.some(numeric)) return is("number");
+  if (options.length === 1 && typeof options[0].additionalProperties === "object") return is("map", { item: options[0].additionalProperties });
   return is("json");
 }
 
@@ -107,6 +122,17 @@ export function initial(schema, root) {
   return option.type === "string" ? "" : false;
 }
 
+/** The option that a value is an instance of. @param {Schema[]} options @param {any} value */
+export function shapeOf(options, value) {
+  const type = Array.isArray(value) ? "array" : value === null ? "null" : typeof value;
+  return options.find((one) => (numeric(one) ? "number" : one.type) === type);
+}
+
+/** A field that is a number, or something more. @param {Kinded} what */
+function perhapsNumber(what) {
+  return what.control === "number" || (what.control === "shapes" && what.options.some(numeric));
+}
+
 /**
  * Columns of a table: the plain properties of its rows, of all alternatives.
  * @param {Schema} item @param {Schema} root
@@ -123,10 +149,16 @@ export function columns(item, root) {
       if (name === tag) {
         const choices = options.flatMap((one) => tagsOf(one, name));
         found.set(name, { name, schema, required, kinded: { ...here, control: "choice", choices } });
-      } else if (["number", "flag", "choice"].includes(here.control) && !found.has(name)) {
+      } else if ((["flag", "choice"].includes(here.control) || perhapsNumber(here)) && !found.has(name)) {
         found.set(name, { name, schema, required, kinded: here });
       }
     }
   }
   return [...found.values()];
+}
+
+/** The properties of a row that are more than a cell can state. @param {Schema} option @param {Schema} root @returns {string[]} */
+export function beyond(option, root) {
+  return Object.entries(option.properties).filter(([, schema]) =>
+    ["shapes", "table", "object", "union", "map", "json"].includes(kinded(schema, root).control)).map(([name]) => name);
 }

@@ -152,7 +152,6 @@ fields.addEventListener("submit", (/** @type {Event} */ event) => {
   event.preventDefault();
   solve();
 });
-byId("solve").addEventListener("click", solve);
 text.addEventListener("input", () => {
   try {
     const stated = JSON.parse(text.value);

@@ -2,23 +2,25 @@
 
 import { choice, numberBox } from "./controls.js";
 import { el, words } from "./dom.js";
-import { alternatives, columns, discriminator, initial, optionOf } from "./schema.js";
+import { alternatives, beyond, columns, discriminator, initial, kinded, optionOf } from "./schema.js";
+import { unitOf } from "./units.js";
 
 /** @typedef {import("./schema.js").Schema} Schema */
 
 /**
  * @param {import("./form.js").Sheet} sheet @param {Schema} item schema of a row @param {any[]} rows changed in place
  * @param {string} path JSON pointer of the list
+ * @param {number} [count] where there are always so many rows
  */
-export function table(sheet, item, rows, path) {
+export function table(sheet, item, rows, path, count) {
   const heads = columns(item, sheet.root);
-  const line = (/** @type {any} */ row, /** @type {number} */ k) => el("tr", {},
+  const line = (/** @type {any} */ row, /** @type {number} */ k) => [el("tr", {},
     el("th", { scope: "row" }, k + 1),
     ...heads.map((head) => el("td", {}, cell(sheet, head, row, `${path}/${k}/${head.name}`, k, item))),
-    el("td", {}, el("button", { type: "button", class: "small", "aria-label": `Remove row ${k + 1}`, onclick: () => {
+    el("td", { class: "acts" }, ...inDetail(sheet, item, row, k), count === undefined && el("button", { type: "button", class: "small", "aria-label": `Remove row ${k + 1}`, onclick: () => {
       rows.splice(k, 1);
       sheet.rebuild();
-    } }, "×")));
+    } }, "×"))), ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k)];
   const onpaste = (/** @type {ClipboardEvent} */ event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
     if (!/[\t\n]/.test(text.trim())) return;
@@ -31,10 +33,11 @@ export function table(sheet, item, rows, path) {
   const view = el("div", { class: "table", onpaste },
     el("table", {},
       el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "#"),
-        ...heads.map((head) => el("th", { scope: "col", title: head.schema.description }, words(head.name))), el("td"))),
-      el("tbody", {}, ...rows.map(line))),
+        ...heads.map((head) => el("th", { scope: "col", title: head.schema.description }, words(head.name),
+          unitOf(head.schema, sheet.problem) && el("span", { class: "unit" }, ` (${unitOf(head.schema, sheet.problem)})`))), el("td"))),
+      el("tbody", {}, ...rows.flatMap(line))),
     el("div", { class: "row" },
-      el("button", { type: "button", class: "small", onclick: () => {
+      count === undefined && el("button", { type: "button", class: "small", onclick: () => {
         rows.push(rows.length ? structuredClone(rows[rows.length - 1]) : initial(item, sheet.root));
         sheet.rebuild();
       } }, "Add a row"),
@@ -66,11 +69,59 @@ function cell(sheet, head, row, path, k, item) {
     const box = el("input", { type: "checkbox", onchange: () => set(box.checked) });
     box.checked = Boolean(value ?? head.schema.default);
     control = box;
-  } else if (typeof value === "object" && value !== null) return "JSON";
+  } else if (typeof value === "object" && value !== null) return "below";
   else control = numberBox(value, head.schema.default, set);
   control.setAttribute("data-path", path);
   control.setAttribute("aria-label", `${words(head.name)}, row ${k + 1}`);
   return control;
+}
+
+/** @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row */
+function optionAt(sheet, item, row) {
+  const options = alternatives(item, sheet.root);
+  return options.length > 1 ? optionOf(options, row) : options[0];
+}
+
+/** @param {any} value */
+function structured(value) {
+  return typeof value === "object" && value !== null;
+}
+
+/**
+ * What of a row is more than a cell can state, in a row below it that opens.
+ * @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row @param {string} path @param {number} width columns
+ * @param {number} k
+ */
+function more(sheet, item, row, path, width, k) {
+  const option = optionAt(sheet, item, row);
+  // What a cell can state as a number stands here only where it is stated in detail.
+  const names = beyond(option, sheet.root).filter((name) => kinded(option.properties[name], sheet.root).control !== "shapes" || structured(row[name]));
+  if (!names.length) return [];
+  const stated = names.some((name) => structured(row[name]) && (!Array.isArray(row[name]) || row[name].length));
+  const inside = el("div", { class: "fields" });
+  const fill = () => {
+    if (!inside.childElementCount) inside.append(...sheet.controls(option, row, path, names).filter((one) => one !== null));
+  };
+  const details = el("details", { "data-path": `${path}/`, open: stated, ontoggle: fill, onreveal: () => {
+    details.open = true;
+    fill();
+  } }, el("summary", {}, `Row ${k + 1}: ${names.map((name) => words(name).toLowerCase()).join(", ")}`), inside);
+  if (stated) fill();
+  return [el("tr", { class: "more" }, el("td", { colspan: width }, details))];
+}
+
+/** Buttons that begin to state in detail what a cell states as a number. @param {import("./form.js").Sheet} sheet @param {Schema} item @param {any} row @param {number} k */
+function inDetail(sheet, item, row, k) {
+  const option = optionAt(sheet, item, row);
+  return beyond(option, sheet.root).flatMap((name) => {
+    const what = kinded(option.properties[name], sheet.root);
+    if (what.control !== "shapes" || structured(row[name])) return [];
+    const title = `${words(name)} of row ${k + 1} in detail`;
+    return [el("button", { type: "button", class: "small", title, "aria-label": title, onclick: () => {
+      row[name] = initial(what.options.find((one) => one.type === "object") ?? {}, sheet.root);
+      sheet.rebuild();
+    } }, "⋯")];
+  });
 }
 
 /**

@@ -185,7 +185,8 @@ export function evenly(stroke, count) {
     const s = (length * k) / (count - 1);
     while (n < stroke.length - 1 && along[n] < s) n++;
     const share = along[n] > along[n - 1] ? (s - along[n - 1]) / (along[n] - along[n - 1]) : 0;
-    points.push([0, 1].map((c) => stroke[n - 1][c] + share * (stroke[n][c] - stroke[n - 1][c])));
+    const [before, after] = [stroke[n - 1], stroke[n]];
+    points.push([before[0] + share * (after[0] - before[0]), before[1] + share * (after[1] - before[1])]);
   }
   return points;
 }

@@ -66,11 +66,11 @@ class Studio:
 
     def solve(self):
         self.page.click("#solve")
-        self.page.wait_for_selector(".card", timeout=110_000)
+        self.page.wait_for_selector(".card", timeout=200_000)
 
-    def screen(self, name):
+    def screen(self, name, page=None):
         SCREENS.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=SCREENS / f"{name}.png", full_page=True)
+        (page or self.page).screenshot(path=SCREENS / f"{name}.png", full_page=True)
 
     def close(self):
         self.context.close()

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar, positions
+from service.render.fourbar import MARKED, OTHERS
 from service.render.sheet import fourbar_sheet as drawing
 from service.render.svg import Box, clipped, clipped_polygon, number, shortened, text_width
 from synthesis.designs import Check, LinkageDesign, LinkageMetrics, Target, Verification
@@ -389,6 +390,26 @@ def test_clipping_keeps_what_is_inside() -> None:
     assert clipped(np.array([20 + 0j, 30 + 5j]), box) == []
     corners = clipped_polygon([-1e9 - 1e9j, 1e9 - 1e9j, 1e9 + 1e9j, -1e9 + 1e9j], box)
     assert {(round(c.real, 6), round(c.imag, 6)) for c in corners} == {(0, 0), (10, 0), (10, 10), (0, 10)}
+
+
+def test_of_many_targets_some_are_drawn_evenly_spread_with_both_ends() -> None:
+    angles = list(np.linspace(30.0, 330.0, 200))
+    design, problem = _case(Fourbar(0, 80, 25, 70, 60, _polar(40, 50)), angles, [OPEN] * 200)
+    root = _parsed(design, problem)
+    main = _Main(root)
+    drawn = sorted(int(e.attrib["data-configuration"]) for e in main.panel.iter() if e.get("data-configuration"))
+    assert drawn[0] == 1
+    assert drawn[-1] == 200
+    assert 3 < len(drawn) <= OTHERS + 1
+    for count in (1, drawn[3], 200):
+        pose, at = problem.positions[count - 1], main.joints(count)
+        assert abs(at["P"] - pose.point) * main.scale < 2.0 * PIXEL
+    words = " ".join(e.text or "" for e in root.iter(f"{SVG}text"))
+    assert f"{MARKED} of 200 targets" in words
+    assert float(root.attrib["height"]) < 1200.0
+    description = root.find(f"{SVG}desc")
+    assert description is not None
+    assert f"shown at 200 of 200 demanded positions, of which {MARKED} are drawn" in (description.text or "")
 
 
 def test_numbers_and_cut_text() -> None:

@@ -1,0 +1,21 @@
+/** The symbol of what a number measures, in the units of the problem; the schemas say the dimension as `x-dimension`. */
+
+/** @param {any} problem */
+function symbols(problem) {
+  const length = problem.length_unit ?? "mm";
+  const arm = String(problem.follower?.type ?? "").startsWith("oscillating");
+  const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider";
+  const [lift, rate] = arm ? ["°", "rad"] : [length, length];
+  const force = length === "in" ? "lbf" : "N";
+  return /** @type {Record<string, string>} */ ({
+    length, area: `${length}²`, "inverse length": `1/${length}`, angle: "°",
+    displacement: lift, velocity: `${rate}/rad`, acceleration: `${rate}/rad²`, jerk: `${rate}/rad³`,
+    output: slides ? length : "°", "length per radian": `${length}/rad`,
+    "rotational speed": "1/min", force, stiffness: `${force}/${length}`, mass: length === "in" ? "lbf·s²/in" : "kg", percent: "%",
+  });
+}
+
+/** The unit of a field; empty for a pure number. @param {import("./schema.js").Schema} schema @param {any} problem */
+export function unitOf(schema, problem) {
+  return symbols(problem)[schema["x-dimension"]] ?? "";
+}

@@ -1,0 +1,77 @@
+"""The rules of axe-core find nothing serious in the page, light and dark, wide and narrow, with an answer shown."""
+
+import pytest
+
+from synthesis.kinds import examples
+from tests.browser.test_form import OPEN_ALL
+from tests.browser.test_studio import PLAIN, drawn, state
+from tests.service.running import ROOT, until
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+AXE = ROOT / "tests" / "node" / "node_modules" / "axe-core" / "axe.min.js"
+
+CASES = {
+    "motion": PLAIN,
+    "path": examples("path")[1],
+    "cam": examples("cam")[0],
+    "gear_train": examples("gear_train")[0],
+}
+
+RUN = """async () => {
+  const found = await axe.run(document, {resultTypes: ["violations"]});
+  return {
+    checked: found.passes.length,
+    violations: found.violations.map(one => ({
+      rule: one.id, impact: one.impact, help: one.help, where: one.nodes.slice(0, 4).map(node => node.target.join(" ")),
+    })),
+  };
+}"""
+
+
+def serious(page):
+    """What is serious or critical; the rules come in by the debugger, so the page's policy stays as it is."""
+    assert AXE.exists(), "make test-browser installs what this needs of node"
+    if not page.evaluate("typeof axe === 'object'"):
+        page.evaluate(f"{AXE.read_text()}; undefined")
+    found = page.evaluate(RUN)
+    assert found["checked"] > 10
+    return [one for one in found["violations"] if one["impact"] in ("serious", "critical")]
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_no_serious_violation(open_studio, kind):
+    studio = open_studio(reduced_motion="reduce")
+    page = studio.page
+    state(page, CASES[kind])
+    studio.solve()
+    until(lambda: drawn(page), 90, "the drawing")
+    page.evaluate(OPEN_ALL)
+    page.locator("details:not(#fields details)").evaluate_all("all => all.forEach(one => { one.open = true; })")
+    for scheme in ("light", "dark"):
+        for width, height in ((1360, 1000), (390, 844)):
+            page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+            page.set_viewport_size({"width": width, "height": height})
+            assert serious(page) == [], (scheme, width)
+            studio.screen(f"{kind}-{scheme}-{width}")
+
+
+def test_a_refused_statement_and_a_report_have_no_serious_violation(studio):
+    page = studio.page
+    page.fill('[data-path="/problem/max_designs"]', "0")
+    page.click("#solve")
+    page.wait_for_selector('[data-path="/problem/max_designs"][aria-invalid="true"]')
+    assert serious(page) == []
+    studio.wrong.clear()
+    state(page, PLAIN)
+    studio.solve()
+    job = page.url.rpartition("=")[2]
+    page.goto(f"{studio.url}/v1/jobs/{job}/report.html")
+    page.wait_for_selector("figure svg")
+    assert serious(page) == []
+
+
+def test_a_violation_would_be_found(studio):
+    page = studio.page
+    page.evaluate("document.querySelector('label[for=kind]').remove()")
+    assert [one["rule"] for one in serious(page)] == ["select-name"]

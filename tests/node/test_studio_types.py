@@ -1,0 +1,32 @@
+"""The studio's modules keep the types that their comments state."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.service.running import ROOT
+
+HERE = Path(__file__).parent
+MODULES = HERE / "node_modules"
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]
+
+
+def test_the_studio_is_well_typed(tmp_path):
+    assert (MODULES / ".installed").exists(), "make test-browser installs what this needs of node"
+    for module in (ROOT / "service" / "studio").glob("*.js"):
+        shutil.copy(module, tmp_path)
+    # What must be refused, so that nothing passes because nothing is looked at.
+    (tmp_path / "mistaken.js").write_text(
+        'import { View } from "./view.js";\n/** @param {View} view */\nexport const wrong = (view) => view.at("one");\n'
+    )
+    settings = json.loads((HERE / "studio.json").read_text())
+    (tmp_path / "tsconfig.json").write_text(json.dumps({**settings, "include": ["*.js"]}))
+    done = subprocess.run(
+        [str(MODULES / ".bin" / "tsc"), "-p", "."], cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert [line for line in done.stdout.splitlines() if not line.startswith(("mistaken.js", " "))] == []
+    assert "mistaken.js(3,37): error TS2554" in done.stdout, done.stdout
