@@ -1,8 +1,8 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
-# make test    ruff, mypy, import-linter and the whole pytest suite
+# make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
 # make test-faults  what becomes of jobs when processes are killed, with figures
-# make test-browser  drive the studio in the system's Chromium, and a generated TypeScript client in node (both are
-#              installed where they are missing and we are root)
+# make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
+#              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make campaign  the checks with thousands of random problems
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem

@@ -8,6 +8,10 @@ import { View } from "./view.js";
 /** @typedef {[number, number]} Point */
 
 export class Barrel extends Turning {
+  get label() {
+    return "The groove of the barrel, unrolled, passing the roller";
+  }
+
   scene() {
     const { cylinder_radius: radius, follower, lower_wall: lower, upper_wall: upper, pitch_curve: pitch } = this.mechanism;
     this.turn = 2 * Math.PI * radius;

@@ -33,11 +33,18 @@ export function diagrams(mechanism, motion, problem) {
 
 /** What a disc cam and a barrel have in common: clock, gauge and diagrams. */
 export class Turning {
-  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem @param {string} label */
-  constructor(place, design, motion, problem, label) {
+  /** @param {HTMLElement} place @param {any} design @param {any} motion @param {any} problem */
+  constructor(place, design, motion, problem) {
     this.motion = motion;
     this.mechanism = design.mechanism;
     this.count = motion.input_angle.length;
+    // What the scene of each kind decides.
+    this.view = new View([], WIDTH, HEIGHT);
+    this.sense = 1;
+    this.radius = 0;
+    this.turn = 0;
+    /** @type {number[]} */
+    this.spin = [];
     const scene = this.scene();
     // A flat face that only moves along has none.
     this.gauge = motion.pressure_angle.some((/** @type {any} */ one) => one > 0.01)
@@ -45,7 +52,7 @@ export class Turning {
     this.player = new Player({ count: this.count, closed: true, label: "Cam", reading: (at) => this.reading(at), show: (at) => this.show(at) });
     this.marks = plots(diagrams(this.mechanism, motion, problem), motion.input_angle, (at) => this.player.lead(at));
     this.facts = el("dl", { class: "facts" });
-    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": label },
+    const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": this.label },
       svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...scene);
     place.replaceChildren(el("div", { class: "stage" }, picture, el("div", { class: "beside" }, this.gauge?.node, this.facts)),
       this.player.row, el("div", { class: "plots" }, ...this.marks.map((mark) => mark.figure)));
@@ -53,13 +60,18 @@ export class Turning {
     this.player.begin();
   }
 
+  /** What the picture shows, in words. */
+  get label() {
+    return "The cam, turning under its follower";
+  }
+
   /** @returns {Element[]} */
   scene() {
     return [];
   }
 
-  /** @param {number} at @param {number} _angle radians that the cam has turned */
-  put(at, _angle) {}
+  /** @param {number} _at @param {number} _angle radians that the cam has turned */
+  put(_at, _angle) {}
 
   /** @param {number} at */
   show(at) {

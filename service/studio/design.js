@@ -44,6 +44,10 @@ export class Shown {
     this.stage = el("div", { class: "moving" });
     this.exploring = el("div", {});
     this.numbers = el("div", {});
+    this.drawing = el("figure", { class: "drawing" });
+    this.job = job;
+    this.n = n;
+    this.design = job.result.designs[n];
     place.replaceChildren(this.title, this.before, this.stage, ...this.burmester(job, n), this.exploring, this.numbers);
     this.present(job, n, `Design ${n + 1}`);
   }

@@ -23,6 +23,7 @@ export class Gears {
       reading: (at) => `${shown(Math.round(10 * this.degrees(at)) / 10)}°`, show: (at) => this.show(at) });
     place.replaceChildren(el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.engaging(), this.facts)), this.player.row,
       el("p", { class: "note" }, "Circles are pitch circles. Each gear turns as fast as the analysis says, one turn of the input in four seconds at speed 1."));
+    this.view = new View([], WIDTH, HEIGHT);
     this.build();
     this.player.begin();
   }

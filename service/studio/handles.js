@@ -26,7 +26,9 @@
 
 /** @param {any} problem changed in place @returns {Stated | null} null for a kind that has no place in the plane */
 export function stated(problem) {
-  const make = { motion, path, quick_return: quickReturn, straight_line: straightLine, dwell, steering, parallel_motion: parallelMotion, function: functionPairs }[problem.kind];
+  /** @type {Record<string, (problem: any) => Stated | null>} */
+  const makers = { motion, path, quick_return: quickReturn, straight_line: straightLine, dwell, steering, parallel_motion: parallelMotion, function: functionPairs };
+  const make = makers[problem.kind];
   const found = make ? make(problem) : null;
   if (found && problem.kind !== "function") regions(problem, found);
   return found;
@@ -173,7 +175,7 @@ function assembled(linkage) {
     if (!Number.isFinite(up)) continue;
     const B = /** @type {Point} */ ([A[0] + (along * dx - up * dy) / diagonal, A[1] + (along * dy + up * dx) / diagonal]);
     const heading = Math.atan2(B[1] - A[1], B[0] - A[0]) + ((at.angle ?? 0) * Math.PI) / 180;
-    return { O2: [...pivots.input], O4: [...pivots.output], A, B, P: [A[0] + at.distance * Math.cos(heading), A[1] + at.distance * Math.sin(heading)] };
+    return { O2: /** @type {Point} */ ([...pivots.input]), O4: /** @type {Point} */ ([...pivots.output]), A, B, P: [A[0] + at.distance * Math.cos(heading), A[1] + at.distance * Math.sin(heading)] };
   }
   return null;
 }
