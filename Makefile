@@ -1,6 +1,7 @@
 # make serve   start the service on http://127.0.0.1:8000 (MECHSYNTH_HOST, MECHSYNTH_PORT, ... change it)
 # make test    ruff, mypy, import-linter and the whole pytest suite but the browser's: see test-browser
 # make test-faults  what becomes of jobs when processes are killed, with figures
+# make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make campaign  the checks with thousands of random problems
@@ -19,7 +20,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test test-faults test-browser campaign demo check quick bench openapi lock clean
+.PHONY: serve test test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -28,7 +29,21 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest -m "not campaign and not faults and not browser" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not faults and not browser and not cluster" $(SPREAD)
+
+# The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis: the real servers, on free ports.
+CONTRACT := $(addprefix tests/service/test_,store.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
+    tests/cluster
+
+test-cluster: $(STAMP) engines
+	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+rabbitmq $(CONTRACT)
+	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+redis $(CONTRACT)
+
+engines:
+	@{ ls /usr/lib/postgresql/*/bin/postgres && test -x /usr/sbin/rabbitmq-server && test -x /usr/bin/redis-server; } \
+	    > /dev/null 2>&1 || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null && apt-get update -q \
+	    && apt-get install -qy --no-install-recommends postgresql rabbitmq-server redis-server; } \
+	    || { echo "the cluster tests need Debian's postgresql, rabbitmq-server and redis-server"; exit 1; }
 
 test-browser: $(STAMP) $(NODE)
 	@test -x /usr/bin/chromium || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null \
@@ -40,8 +55,9 @@ campaign: $(STAMP)
 	$(BIN)/pytest -m campaign $(SPREAD)
 
 # Processes are killed at random and at every write, and what became of the jobs is printed. Ten to twenty minutes.
-test-faults: $(STAMP)
-	$(BIN)/pytest -m faults -s -q tests/faults
+test-faults: $(STAMP) engines
+	$(BIN)/pytest -m "faults and not cluster" -s -q tests/faults
+	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgres+rabbitmq tests/faults
 
 check: $(STAMP)
 	$(BIN)/ruff check .
@@ -51,7 +67,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not faults and not browser" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not faults and not browser and not cluster" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

@@ -12,15 +12,11 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from types import FrameType
-from typing import Any
 
 import structlog
-from celery.concurrency.base import BasePool
+from celery.concurrency.thread import TaskPool
 from celery.exceptions import WorkerShutdown
-from kombu.asynchronous import get_event_loop
 from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
@@ -142,42 +138,14 @@ def _announce(host: Host) -> None:
     print(f"mechsynth worker {host.id} is ready", flush=True)  # noqa: T201 (for whoever started it)
 
 
-def _pool_of(host: Host) -> type[BasePool]:
-    """A pool of Celery whose tasks wait in threads for the lanes of a host.
+def _pool_of(host: Host) -> type[TaskPool]:
+    """A pool of Celery whose tasks wait in threads for the lanes of a host; what they tell Celery goes to its loop."""
 
-    Celery's own pool of threads acknowledges a message in the thread that has run its task, over a connection that
-    stands one thread only. Here the loop that has the connection is asked to.
-    """
-
-    class LanePool(BasePool):
-        """Runs tasks in threads and tells of their ends in the loop's thread."""
-
-        body_can_be_buffer = True
-        signal_safe = False
-
-        def __init__(self, *args: Any, **options: Any) -> None:
-            super().__init__(*args, **options)
-            self._threads = ThreadPoolExecutor(max_workers=self.limit, thread_name_prefix="task")
-
-        def on_apply(
-            self,
-            target: Callable[..., Any],
-            args: tuple[Any, ...],
-            kwargs: dict[str, Any],
-            callback: Callable[[Any], None],
-            accept_callback: Callable[[int, float], None],
-            **_options: Any,
-        ) -> None:
-            accept_callback(os.getpid(), time.monotonic())
-            loop = get_event_loop()
-
-            def run() -> None:
-                loop.call_soon(callback, target(*args, **kwargs))
-
-            self._threads.submit(run)
+    class LanePool(TaskPool):
+        """Ends the lanes first when it is stopped, so that the tasks end."""
 
         def on_stop(self) -> None:
             host.stop()
-            self._threads.shutdown(cancel_futures=True)
+            super().on_stop()
 
     return LanePool

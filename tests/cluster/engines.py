@@ -106,7 +106,6 @@ class Engine:
 
 class Postgres(Engine):
     user = "postgres"
-    fsync = "off"  # for the tests that are not about what a database loses
     programs = property(lambda self: sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True))
 
     def prepare(self):
@@ -128,7 +127,7 @@ class Postgres(Engine):
         return self.launch(
             program("postgres", *self.programs), "-D", str(self.data), "-p", str(self.port),
             "-c", "listen_addresses=127.0.0.1", "-c", f"unix_socket_directories={self.folder}",
-            "-c", "max_connections=200", "-c", f"fsync={self.fsync}",
+            "-c", "max_connections=200",
         )  # fmt: skip
 
     def stop(self, how=signal.SIGINT):  # "fast": breaks off what is under way, as an administrator would

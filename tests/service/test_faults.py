@@ -223,6 +223,7 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
     assert server.stop() == 0
 
 
+@pytest.mark.embedded
 def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path):
     (tmp_path / "slow-start").touch()
     with (
@@ -263,6 +264,7 @@ def test_a_stopping_server_answers_those_who_wait(restarting):
     assert server.process.wait(5.0) == 0
 
 
+@pytest.mark.embedded
 def test_a_service_whose_workers_cannot_start_is_not_ready(tmp_path):
     (tmp_path / "cannot-start").touch()
     with subprocess.Popen(

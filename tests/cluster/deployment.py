@@ -1,0 +1,116 @@
+"""Several servers and worker hosts on one store and one broker, each a process that can be killed and started again."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx
+
+from tests.cluster.backend import CHOSEN
+from tests.service.running import SCRIPTED, START_S, STOP_S, environment, until, workers_of
+
+
+class Process:
+    """A server or a worker host; ``port`` is kept over its deaths."""
+
+    def __init__(self, folder: Path, name, act, **settings):
+        self.name, self.act, self.folder = name, act, folder
+        self.settings = {**settings, "log_level": "warning"}
+        self.announced = folder / f"announced-{name}"
+        self.port = 0
+        self.start()
+
+    def start(self):
+        with self.announced.open("wb") as out, (self.folder / "log").open("ab") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, *SCRIPTED, self.act], stdout=out, stderr=log, cwd=self.folder,
+                env=environment(self.folder, **self.settings, port=self.port),
+            )  # fmt: skip
+
+    def ready(self):
+        assert self.process.poll() is None, (self.folder / "log").read_text()[-5000:]
+        words = self.announced.read_text().split()
+        if words and self.act == "serve":
+            self.port = int(words[-1].rpartition(":")[2])
+        return bool(words)
+
+    @property
+    def url(self):
+        return f"http://127.0.0.1:{self.port}"
+
+    def children(self):
+        return workers_of(self.process.pid)
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(STOP_S)
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(STOP_S)
+
+
+class Deployment:
+    """``servers`` servers and ``hosts`` worker hosts that share what the folder has in the engines."""
+
+    def __init__(self, folder: Path, servers=2, hosts=2, **settings):
+        self.folder = folder
+        self.hosts = [Process(folder, f"host-{n}", "worker", **settings) for n in range(hosts)]
+        self.servers = [Process(folder, f"server-{n}", "serve", **settings) for n in range(servers)]
+        try:
+            for process in (*self.hosts, *self.servers):
+                until(process.ready, START_S, f"the start of {process.name}")
+        except BaseException:
+            self.kill()
+            raise
+        self.clients = [httpx.Client(base_url=server.url, timeout=60.0) for server in self.servers]
+
+    def log(self):
+        return (self.folder / "log").read_text()
+
+    def jobs(self):
+        """What the store has of all jobs: id, label, status, result, crashes."""
+        return CHOSEN.postgres.query(
+            CHOSEN.mark(self.folder), "SELECT id, label, status, result, crashes, error FROM jobs ORDER BY id"
+        )
+
+    def unfinished(self):
+        return [job for job in self.jobs() if job[2] in ("queued", "running")]
+
+    def stop(self):
+        for client in self.clients:
+            client.close()
+        for process in (*self.servers, *self.hosts):
+            if process.process.poll() is None:
+                process.process.send_signal(signal.SIGTERM)
+        return [process.process.wait(STOP_S) for process in (*self.servers, *self.hosts)]
+
+    def kill(self):
+        for client in getattr(self, "clients", ()):
+            client.close()
+        for process in (*getattr(self, "servers", ()), *self.hosts):
+            process.kill()
+
+
+def alive_now(pids):
+    """Those of the processes that are there and not just waiting to be collected."""
+    found = []
+    for pid in pids:
+        try:
+            state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except OSError:
+            continue
+        if state not in "ZX":
+            found.append(pid)
+    return found
+
+
+def signal_quietly(pid, how=signal.SIGKILL):
+    """Send a signal to a process that may have ended meanwhile; tells whether it was there."""
+    try:
+        os.kill(pid, how)
+    except ProcessLookupError:
+        return False
+    return True
