@@ -61,7 +61,8 @@ class Deployment:
         self.servers = [Process(folder, f"server-{n}", "serve", **settings) for n in range(servers)]
         try:
             for process in (*self.hosts, *self.servers):
-                until(process.ready, START_S, f"the start of {process.name}")
+                # They start side by side, and share the processors.
+                until(process.ready, START_S * (servers + hosts), f"the start of {process.name}")
         except BaseException:
             self.kill()
             raise

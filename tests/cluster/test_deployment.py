@@ -13,7 +13,7 @@ from tests.cluster.deployment import Deployment, alive_now
 from tests.service.running import PROBLEM, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE
 
-pytestmark = [pytest.mark.cluster, pytest.mark.timeout(300)]
+pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
 
 
 @pytest.fixture(scope="module")
