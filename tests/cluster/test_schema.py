@@ -1,0 +1,86 @@
+"""The tables in PostgreSQL."""
+
+import threading
+
+import pytest
+from alembic import command
+from alembic.autogenerate import compare_metadata
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from sqlalchemy import inspect, text
+
+from service.access.keys import api_keys
+from service.jobs.database import connect, upgrade
+from service.jobs.schema import hosts, jobs, metadata
+from service.jobs.store import JobStore
+from tests.cluster.backend import CHOSEN
+
+pytestmark = [pytest.mark.cluster]
+
+
+@pytest.fixture
+def engine(tmp_path):
+    engine = connect(CHOSEN.store_url(tmp_path), durable=True)
+    yield engine
+    engine.dispose()
+
+
+def test_the_migrations_make_the_tables_of_the_schema(engine):
+    upgrade(engine)
+    assert {jobs.name, hosts.name, api_keys.name} <= set(inspect(engine).get_table_names())
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+
+
+def test_a_downgrade_leaves_nothing_behind(engine):
+    upgrade(engine)
+    config = Config()
+    config.set_main_option("script_location", "service/jobs/migrations")
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.downgrade(config, "base")
+    with engine.connect() as connection:
+        left = connection.execute(text("SELECT proname FROM pg_proc WHERE proname = 'tell_of_job'")).all()
+    assert left == []
+    assert inspect(engine).get_table_names() == ["alembic_version"]
+
+
+def test_many_may_upgrade_at_once(tmp_path):
+    url = CHOSEN.store_url(tmp_path)
+    failures = []
+
+    def start():
+        engine = connect(url, durable=False)
+        try:
+            upgrade(engine)
+        except Exception as failure:
+            failures.append(failure)
+        engine.dispose()
+
+    threads = [threading.Thread(target=start) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == []
+
+
+def test_writes_wait_for_the_disk(engine):
+    for durable in (True, False):
+        other = connect(engine.url.render_as_string(hide_password=False), durable=durable)
+        with other.connect() as connection:
+            assert connection.execute(text("SHOW synchronous_commit")).scalar() == "on"
+        other.dispose()
+
+
+def test_connections_that_were_cut_are_replaced(engine):
+    upgrade(engine)
+    store = JobStore(engine)
+    for _ in range(3):
+        store.create(tenant="", kind="motion", label=None, problem="{}", max_queued=10)
+        CHOSEN.postgres.query(
+            engine.url.database,
+            "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "
+            "WHERE datname = current_database() AND pid <> pg_backend_pid()",
+        )
+    assert store.unfinished()["queued"] == 3
