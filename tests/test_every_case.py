@@ -30,5 +30,5 @@ def test_every_kind_of_row_has_its_test(file: str) -> None:
 
 def test_no_row_is_lost() -> None:
     """Tables are only ever added to."""
-    least = {"linkage": 157, "quick_return": 2, "straight_line": 8, "steering_hooke": 16, "gear": 167, "cam": 127}
+    least = {"linkage": 164, "quick_return": 2, "straight_line": 8, "steering_hooke": 16, "gear": 167, "cam": 127}
     assert all(len(load(file)) >= count for file, count in least.items())

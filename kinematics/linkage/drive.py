@@ -45,7 +45,8 @@ class MechanismMotion:
     joints : dict of str to complex, shape (n,) + S + (N,)
         Joints in the mechanism's own coordinates and their derivatives per s^n.
     slides : dict of str to float, shape (n,) + S + (N,)
-        Position of each slide's joint along its line, and its rates relative to the line's link.
+        Position of each slide's joint along its line, and its rates relative to the line's link; by the names of
+        :attr:`Mechanism.slide_names`.
     sines : dict of str to float, shape S + (N,)
         For each closure, by the name of its link: the sine that vanishes at its limit. Its magnitude is the sine of the
         transmission angle there; its sign changes from assembly to assembly. For a class III mechanism with a triad,
@@ -171,10 +172,6 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     margins = np.empty((len(program.closing), min(length, 2), *flat))
     masks = np.empty((2, *flat), np.bool_)
     kernels.drive(*program[6:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
-    slide_names = [s.joint for s in mechanism.slides]
-    for k, name in enumerate(slide_names):
-        if slide_names.count(name) > 1:
-            slide_names[k] = f"{name}_{k}"
     valid, smooth = masks.reshape(2, *shape)
     joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
     closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
@@ -187,7 +184,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
         inputs,
         dict(zip(program.links[1:], angles[1:].reshape(-1, length, *shape), strict=True)),
         joints,
-        dict(zip(slide_names, travels.reshape(-1, length, *shape), strict=True)),
+        dict(zip(mechanism.slide_names, travels.reshape(-1, length, *shape), strict=True)),
         closing,
         dict(zip(program.closing, margins.reshape(-1, margins.shape[1], *shape), strict=True)),
     )
@@ -208,6 +205,15 @@ def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) 
     return given
 
 
+def given_up(mechanism: Mechanism) -> bool:
+    """Whether continuation, in drives of this class III design so far, left a way before its end.
+
+    Links of very different lengths need more certified steps than can be waited for. Positions beyond are not valid in
+    the answer though they may exist.
+    """
+    return bool(decompose(mechanism).left) and _track(mechanism, 0)[1].given_up
+
+
 @lru_cache(maxsize=RECENT)
 def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     """The loops of one design of a class III mechanism and what is known of their solutions."""
@@ -219,4 +225,4 @@ def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     return loops, track
 
 
-__all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "unit_frame"]
+__all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "given_up", "unit_frame"]

@@ -146,24 +146,41 @@ def drive(
                         r[n] = 0.0
                     r[0] = (normal * arms[row, 0]).real
                 else:
+                    # The shorter link is solved for: beside it the squares of long ones would leave nothing of its own.
+                    first = 1 if lengths[row, 1] < lengths[row, 0] else 0
+                    own_length, other_length = lengths[row, first], lengths[row, 1 - first]
                     for n in range(length):
                         base[n] = x[other_pin, n] - x[pin, n]
-                        k[n] = arms[row, 0].conjugate() * base[n]
+                        k[n] = arms[row, first].conjugate() * (-base[n] if first else base[n])
                     for n in range(length):
                         r[n] = 0.0
                         for j in range(n + 1):
                             r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
-                    r[0] += (lengths[row, 0] - lengths[row, 1]) * (lengths[row, 0] + lengths[row, 1]) / 2.0
+                    r[0] += (own_length - other_length) * (own_length + other_length) / 2.0
                 if closing >= 0:
-                    reach, norm = reaches[row], norms[row]
-                    sign = signs[row, design]
-                    sine = _close(k, r, reach, norm, sign, rotation, unit, link, margins, closing, design, at, length)
+                    reach, norm, slack = reaches[row], norms[row], 0.0
+                    sign, solved = signs[row, design], link
+                    if kind == RRR:
+                        reach, slack = own_length, base[0].real * base[0].real + base[0].imag * base[0].imag
+                        if first:
+                            sign, solved = -sign, other
+                    sine = _close(
+                        k, r, reach, norm, slack, sign, rotation, unit, solved, margins, closing, design, at, length
+                    )
                     if kind == RRR:
                         # sine of the angle between the two links: the base's part of |k| is not the force's
-                        sine *= _abs(base[0]) / lengths[row, 1]
+                        sine *= _abs(base[0]) / other_length
+                        if first:
+                            sine = -sine
                     sines[closing, design, at] = sine
+                if kind == RRR and first:
+                    _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
+                    _carry(other, joint, place, unit, shift, x, length)
+                    _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
                 _pose(link, pin, place, gives, rotation, turned, unit, shift, x, length)
-                if kind == RRR:
+                if kind == RRR and first:
+                    _carry(other, joint, place, unit, shift, x, length)
+                elif kind == RRR:
                     _towards(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
                     _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
             if not len(points):
@@ -284,9 +301,14 @@ def _pose(
     for n in range(length):
         shift[link, n] = x[pin, n] - unit[link, n] * place[pin]
     for j in range(1, gives[link, 0] + 1):
-        joint = gives[link, j]
-        for n in range(length):
-            x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
+        _carry(link, gives[link, j], place, unit, shift, x, length)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _carry(link: int, joint: int, place: Complex, unit: Complex, shift: Complex, x: Complex, length: int) -> None:
+    """A joint where a link has it."""
+    for n in range(length):
+        x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -315,6 +337,7 @@ def _close(
     r: Real,
     reach: float,
     norm: float,
+    slack: float,
     sign: int,
     rotation: Real,
     unit: Complex,
@@ -325,11 +348,14 @@ def _close(
     at: int,
     length: int,
 ) -> float:
-    """Solve a closure: e^{iφ} and the rates of φ, margin and its rate; returns the sine that vanishes at its limit."""
+    """Solve a closure: e^{iφ} and the rates of φ, margin and its rate; returns the sine that vanishes at its limit.
+
+    ``slack`` is what r is the rounded difference of, where that is more than |k|.
+    """
     square = k[0].real * k[0].real + k[0].imag * k[0].imag
     size = math.sqrt(square)
     excess = (size - r[0]) * (size + r[0])
-    exists = size > COINCIDENT * reach and excess >= -AT_LIMIT * square
+    exists = size > COINCIDENT * reach and excess >= -AT_LIMIT * size * max(size, slack)
     margins[closing, 0, design, at] = excess / norm
     if length > 1:
         margins[closing, 1, design, at] = 2.0 * ((k[0].conjugate() * k[1]).real - r[0] * r[1]) / norm

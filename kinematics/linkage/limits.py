@@ -95,7 +95,7 @@ def limit_positions(
     branch : Branch
         The branch that holds its reference.
     links, slides : names
-        Links, and joints of slides as :class:`MechanismMotion` names them.
+        Links, and slides by their names.
 
     Returns
     -------

@@ -186,6 +186,12 @@ class Mechanism:
                 require(name, "positive", length, length > TOO_SHORT * size)
 
     @property
+    def slide_names(self) -> tuple[str, ...]:
+        """A name for each slide: its joint, with the slide's number where the joint has several."""
+        joints = [slide.joint for slide in self.slides]
+        return tuple(f"{name}_{k}" if joints.count(name) > 1 else name for k, name in enumerate(joints))
+
+    @property
     def driven_by_slide(self) -> bool:
         """Whether the input is the displacement of a slide."""
         return self.input not in self.links

@@ -116,6 +116,8 @@ class _TrueInput:
         self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
         self.chains = chains(curves) if curves else np.empty((0, 0, 4))
         self.slide = mechanism.driven_by_slide
+        pushed = [s.link == GROUND and s.joint == mechanism.input for s in mechanism.slides]
+        self.pushed = mechanism.slide_names[pushed.index(True)] if self.slide else ""
         self.base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
         self.link = {GROUND: self.base, self.base: GROUND}.get(mechanism.input, mechanism.input)
         arcs = positive_arcs(self._rates, [Domain(c.low, c.high, c.closed, 2 * CELLS) for c in curves])
@@ -131,7 +133,7 @@ class _TrueInput:
         signs = self.closures.signs(place.signs)
         motion = drive_one(self.other, place.theta[:, None], signs, order)
         if self.slide:
-            return np.asarray(motion.slides[self.mechanism.input][..., 0])
+            return np.asarray(motion.slides[self.pushed][..., 0])
         turned = _rotation(self.other, motion, self.link) - _rotation(self.other, motion, self.base)
         turned[0] += self.mechanism.reference_input
         return turned

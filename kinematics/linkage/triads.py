@@ -164,6 +164,11 @@ class Track:
             turns += 1
         return found
 
+    @property
+    def given_up(self) -> bool:
+        """Whether a way was so long that it was left before its end: what is not reached may then exist."""
+        return any(side.given_up for side in self._sides.values())
+
     def _followed(self, rotation: Real) -> Real:
         found = np.full((len(self._loops.links), len(rotation)), np.nan)
         for sign, side in self._sides.items():
@@ -181,7 +186,7 @@ class _Side:
         self._sign = sign
         self._nodes, self._reach = np.zeros(1), np.zeros(1)
         self._angles = np.zeros((1, len(loops.links)))
-        self._ended = False
+        self._ended = self.given_up = False
         self._reach[0] = _reach(*self._equations, 0.0, self._angles[0])
 
     @property
@@ -204,7 +209,7 @@ class _Side:
     def _extend(self, target: float) -> None:
         while not self._ended and self._nodes[-1] + self._reach[-1] < target:
             if len(self._nodes) > MOST_NODES:
-                self._ended = True
+                self._ended = self.given_up = True
                 return
             nodes, reach = np.empty(NODES_AT_ONCE), np.empty(NODES_AT_ONCE)
             angles = np.empty((NODES_AT_ONCE, self._angles.shape[1]))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from kinematics.linkage.branches import cycle
+from kinematics.linkage.branches import Branch, cycle
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism, TopologyError
 
@@ -23,6 +23,19 @@ def effort(mechanism: Mechanism) -> int:
     return dyads * (1 << dyads) * round(cycle(mechanism) / (2.0 * math.pi))
 
 
+def listed_branches(mechanism: Mechanism) -> list[Branch]:
+    """All branches of a mechanism, the reference's circuit first.
+
+    Raises
+    ------
+    TopologyError
+        Where they cannot be listed, or not while a client waits.
+    """
+    if effort(mechanism) > MOST_EFFORT:
+        raise TopologyError("there are too many assemblies, or turns until all repeats, to be listed at once")
+    return branches(mechanism)
+
+
 def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
     """First and last input of the cycle, radians, or lengths along the input slide.
 
@@ -33,7 +46,7 @@ def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
     """
     at = float(mechanism.reference_input)
     try:
-        here = holding_reference(mechanism, branches(mechanism))
+        here = holding_reference(mechanism, listed_branches(mechanism))
     except TopologyError:
         here = None
     if (here is None or here.full) and mechanism.driven_by_slide:

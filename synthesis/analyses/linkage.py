@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
 
+from kinematics.linkage.closures import decompose
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
@@ -62,8 +63,8 @@ class LinkageAnalysisRequest(AnalysisRequest):
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.mechanism()
-        if effort(mechanism) > MOST_EFFORT:
-            raise MechanismError("", "this has too many assemblies to be analysed at once")
+        if decompose(mechanism).left and effort(mechanism) > MOST_EFFORT:
+            raise MechanismError("", "this has too many links that no dyads close to be followed at once")
         slide, motion = mechanism.driven_by_slide, self.motion
         if slide and motion.speed_rpm is not None:
             raise MechanismError("", "a slider drives this; state its speed as `speed`, length units a second")
@@ -165,7 +166,12 @@ class LinkageAnalysis(Answer):
     transmission_angle: list[float | None] = Field(description="Least of the transmission angles, degrees.")
     transmission_angles: dict[str, list[float | None]] = Field(description="At each dyad, by its link.")
     torque_ratio: dict[str, list[float | None]] = Field(
-        description="Output torque over input torque without losses: the mechanical advantage of each grounded link."
+        description="Output torque over input torque without losses: the mechanical advantage of each grounded link. "
+        "A slider that drives brings a force in place of the torque."
+    )
+    force_ratio: dict[str, list[float | None]] = Field(
+        description="Output force over input torque (or over a driving slider's force) without losses, of each slide "
+        "on the ground; per length unit."
     )
     instant_centers: dict[str, Points] = Field(
         description="Of every two links, as `link-link`; null where they move parallel. For a single position only."
@@ -176,6 +182,7 @@ class LinkageAnalysis(Answer):
     limits: dict[str, list[float] | None] = Field(
         description="Extreme angles (positions) of the grounded links (slides) on the reference's branch; null: turns."
     )
+    notes: list[str] = Field(description="What is left out, by the name of the field, and why.")
     fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
 
 

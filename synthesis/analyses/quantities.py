@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from kinematics.linkage import barker_type
 from kinematics.linkage.branches import Branch
 from kinematics.linkage.classification import BARKER
-from kinematics.linkage.drive import MechanismMotion, drive
+from kinematics.linkage.closures import decompose
+from kinematics.linkage.drive import MechanismMotion, drive, given_up
 from kinematics.linkage.instant_centers import instant_centers
-from kinematics.linkage.limits import branches, holding_reference, limit_positions, toggles
+from kinematics.linkage.limits import holding_reference, limit_positions, toggles
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.program import program_of
+from synthesis.analyses.cycle import listed_branches
 from synthesis.analyses.fourbar import fourbar_of
 
 Real = NDArray[np.float64]
@@ -46,10 +48,11 @@ def analysis(
         "slides": {name: _travel(jet) for name, jet in motion.slides.items()},
         "transmission_angle": [math.nan] * len(at) if least is None else _listed(least),
         "transmission_angles": transmission,
-        "torque_ratio": _torque_ratios(mechanism, motion),
+        "torque_ratio": _ratios(motion, motion.angles, _grounded(mechanism)),
+        "force_ratio": _ratios(motion, motion.slides, _outputs(mechanism)),
         "instant_centers": _instant_centers(mechanism, motion) if len(at) == 1 else {},
         "classification": _classification(mechanism),
-        **_global(mechanism, tracked),
+        **_global(mechanism, tracked, _undefined(mechanism, sines)),
     }
 
 
@@ -90,11 +93,12 @@ def _travel(jet: Real) -> dict[str, list[float]]:
     return dict(zip(("position", "velocity", "acceleration", "jerk"), map(_listed, jet), strict=True))
 
 
-def _torque_ratios(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, list[float]]:
+def _ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
+    """Input speed over that of links or slides: by virtual work the output's torque or force over the input's."""
     found = {}
-    for name in _grounded(mechanism):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = motion.input[1] / motion.angles[name][1]
+    for name in outputs:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            ratio = motion.input[1] / moved[name][1]
         found[name] = _listed(np.where(np.isfinite(ratio), ratio, np.nan))
     return found
 
@@ -110,6 +114,12 @@ def _grounded(mechanism: Mechanism) -> list[str]:
     """Links pinned to the ground, but for the input."""
     ground = set(mechanism.links[GROUND])
     return [n for n, listed in mechanism.links.items() if n not in (GROUND, mechanism.input) and ground & set(listed)]
+
+
+def _outputs(mechanism: Mechanism) -> list[str]:
+    """Names of the slides on the ground, but for the input."""
+    named = zip(mechanism.slide_names, mechanism.slides, strict=True)
+    return [name for name, slide in named if slide.link == GROUND and slide.joint != mechanism.input]
 
 
 def _classification(mechanism: Mechanism) -> dict[str, Any]:
@@ -141,14 +151,34 @@ def _tracked(mechanism: Mechanism, branch: Branch) -> dict[str, dict[str, list[f
     return {name: {"x": _listed(jet[0].real), "y": _listed(jet[0].imag)} for name, jet in motion.joints.items()}
 
 
-def _global(mechanism: Mechanism, tracked: bool) -> dict[str, Any]:
-    """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed."""
+def _undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
+    """What is not in the answer of a motion, and why."""
+    notes = []
+    if decompose(mechanism).left and not sines:
+        notes.append(
+            "transmission_angle: no link is held by three legs on the input and the ground, so that no leg pushes on a "
+            "path of its own; torque_ratio and force_ratio say how force is passed on"
+        )
+    elif not sines:
+        notes.append("transmission_angle: nothing closes here, for gears alone drive every link")
+    if given_up(mechanism):
+        notes.append(
+            "valid: links of very different lengths; the motion was followed for a great many steps, and where it was "
+            "left a position is given as not valid though it may exist"
+        )
+    return notes
+
+
+def _global(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, Any]:
+    """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed, and the note says why."""
     try:
-        found = branches(mechanism)
-    except TopologyError:
-        return {"toggles": [], "circuits": [], "limits": {}}
+        found = listed_branches(mechanism)
+    except TopologyError as error:
+        return {"toggles": [], "circuits": [], "limits": {}, "notes": [*notes, f"circuits, toggles, limits: {error}"]}
     scale = (lambda x: x) if mechanism.driven_by_slide else math.degrees
     here = holding_reference(mechanism, found)
+    if here is None:
+        notes = [*notes, "limits: the reference stands where several branches meet, or on none"]
     circuits: dict[int, list[dict[str, Any]]] = {}
     for branch in found:
         listed = circuits.setdefault(branch.circuit, [])
@@ -157,7 +187,7 @@ def _global(mechanism: Mechanism, tracked: bool) -> dict[str, Any]:
     limits: dict[str, list[float] | None] = {}
     if here is not None:
         links = _grounded(mechanism)
-        slides = [s.joint for s in mechanism.slides if s.link == GROUND and s.joint != mechanism.input]
+        slides = _outputs(mechanism)
         angles, travels = limit_positions(mechanism, here, links, slides)
         for name, span in zip(links, angles, strict=True):
             limits[name] = None if span is None else [math.degrees(x) for x in span]
@@ -167,4 +197,5 @@ def _global(mechanism: Mechanism, tracked: bool) -> dict[str, Any]:
         "toggles": [scale(x) for x in toggles(mechanism, found)],
         "circuits": [{"branches": listed} for listed in circuits.values()],
         "limits": limits,
+        "notes": notes,
     }

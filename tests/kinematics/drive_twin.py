@@ -58,16 +58,15 @@ class Angle(NamedTuple):
     margin: np.ndarray
 
 
-def solve_angle(k, r, sign, reach):
+def solve_angle(k, r, sign, reach, slack=0.0):
     """Angle φ with Re(e^{−iφ} k) = r by arctangents: φ = κ − sign · arccos(r / |k|)."""
     length = np.abs(k[0])
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = (length - r[0]) * (length + r[0])
-        square = length * length
         margin = [excess]
         if len(k) > 1:
             margin.append(2.0 * ((np.conj(k[0]) * k[1]).real - r[0] * r[1]))
-        exists = (excess >= -AT_LIMIT * square) & (length > COINCIDENT * reach)
+        exists = (excess >= -AT_LIMIT * length * np.maximum(length, slack)) & (length > COINCIDENT * reach)
         root = np.sqrt(np.where(exists, np.maximum(excess, 0.0), np.nan))
         rows = [np.angle(k[0]) - sign * np.arctan2(root, r[0])]
         determinant = sign * root
@@ -187,17 +186,41 @@ class _Drive:
         self._close(step, np.conj(normal) * (self.points[step.joint] - self.points[step.pin]), r, sign, 1.0, 1.0)
 
     def _RRR(self, step, sign):
+        """Both links by the law of cosines; of the two rotations the shorter link's own is the better one."""
         first = (self.frame.joints[step.joint] - self.frame.joints[step.pin])[..., None]
         second = (self.frame.joints[step.joint] - self.frame.joints[step.other_pin])[..., None]
         base = self.points[step.other_pin] - self.points[step.pin]
-        r = product(base, np.conj(base)).real / 2.0
-        r[0] += (np.abs(first) - np.abs(second)) * (np.abs(first) + np.abs(second)) / 2.0
-        square = np.abs(first * second) ** 2
-        self._close(step, np.conj(first) * base, r, sign, np.abs(first), square)
-        self._turn_towards(step.other, step.other_pin, step.joint)
+        half = product(base, np.conj(base)).real / 2.0
+        difference = (np.abs(first) - np.abs(second)) * (np.abs(first) + np.abs(second)) / 2.0
+        one, other = half.copy(), half.copy()
+        one[0] += difference
+        other[0] -= difference
+        slack = 2.0 * half[0]
+        mine = solve_angle(np.conj(first) * base, one, sign, np.abs(first), slack)
+        theirs = solve_angle(-np.conj(second) * base, other, -sign, np.abs(second), slack)
+        shorter = np.broadcast_to(np.abs(second) < np.abs(first), self.shape)
+        joint = np.where(
+            shorter,
+            self._tip(step.other_pin, theirs.rotation, second),
+            self._tip(step.pin, mine.rotation, first),
+        )
+        toward_mine = angle_of((joint - self.points[step.pin]) / first)
+        toward_theirs = angle_of((joint - self.points[step.other_pin]) / second)
+        self._turn(step.link, step.pin, np.where(shorter, toward_mine, mine.rotation))
+        self._turn(step.other, step.other_pin, np.where(shorter, theirs.rotation, toward_theirs))
         # sin of the angle between the two links: the base's part of |k| is not the force's
         with np.errstate(divide="ignore", invalid="ignore"):
-            self.sines[step.link] = self.sines[step.link] * np.abs(base[0]) / np.abs(second)
+            by_mine, by_theirs = (
+                sine * np.abs(base[0]) / np.abs(arm)
+                for sine, arm in ((mine.sine, second), (-theirs.sine, first))
+            )
+        self.sines[step.link] = np.where(shorter, by_theirs, by_mine)
+        square = np.abs(first * second) ** 2
+        self.margins[step.link] = np.where(shorter, theirs.margin, mine.margin) / square
+
+    def _tip(self, pin, rotation, arm):
+        """The far end of a link that turns by ``rotation`` about a known pin."""
+        return self.points[pin] + turn(rotation) * arm
 
     def _close(self, step, k, r, sign, reach, square):
         angle = solve_angle(k, r, sign, reach)

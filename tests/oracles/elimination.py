@@ -238,7 +238,9 @@ class Elimination:
         per_level = [self.candidates(level) for level in range(self.count)]
         for choice in itertools.product((1, -1), repeat=self.count):
             folds: dict[float, int] = {}
-            for level, near in enumerate(per_level):
+            for level in range(self.count):
+                # Folds of the dyads before bound where this one's radicand is real: its sign may differ across a gap.
+                near = np.concatenate(per_level[: level + 1])
                 for cut in np.mod(self._polished(level, near, choice), period):
                     folds.setdefault(round(float(cut), 13), level)
             cuts = sorted(folds)

@@ -222,10 +222,10 @@ class Turning:
         else:
             last = way[-1] + (way[0] - way[-1] + np.pi) % (2.0 * np.pi) - np.pi
             total = last - way[0]
+        if len(stops) % 2 or not (stops or abs(total) > 1.0):
+            raise Undecided("a stop that rounding hides beside a fold")
         if not stops:
             return [Between(0.0, abs(float(total)), True)]
-        if len(stops) % 2:
-            raise Undecided("a stop that rounding hides beside a fold")
         places = [float(way[k]) for k in stops]
         places.append(places[0] + float(total) if self.wraps else places[0])
         found = []

@@ -312,3 +312,57 @@ def test_gears_of_many_turns_are_searched_by_their_turns_alone():
     (branch,) = [b for circuit in slow["circuits"] for b in circuit["branches"] if b["reference"]]
     assert branch["full"] is False
     assert len(slow["toggles"]) == 30
+
+
+def test_a_slide_passes_on_force_by_virtual_work():
+    """Norton, Sec. 6.5: what goes in as torque and speed comes out as force and speed; driven back, the reciprocal."""
+    by_crank = {**DRIVEN, "driven_by": "crank"}
+    forward = answer(by_crank, at=50.0)
+    force, speed = forward["force_ratio"]["B"][0], forward["slides"]["B"]["velocity"][0]
+    assert force * speed == pytest.approx(1.0)
+    assert forward["torque_ratio"] == {}
+    back = answer(DRIVEN, at=forward["slides"]["B"]["position"][0], speed=1.0)
+    assert abs(back["torque_ratio"]["crank"][0]) == pytest.approx(abs(speed))
+    assert back["force_ratio"] == {}
+
+
+def test_what_is_left_out_is_said():
+    assert answer(FOURBAR)["notes"] == []
+    free = answer(stated("stephenson_2 driven by its output"))
+    assert set(free["transmission_angle"]) == {None} or all(math.isnan(x) for x in free["transmission_angle"])
+    (note,) = free["notes"]
+    assert note.startswith("transmission_angle: ")
+    assert any(math.isfinite(x) for x in free["torque_ratio"]["input"])
+    endless = answer({**FIVEBAR, "gear_ratio": math.sqrt(2.0), "phase": 60.0})
+    (note,) = endless["notes"]
+    assert endless["circuits"] == []
+    assert note.startswith("circuits, toggles, limits: ")
+    assert sum(endless["valid"]) > 300
+
+
+def test_a_joint_on_two_slides():
+    """A slider-crank whose slider pin runs in the slot of a lever: tan of the lever's angle is x over its height."""
+    a = 2.0 * complex(math.cos(0.9), math.sin(0.9))
+    b = a.real + math.sqrt(49.0 - a.imag**2)
+    lever = math.degrees(math.atan2(5.0, b - 1.0))
+    mechanism = {
+        "type": "skeleton",
+        "skeleton": {
+            "joints": {"O2": [0.0, 0.0], "O4": [1.0, -5.0], "A": [a.real, a.imag], "B": [b, 0.0], "C": [b, 2.0]},
+            "links": [{"name": "ground", "joints": ["O2", "O4"]}, {"name": "crank", "joints": ["O2", "A"]},
+                      {"name": "coupler", "joints": ["A", "B"]}, {"name": "lever", "joints": ["O4", "C"]}],
+            "slides": [{"joint": "B", "link": "ground", "point": [b, 0.0], "angle": 0.0},
+                       {"joint": "B", "link": "lever", "point": [b, 0.0], "angle": lever}],
+            "input_link": "crank",
+        },
+    }  # fmt: skip
+    found = answer(mechanism)
+    assert all(found["valid"])
+    assert set(found["slides"]) == {"B_0", "B_1"}
+    assert set(found["force_ratio"]) == {"B_0"}
+    theta = np.radians(found["input_angle"])
+    x = 2.0 * np.cos(theta) + np.sqrt(49.0 - (2.0 * np.sin(theta)) ** 2)
+    assert found["joints"]["B"]["x"] == pytest.approx(list(x))
+    turned = np.radians(np.array(found["links"]["lever"]["angle"]) - math.degrees(math.atan2(7.0, b - 1.0)) + lever)
+    assert list((x - 1.0) * np.sin(turned)) == pytest.approx(list(5.0 * np.cos(turned)), abs=1e-9)
+    assert found["limits"]["B_0"] == pytest.approx([5.0 - b, 9.0 - b])

@@ -124,6 +124,23 @@ def test_three_positions_with_rotations(case: Case) -> None:
     assert design.metrics.barker == "RRR1"
 
 
+@pytest.mark.parametrize("case", cases("path_timing"))
+def test_three_points_with_crank_rotations(case: Case) -> None:
+    """Path generation with timing has the equations of Example 5-2: β is prescribed, α the free choice."""
+    assert case.inputs is not None
+    x = case.inputs
+    points = [0j, *(cmath.rect(x[name]["mag"], math.radians(x[name]["ang"])) for name in ("P21", "P31"))]
+    turned = [0.0, x["alpha2"], x["alpha3"]]
+    design = only_design(
+        positions=[{"x": p.real, "y": p.imag, "angle": a} for p, a in zip(points, turned, strict=True)],
+        input_side={"rotations": [x["beta2"], x["beta3"]]},
+        output_side={"rotations": [x["gamma2"], x["gamma3"]]},
+    )
+    joints = {name: complex(*point) for name, point in design.mechanism.skeleton.joints.items()}
+    w, z = joints["A"] - joints["O2"], joints["P"] - joints["A"]
+    case.check(W_x=w.real, W_y=w.imag, Z_x=z.real, Z_y=z.imag)
+
+
 @pytest.mark.parametrize("case", cases("motion_3pos_fixed_pivots"))
 def test_three_positions_with_fixed_pivots(case: Case) -> None:
     """Example 5-3 and Problems 5-11, 5-19, 5-26: both fixed pivots given."""
