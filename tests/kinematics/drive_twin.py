@@ -211,8 +211,7 @@ class _Drive:
         # sin of the angle between the two links: the base's part of |k| is not the force's
         with np.errstate(divide="ignore", invalid="ignore"):
             by_mine, by_theirs = (
-                sine * np.abs(base[0]) / np.abs(arm)
-                for sine, arm in ((mine.sine, second), (-theirs.sine, first))
+                sine * np.abs(base[0]) / np.abs(arm) for sine, arm in ((mine.sine, second), (-theirs.sine, first))
             )
         self.sines[step.link] = np.where(shorter, by_theirs, by_mine)
         square = np.abs(first * second) ** 2

@@ -46,7 +46,8 @@ def misfits(mechanism: Mechanism, found: MechanismMotion, way: np.ndarray) -> np
 # -- position ----------------------------------------------------------------------------------------------------------
 
 
-def closes(name: str, seed: int, n: int, m: int) -> None:
+def closes(name: str, seed: int, n: int, m: int) -> int:
+    """How many positions of designs × inputs exist; all of them keep the constraints."""
     rng, mechanism = batch(name, seed, n)
     way = ways(rng, mechanism, m)
     found = drive(mechanism, mechanism.reference_input[:, None] + way, order=0)
@@ -54,6 +55,7 @@ def closes(name: str, seed: int, n: int, m: int) -> None:
     assert misfits(mechanism, found, way)[found.valid].max() <= CLOSURE
     for values in (*found.joints.values(), *found.angles.values(), *found.slides.values()):
         np.testing.assert_array_equal(np.isfinite(values[0]), found.valid)
+    return int(found.valid.sum())
 
 
 @pytest.mark.parametrize("name", FEW)
@@ -553,3 +555,27 @@ def test_class_three_reference_at_a_toggle_is_refused() -> None:
     beside = catalogue.sixbar("stephenson_2", {**joints, "B": joints["B"] + 1e-3})
     way = np.array([-1e-3, 0.0, 1e-3])
     assert drive(beside, beside.reference_input + way).valid.sum() == 2
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("short", ["coupler", "output"])
+def test_a_link_that_is_short_beside_the_others_keeps_its_length(share: float, short: str) -> None:
+    """Its square is lost in theirs, so that it must be the one that is solved for; whichever link comes first."""
+    rng = np.random.default_rng(14)
+    n = 200
+    pin, turn = np.exp(1j * rng.uniform(-np.pi, np.pi, n)), np.exp(1j * rng.uniform(-np.pi, np.pi, n))
+    a, o4 = (pin, 3.0 + 0j) if short == "output" else (3.0 + pin, 3.0 + 0j)
+    b = o4 + share * turn if short == "output" else a + share * turn
+    joints = {"O2": np.zeros(n), "O4": np.full(n, 3.0), "A": a, "B": b, "P": b + 1j}
+    on = ("O4", "B", "P") if short == "output" else ("A", "B", "P")
+    other = ("A", "B") if short == "output" else ("O4", "B")
+    named = {"coupler": other, "output": on} if short == "output" else {"coupler": on, "output": other}
+    mechanism = Mechanism(joints, {"ground": ("O2", "O4"), "input": ("O2", "A"), **named}, "input")
+    at = mechanism.reference_input[:, None] + share * np.array([0.0, 0.1, -0.1])
+    found = drive(mechanism, at, order=0)
+    assert found.valid[:, 0].all()
+    assert found.valid.mean() > 0.5
+    for one, two in ((on[0], "B"), (other[0], "B"), (on[0], "P"), ("B", "P")):
+        length = np.abs(joints[one] - joints[two])[:, None]
+        off = np.abs(np.abs(found.joints[one][0] - found.joints[two][0]) - length)
+        assert off[found.valid].max() < 5e-15, (one, two)
