@@ -104,7 +104,7 @@ def kinematic_chains(link_set: tuple[int, ...]) -> list[Joints]:
     found = []
     for paths in _multigraphs(orders, alike):
         same = alike[(paths[alike[:, :, None], alike[:, None, :]] == paths).all(axis=(1, 2))]
-        seen = set()
+        seen: set[Lengths] = set()
         for lengths in _lengths(paths, binary):
             if lengths in seen:
                 continue
