@@ -20,6 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synthesis.numerics.portions import in_portions
 from synthesis.path.traced_curves import (
     FOURBAR,
     GEARED_FIVEBAR,
@@ -54,6 +55,9 @@ TOO_LONG = 4.0
 
 ANYWHERE = np.array([[-np.inf, np.inf]] * 4)
 """Fixed pivots without limits."""
+
+PORTION = 5
+"""Starts that a thread takes at a time; some milliseconds."""
 
 CYCLE_CHECKS = 48
 """Crank positions a cycle at which a geared fivebar must not jam."""
@@ -346,18 +350,25 @@ def descend(
     x, theta = np.array(x, np.float64), np.array(theta, np.float64)
     w = np.ones(len(points)) if weights is None else np.ascontiguousarray(weights, np.float64)
     cost = np.empty(len(x))
-    _descend_all(
-        family,
-        x,
-        np.ascontiguousarray(sign, np.float64),
-        ratio,
-        theta,
-        np.ascontiguousarray(points, np.complex128),
-        w,
-        longest if math.isfinite(longest) else 1e300,
-        cycle,
-        ANYWHERE if within is None else np.ascontiguousarray(within, np.float64),
-        iterations,
-        cost,
-    )
+    signs, targets = np.ascontiguousarray(sign, np.float64), np.ascontiguousarray(points, np.complex128)
+    inside = ANYWHERE if within is None else np.ascontiguousarray(within, np.float64)
+    limit = longest if math.isfinite(longest) else 1e300
+
+    def work(some: slice) -> None:
+        _descend_all(
+            family,
+            x[some],
+            signs[some],
+            ratio,
+            theta[some],
+            targets,
+            w,
+            limit,
+            cycle,
+            inside,
+            iterations,
+            cost[some],
+        )
+
+    in_portions(work, len(x), PORTION)
     return Descent(x, theta, cost)

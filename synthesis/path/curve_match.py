@@ -127,7 +127,7 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
             told=told,
         )
         drawn, swept, followed = drawn + count, swept + starts.swept, followed + len(starts.x)
-        refined, least = _refined(target, starts, limits, least)
+        refined, least = _refined(target, starts, limits, least, traded=problem.rank_by != "accuracy")
         candidates += refined
         progress(0.8 * (n + 1.0) / len(families), "best shapes refined")
     candidates = _running(candidates)
@@ -186,8 +186,13 @@ def _families(problem: PathProblem) -> list[int]:
     return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
 
 
-def _refined(target: _Target, starts: Starts, limits: Limits, least: float) -> tuple[list[_Candidate], float]:
-    """The starts' linkages after least squares, and the least cost at equal steps, of earlier families too."""
+def _refined(
+    target: _Target, starts: Starts, limits: Limits, least: float, *, traded: bool
+) -> tuple[list[_Candidate], float]:
+    """The starts' linkages after least squares, and the least cost at equal steps, of earlier families too.
+
+    ``traded``: with linkages among them that trade accuracy for force transmission.
+    """
     if not len(starts.x):
         return [], least
     family, longest = starts.family, limits.longest
@@ -220,7 +225,7 @@ def _refined(target: _Target, starts: Starts, limits: Limits, least: float) -> t
     free = [(_candidate(target, family, fine.x[k], float(signs[k]), fine.theta[k]), k) for k in order]
     free.sort(key=lambda pair: pair[0].error)
     found, offered = [], list[_Candidate]()
-    usable = limits.usable()
+    usable = limits.usable() if traded else None
     for candidate, k in free[: LIMITED if limits.free_pivots else PINNED]:
         descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
         kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, limits)

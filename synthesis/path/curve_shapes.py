@@ -18,6 +18,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.stats import qmc
 
+from synthesis.numerics.portions import THREADS
 from synthesis.path.traced_curves import (
     CRANK_ROCKER,
     DOUBLE_CRANK,
@@ -49,7 +51,7 @@ SHAPE_POINTS = 48
 SWEEP_STEPS = 96
 """Crank positions a candidate is swept at, before it is resampled."""
 
-CHUNK = 4096
+CHUNK = 2048
 """Candidates that are compared at a time; what they need stays in the cache."""
 
 WINDOW_LENGTHS = (1.0, 0.85, 0.7, 0.58, 0.47, 0.38, 0.3, 0.22, 0.15)
@@ -57,6 +59,9 @@ WINDOW_LENGTHS = (1.0, 0.85, 0.7, 0.58, 0.47, 0.38, 0.3, 0.22, 0.15)
 
 WINDOW_STARTS = 24
 """Places along the curve at which a window begins."""
+
+WINDOW_POINTS = 24
+"""Points in which a window is compared with a stroke: half of a shape's, as there are so many windows."""
 
 SAME_PLACE = 0.12
 """Starts whose pivots agree to this share of the task's size lead to the same linkage; one of them is followed."""
@@ -211,7 +216,9 @@ def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Found:
     shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
     _resample(curves, ring, shapes)
     rho, where = np.empty(len(curves)), np.zeros((len(curves), 3), np.int64)
-    _windows(shapes, ring, np.array(WINDOW_LENGTHS), WINDOW_STARTS, target, rho, where)
+    few, _ = equal_steps(target, False, WINDOW_POINTS)
+    few -= few.mean()
+    _windows(shapes, ring, np.array(WINDOW_LENGTHS), WINDOW_STARTS, few / np.linalg.norm(few), rho, where)
     return _Found(np.minimum(rho, 1.0), where)
 
 
@@ -349,18 +356,25 @@ def alike(
     drawn = draw(family, count, ratio, seed)
     rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
     swept = 0
-    for first in range(0, count, CHUNK):
-        rows = slice(first, min(first + CHUNK, count))
-        curves, _, good, rings = _swept(drawn, family, rows, ratio)
+
+    def compare(first: int) -> list[tuple[NDArray[np.int64], _Found]]:
+        curves, _, good, rings = _swept(drawn, family, slice(first, min(first + CHUNK, count)), ratio)
+        found = []
         for ring in (True, False):
             chosen = np.flatnonzero(good & (rings == ring))
-            if (closed and not ring) or not len(chosen):
-                continue
-            found = _alike_closed(curves[chosen], shape) if closed else _alike_open(curves[chosen], ring, shape)
-            rho[first + chosen], where[first + chosen] = found.rho, found.where
-            swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
-        if told is not None:
-            told(rows.stop / count)
+            if (ring or not closed) and len(chosen):
+                some = curves[chosen]
+                found.append((first + chosen, _alike_closed(some, shape) if closed else _alike_open(some, ring, shape)))
+        return found
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        chunks = range(0, count, CHUNK)
+        for first, parts in zip(chunks, pool.map(compare, chunks), strict=True):
+            for chosen, found in parts:
+                rho[chosen], where[chosen] = found.rho, found.where
+                swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
+            if told is not None:
+                told(min(first + CHUNK, count) / count)
     order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
     order = order[rho[order] > 0.0]
     x, theta, sign = _placed(family, drawn, order, where[order], target, closed, ratio)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from synthesis.designs import FourbarMechanism, PathDesign, PathResult
 from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.portions import in_portions
 from synthesis.path.coupler_curve import ANY, PHASE, POINT, UNKNOWNS, closure, lengths_of
 from synthesis.path.harvest import Harvest
 from synthesis.path.limits import LIMITS, SHORTEST, SIGN, Usable, setting_of
@@ -29,6 +30,9 @@ from synthesis.verification.path import verify_path
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Progress = Callable[[float, str], None]
+
+PORTION = 16
+"""Starts that a thread takes at a time; some milliseconds."""
 
 TIMED_STARTS, FREE_STARTS = 6000, 1300
 """Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more."""
@@ -209,13 +213,14 @@ def _all_held(
     chosen: list[Candidate], task: PointTask, thinned: PointTask, told: Callable[[float], None]
 ) -> list[Candidate]:
     """Candidates brought to minima within their limits, without those that cannot be."""
-    found = []
-    for n, candidate in enumerate(chosen):
-        told(n / len(chosen))
-        held = _held(candidate, task, thinned)
-        if held is not None:
-            found.append(held)
-    return found
+    found: list[Candidate | None] = [None] * len(chosen)
+
+    def work(some: slice) -> None:
+        found[some] = [_held(candidate, task, thinned) for candidate in chosen[some]]
+
+    told(0.0)
+    in_portions(work, len(chosen), 1)
+    return [candidate for candidate in found if candidate is not None]
 
 
 def _flock_of(found: list[Candidate], case: tuple[int, int, float]) -> _Flock:
@@ -253,7 +258,12 @@ def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng:
         count = math.ceil(TIMED_SHARE * count)
     else:
         runs = np.zeros((count, n))
-        free_starts(draws, along(rows), rows, setting, flock.starts, runs, flock.costs)
+        places = along(rows)
+
+        def begin(some: slice) -> None:
+            free_starts(draws[some], places, rows, setting, flock.starts[some], runs[some], flock.costs[some])
+
+        in_portions(begin, count, PORTION)
         flock.states[:, :n] = runs
     for share, steps, tolerance in THINNING:
         flock = _best(flock, max(math.ceil(share * count), 1))
@@ -324,7 +334,12 @@ def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: fl
         return
     multipliers = np.zeros(LIMITS + 1)
     multipliers[LIMITS] = SOFT
-    descend_each(path_rows, flock.starts, flock.states, rows, setting, multipliers, steps, tolerance, flock.costs)
+
+    def work(some: slice) -> None:
+        starts, states, costs = flock.starts[some], flock.states[some], flock.costs[some]
+        descend_each(path_rows, starts, states, rows, setting, multipliers, steps, tolerance, costs)
+
+    in_portions(work, len(flock.costs), PORTION)
 
 
 def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
