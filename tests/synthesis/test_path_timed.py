@@ -1,5 +1,6 @@
 """Exact points at prescribed crank angles: all fourbars through five, and usable ones through fewer."""
 
+import cmath
 import math
 from fractions import Fraction
 
@@ -9,6 +10,12 @@ import pytest
 from kinematics.linkage import OPEN, cognates, positions
 from synthesis.dispatch import solve
 from synthesis.kinds import parse_problem
+from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.motion.dyads import DyadConditions
+from synthesis.motion.sections import section
+from synthesis.motion.task import MotionTask
+from synthesis.verification.path import verify_path
+from tests.cases import cases
 from tests.oracles.five_positions import real_dyads
 from tests.oracles.fourbar_sweep import coupler_points
 from tests.oracles.timed_points import fourbars
@@ -54,6 +61,30 @@ def test_all_fourbars_through_five_timed_points():
     assert is_among(result, cognates(CRANK_ROCKER).right.linkage, size)
     for design in result.designs:
         assert measured_at_angles(design, points, ANGLES) < 1e-16 * size**2
+
+
+def test_three_timed_points_with_chosen_coupler_rotations_as_printed():
+    """The dyad of Norton 5.35 with the crank's rotations given and the coupler's chosen, and the linkage driven."""
+    (case,) = (param.values[0] for param in cases("path_timing"))
+    given = case.inputs
+    points = np.array([0.0, *(cmath.rect(given[k]["mag"], math.radians(given[k]["ang"])) for k in ("P21", "P31"))])
+    alpha, beta, gamma = (
+        np.radians([0.0, given[f"{name}2"], given[f"{name}3"]]) for name in ("alpha", "beta", "gamma")
+    )
+    # The crank and the coupler change places: the body of this problem of motion turns as the crank does.
+    exchanged = MotionTask(points, np.exp(1j * beta), 0j, 1.0)
+    dyads = section(exchanged, DyadConditions(rotations=(alpha[1], alpha[2]))).dyads
+    ((o2, moving),) = zip(dyads.fixed, dyads.moving, strict=True)
+    w, z = -moving, moving - o2
+    case.check(W_x=w.real, W_y=w.imag, Z_x=z.real, Z_y=z.imag)
+    system = np.exp(1j * np.stack([gamma, alpha], axis=1))[1:] - 1.0
+    output, arm = np.linalg.solve(system, points[1:])
+    joints = FourbarConfiguration(*map(complex, (o2, o2 + w, -arm, -arm - output, points[0])))
+    problem = parse_problem(
+        {"kind": "path", "timing": "prescribed", "points": listed(points, np.degrees(beta)), **EVERYTHING}
+    )
+    design = verify_path(problem, fourbar_mechanism(joints))
+    assert max(target.residual for target in design.targets) < 1e-12
 
 
 def test_points_at_angles_of_the_other_way_round():
