@@ -34,8 +34,11 @@ Progress = Callable[[float, str], None]
 PORTION = 16
 """Starts that a thread takes at a time; some milliseconds."""
 
-TIMED_STARTS, FREE_STARTS = 6000, 1300
-"""Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more."""
+TIMED_STARTS, FREE_STARTS, STARTS_OF_MANY = 6000, 1800, 1300
+"""Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more.
+The last is for free timing with more than :data:`FEW` points, which take longer."""
+
+FEW = 18
 
 TIMED_SHARE = 0.15
 """Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
@@ -43,7 +46,7 @@ TIMED_SHARE = 0.15
 THINNING = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
 """Rounds in which starts are thinned out: the share of them that goes on, steps, and tolerance of their descents."""
 
-KICKS, KICKED, COPIES, KICK = 3, 16, 6, 0.5
+KICKS, KICKED, COPIES, KICK = 3, 24, 6, 0.5
 """Rounds in which the best are changed and descend again: how many of them, copies of each, and the standard deviation
 of the change in the logarithms of lengths."""
 
@@ -249,7 +252,8 @@ def _directed(rows: Real, way: int) -> Real:
 def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Flock:
     """Where random starts of one class and assembly lead, thinned out on the way."""
     n = len(rows)
-    count = (TIMED_STARTS if problem.prescribed else FREE_STARTS) // cases
+    free = FREE_STARTS if n <= FEW else STARTS_OF_MANY
+    count = (TIMED_STARTS if problem.prescribed else free) // cases
     unknowns = UNKNOWNS if problem.prescribed and problem.crank_phase == "free" else PHASE
     draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAWS - 4))], axis=1)
     flock = _empty(count, unknowns, n)
