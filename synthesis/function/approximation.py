@@ -48,8 +48,8 @@ SAME_START = 0.12
 DRAWN, TURNING_KEPT, WIDEST = 40_000, 4000, 100.0
 """Random lengths where a link must turn through, those kept of them, and their widest link ratio."""
 
-LEVELLED = 60
-"""Starts whose errors are levelled, the best ones."""
+LEVELLED, ONWARD = 60, 2
+"""Starts whose errors are levelled, the best ones; and level ones from which a best that has not arrived goes on."""
 
 
 class Effort(NamedTuple):
@@ -132,7 +132,9 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
         # The best is on its way still: on to the end, and from where its errors are level if that is better.
         best = optima[0]
         level, theirs = levelled(task, best.generator[None], np.array([best.sign]))
-        onward = [(best.generator, best.sign), *zip(limits.contained(level), theirs, strict=True)]
+        level = limits.contained(level)
+        nearest = np.argsort(descent.sizes(level, theirs))[:ONWARD]
+        onward = [(best.generator, best.sign), *zip(level[nearest], theirs[nearest], strict=True)]
         again = [improve(generator, float(sign), MANY.rounds) for generator, sign in onward]
         optima[0] = min([best, *again], key=lambda one: one.error)
     return Found([one for one in optima if math.isfinite(one.error)], judged, len(chosen))

@@ -123,7 +123,9 @@ def _level(
         step[on] = -np.einsum("kij,kj->ki", np.linalg.pinv(slopes[on]), unlevel[on, 0])
         ends = np.concatenate([-places[:, :1], places, 2.0 * math.pi - places[:, -1:]], axis=1)
         room = FARTHEST * np.minimum(np.diff(ends)[:, :-1], np.diff(ends)[:, 1:])
-        too_far = (np.abs(step) / room).max(axis=1)
+        with np.errstate(divide="ignore"):
+            # Places that have come together have no room; what rests needs none.
+            too_far = np.divide(np.abs(step), room, out=np.zeros_like(step), where=step != 0.0).max(axis=1)
         places = places + step / np.maximum(too_far, 1.0)[:, None]
         generators = np.where(on[:, None], found[:, 0], generators)
     reached = np.isfinite(least)

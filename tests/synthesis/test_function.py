@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import Fourbar, SliderCrank, positions, slider_crank
+from synthesis.function.approximation import _Descent
 from synthesis.function.closure import FOURBAR
 from synthesis.function.levelling import levelled
 from synthesis.function.precision import many_exact
@@ -401,6 +402,16 @@ class TestApproximations:
             assert 50.0 - 1e-6 <= abs(design.metrics.input_rotation) <= 100.0 + 1e-6
             assert 50.0 - 0.01 <= abs(design.metrics.output_range) <= 100.0 + 0.01
 
+    def test_an_answer_near_rounding_is_not_refined_without_end(self, monkeypatch):
+        # The error falls to 2e-6 degrees and goes on falling: of two hundred level linkages only the best are improved.
+        done = []
+        improve = _Descent.minimax
+        monkeypatch.setattr(_Descent, "minimax", lambda *given: done.append(1) or improve(*given))
+        function = {"name": "power", "exponent": 1.5, "x": [3.511, 4.147]}
+        best = solved(function=function, input_range=60.0, constraints=UNBOUNDED).designs[0]
+        assert best.structural_error.max < 1e-5
+        assert len(done) <= 30
+
     @pytest.mark.slow
     def test_an_open_range_is_one_more_free_number(self):
         result = solved(function={"name": "logarithm", "x": [1.0, 2.0]}, input_range=60.0)
@@ -504,6 +515,15 @@ def test_what_cannot_be_meant_is_refused_at_its_field(fields, path):
         {"function": {"name": "power", "exponent": 50.0, "x": [0.0, 1.0]}, "input_range": 90.0, "output_range": 90.0},
         {"function": {"name": "logarithm", "x": [1.0, 2.0]}, "input_range": 0.02, "output_range": 0.02},
         {"function": {"name": "logarithm", "x": [1.0, 2.0]}, "input_range": 350.0, "output_range": 350.0},
+        # An interval at the edge of rounding, where places at which the error vanishes come together.
+        {
+            "mechanism": "slider_crank",
+            "function": {"name": "linear", "x": [0.9869167335353609, 0.9869167345353609]},
+            "input_range": 60.0,
+            "output_range": 50.0,
+            "zeros": {"input": -107.8, "output": None},
+            "constraints": {"max_link_ratio": 2.0},
+        },
     ],
 )
 def test_what_is_hard_is_answered_and_verified(fields):
