@@ -37,6 +37,9 @@ def driven_sheet(
     diagrams: Sequence[Diagram],
     tables: Sequence[Block],
     marks: Sequence[float] = (),
+    *,
+    heights: tuple[float, float] = HEIGHTS,
+    subject: str = "a linkage",
 ) -> str:
     """A complete SVG document.
 
@@ -56,10 +59,14 @@ def driven_sheet(
         Below the drawing, and beside it.
     marks : sequence of float
         Angles that the diagrams mark, degrees.
+    heights : pair of float
+        Least and greatest height of the drawing, pixels.
+    subject : str
+        What is drawn, for who does not see it.
     """
     width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
     wanted = (width - 100.0) / max(box.width, 1e-300) * box.height + 130.0
-    height = math.floor(min(max(wanted, HEIGHTS[0]), HEIGHTS[1]))
+    height = math.floor(min(max(wanted, heights[0]), heights[1]))
     view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), 50.0, 26.0)
     panel = drawing(shown, view, unit)
     parts = [panel.add(*overlay(view))]
@@ -73,7 +80,7 @@ def driven_sheet(
         parts.append(drawn)
     return document(
         heading,
-        f"Drawing of a linkage. {words}.",
+        f"Drawing of {subject}. {words}.",
         (WIDTH, float(math.ceil(max(bottom, y) + EDGE - 8.0))),
         text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
         text(EDGE, 55.0, shortened(words, 12.5, WIDTH - 2.0 * EDGE), 12.5, fill=GREY),

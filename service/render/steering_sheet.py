@@ -10,22 +10,17 @@ from pydantic import TypeAdapter
 from kinematics.linkage.mechanism import GROUND
 from service.render import blocks
 from service.render.diagrams import Diagram
-from service.render.linkage_drawing import Scene, drawing
+from service.render.driven_sheet import driven_sheet, verdict
+from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
-from service.render.svg import Box, Viewport, clean, document, shortened, text
-from service.render.symbols import CURVE, GREY, INK, OUTPUT
+from service.render.svg import clean
+from service.render.symbols import CURVE, OUTPUT
 from synthesis.designs import Check, SteeringDesign
 from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import SteeringProblem
 
-WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
-"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
-
 HEIGHTS = (260.0, 520.0)
 """Least and greatest height of the drawing, pixels."""
-
-DIAGRAM = 170.0
-"""Height of a diagram, pixels."""
 
 NAMES = {"fourbar": "Ackermann steering linkage", "davis": "Davis steering gear"}
 """What the types are called on a sheet."""
@@ -45,35 +40,21 @@ def steering_sheet(design: SteeringDesign, problem: SteeringProblem, title: str)
     traced = [joint for joint in mechanism.joints if joint not in mechanism.links[GROUND]]
     shown = Scene(mechanism, np.array([straight, *locks]), [])
     name = NAMES[design.mechanism.type]
-    heading = clean(title) or name
-    width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
-    box = shown.box()
-    wanted = (width - 100.0) / max(box.width, 1e-300) * box.height + 130.0
-    height = math.floor(min(max(wanted, HEIGHTS[0]), HEIGHTS[1]))
-    view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), 50.0, 26.0)
-    parts = [drawing(shown, view, problem.length_unit)]
-    bottom = view.panel.high
-    for diagram in _diagrams(design):
-        parts.append(diagram.draw(Box(EDGE, bottom + 8.0, EDGE + width, bottom + 8.0 + DIAGRAM), []))
-        bottom += 8.0 + DIAGRAM
-    y = TOP - 6.0
-    for block in _tables(design, problem, box.diagonal, traced):
-        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
-        parts.append(drawn)
-    full = float(math.ceil(max(bottom, y) + EDGE - 8.0))
-    failed = [c for c in design.verification.checks if not c.passed]
-    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
     words = (
         f"{name}, tie rod {metrics.tie_rod} the kingpins, to a lock of {angle(problem.lock)}; "
-        f"lengths in {problem.length_unit}; {verdict}"
+        f"lengths in {problem.length_unit}; {verdict(design.verification)}"
     )
-    return document(
-        heading,
-        f"Drawing of a steering mechanism, straight and at both locks. {words}.",
-        (WIDTH, full),
-        text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, words, 12.5, fill=GREY),
-        *parts,
+    return driven_sheet(
+        clean(title) or name,
+        words,
+        shown,
+        shown.box(),
+        problem.length_unit,
+        lambda view: [],
+        _diagrams(design),
+        _tables(design, problem, shown.box().diagonal, traced),
+        heights=HEIGHTS,
+        subject="a steering mechanism, straight and at both locks",
     )
 
 

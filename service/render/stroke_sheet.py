@@ -11,23 +11,18 @@ from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import GROUND, Mechanism
 from service.render import blocks
 from service.render.diagrams import Diagram
-from service.render.linkage_drawing import Scene, drawing
+from service.render.driven_sheet import driven_sheet, verdict
+from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
-from service.render.svg import Box, Viewport, clean, document, shortened, text
-from service.render.symbols import CURVE, GREY, INK, OUTPUT
+from service.render.svg import clean
+from service.render.symbols import CURVE, OUTPUT
 from synthesis.designs import Check, QuickReturnDesign
 from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import QuickReturnProblem
 from synthesis.quick_return.verification import OUTPUTS
 
-WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
-"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
-
 HEIGHTS = (400.0, 700.0)
 """Least and greatest height of the drawing, pixels."""
-
-DIAGRAM = 170.0
-"""Height of a diagram, pixels."""
 
 SAMPLES = 721
 """Points of a diagram's curve."""
@@ -50,35 +45,22 @@ def stroke_sheet(design: QuickReturnDesign, problem: QuickReturnProblem, title: 
     mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
     traced = [joint for joint in mechanism.joints if joint not in mechanism.links[GROUND] and joint != "P"]
     shown = Scene(mechanism, np.radians([target.input_angle for target in design.targets]), traced)
-    name = NAMES[design.mechanism.type]
-    heading = clean(title) or name
-    width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
-    box = shown.box()
-    wanted = (width - 100.0) / max(box.width, 1e-300) * box.height + 130.0
-    height = math.floor(min(max(wanted, HEIGHTS[0]), HEIGHTS[1]))
-    view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), 50.0, 26.0)
-    parts = [drawing(shown, view, problem.length_unit)]
-    bottom = view.panel.high
-    for diagram in _diagrams(design, mechanism, problem.length_unit):
-        parts.append(diagram.draw(Box(EDGE, bottom + 8.0, EDGE + width, bottom + 8.0 + DIAGRAM), []))
-        bottom += 8.0 + DIAGRAM
-    y = TOP - 6.0
-    for block in _tables(design, problem, box.diagonal):
-        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
-        parts.append(drawn)
-    full = float(math.ceil(max(bottom, y) + EDGE - 8.0))
-    failed = [c for c in design.verification.checks if not c.passed]
-    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
+    name, unit = NAMES[design.mechanism.type], problem.length_unit
     words = (
-        f"{name} with a time ratio of {length(design.metrics.time_ratio)}; lengths in {problem.length_unit}; {verdict}"
+        f"{name} with a time ratio of {length(design.metrics.time_ratio)}; lengths in {unit}; "
+        f"{verdict(design.verification)}"
     )
-    return document(
-        heading,
-        f"Drawing of a mechanism at both limit positions of its output. {words}.",
-        (WIDTH, full),
-        text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, words, 12.5, fill=GREY),
-        *parts,
+    return driven_sheet(
+        clean(title) or name,
+        words,
+        shown,
+        shown.box(),
+        unit,
+        lambda view: [],
+        _diagrams(design, mechanism, unit),
+        _tables(design, problem, shown.box().diagonal),
+        heights=HEIGHTS,
+        subject="a mechanism at both limit positions of its output",
     )
 
 
