@@ -20,6 +20,7 @@ from service.render import blocks
 from service.render.blocks import Block
 from service.render.diagrams import ticks
 from service.render.labels import Labels
+from service.render.linkage_drawing import framed
 from service.render.numbers import angle, length, small
 from service.render.svg import (
     Box,
@@ -139,17 +140,7 @@ def _drawing(
     unit: str,
 ) -> Element:
     panel = view.panel
-    group = element(
-        "svg",
-        element("rect", x=panel.left, y=panel.low, width=panel.width, height=panel.height, fill="#fff", stroke=PALE),
-        x=panel.left,
-        y=panel.low,
-        width=panel.width,
-        height=panel.height,
-        viewBox=" ".join(f"{v:g}" for v in (panel.left, panel.low, panel.width, panel.height)),
-        overflow="hidden",
-        data_view="main",
-    )
+    group = framed(panel)
     labels = Labels(panel.grown(-3.0))
     tilt = math.radians(_slide_angle(design))
     if "O4" not in joints:

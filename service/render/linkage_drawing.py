@@ -103,10 +103,9 @@ class Scene:
         return found
 
 
-def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
-    """The linkage at its inputs in a panel of the sheet, with labels and a scale bar."""
-    panel = view.panel
-    group = element(
+def framed(panel: Box) -> Element:
+    """The empty panel of a drawing; what is added to it and lies beyond is cut off."""
+    return element(
         "svg",
         element("rect", x=panel.left, y=panel.low, width=panel.width, height=panel.height, fill="#fff", stroke=PALE),
         x=panel.left,
@@ -117,6 +116,12 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
         overflow="hidden",
         data_view="main",
     )
+
+
+def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
+    """The linkage at its inputs in a panel of the sheet, with labels and a scale bar."""
+    panel = view.panel
+    group = framed(panel)
     labels = Labels(panel.grown(-3.0))
     if shown.target is not None:
         demanded = path(
