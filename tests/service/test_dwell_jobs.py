@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 
+from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented
 
 TASKS = {
@@ -15,15 +15,6 @@ TASKS = {
     "dwell_slider": {"output": {"type": "slider", "stroke": 40.0}},
     "dwell_slot": {"mechanism": "straight_slot", "output": {"type": "rocker", "swing": 50.0}},
 }
-
-
-def finished(client, problem):
-    """The job of a problem, when it has ended."""
-    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
-    while job["status"] in ("queued", "running"):
-        time.sleep(0.2)
-        job = client.get(f"/v1/jobs/{job['id']}").json()
-    return job
 
 
 @pytest.mark.timeout(300)

@@ -3,12 +3,12 @@
 import json
 import re
 import socket
-import time
 
 import pytest
 
 from service.api.prefer import wait_seconds
 from synthesis.kinds import KINDS
+from tests.service.answers import finished
 
 
 def test_health(client):
@@ -58,10 +58,7 @@ def test_every_kind_is_listed_with_an_example_that_runs(client):
         assert set(kind) == {"kind", "title", "description", "schema", "example", "files"}
         assert kind["schema"]["type"] == "object"
         assert kind["title"]
-        job = client.post("/v1/jobs", json={"problem": kind["example"]}, headers={"Prefer": "wait=30"}).json()
-        while job["status"] in ("queued", "running"):
-            time.sleep(0.2)
-            job = client.get(f"/v1/jobs/{job['id']}").json()
+        job = finished(client, kind["example"])
         assert job["status"] == "succeeded"
         assert job["result"]["designs"]
 

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 
 from synthesis.kinds import example
+from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented, joint
 
 
 @pytest.mark.timeout(300)
 def test_the_example_is_solved_drawn_and_driven(client):
     problem = example("parallel_motion")
-    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
-    while job["status"] in ("queued", "running"):
-        time.sleep(0.2)
-        job = client.get(f"/v1/jobs/{job['id']}").json()
+    job = finished(client, problem)
     assert job["status"] == "succeeded"
     assert job["result"]["designs"]
     for n, design in enumerate(job["result"]["designs"]):

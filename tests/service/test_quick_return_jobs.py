@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
-import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
 
 from synthesis.kinds import KINDS
+from tests.service.answers import drawn, finished
 
 EXAMPLES = KINDS["quick_return"].problem.model_config["json_schema_extra"]["examples"]
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 def solved(client, problem):
-    answer = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"})
-    assert answer.status_code == 200, answer.text
-    job = answer.json()
+    job = finished(client, problem)
     assert job["status"] == "succeeded"
     return job
 
@@ -32,17 +29,9 @@ def test_examples_are_solved_drawn_and_driven(client, example):
         assert design["verification"]["passed"]
         assert math.isclose(design["metrics"]["time_ratio"], example["time_ratio"], abs_tol=1e-9)
         place = f"/v1/jobs/{job['id']}/designs/{n}"
-        drawing = client.get(f"{place}.svg")
-        assert drawing.status_code == 200, drawing.text
-        root = ElementTree.fromstring(drawing.text)
-        joints = {e.get("data-joint") for e in root.iter(f"{SVG}circle")} - {None}
-        assert joints == set(design["mechanism"]["skeleton"]["joints"])
+        root = drawn(client, place, design)
         assert len([g for g in root.iter() if g.get("data-configuration")]) == 2
         assert {g.get("data-diagram") for g in root.iter() if g.get("data-diagram")} == {"output", "rate"}
-        for form in ("gif", "dxf", "csv"):
-            file = client.get(f"{place}.{form}")
-            assert file.status_code == 200, file.text
-            assert len(file.content) > 10_000
         motion = client.get(f"{place}/motion?steps=720")
         assert motion.status_code == 200, motion.text
         moved = motion.json()

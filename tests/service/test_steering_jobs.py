@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ElementTree
-
 import pytest
 
 from synthesis.kinds import example
-
-SVG = "{http://www.w3.org/2000/svg}"
+from tests.service.answers import drawn, finished
 
 
 @pytest.fixture(scope="module")
 def job(server):
-    answer = server.client.post("/v1/jobs", json={"problem": example("steering")}, headers={"Prefer": "wait=30"})
-    assert answer.status_code == 200, answer.text
-    return answer.json()
+    return finished(server.client, example("steering"))
 
 
 def test_the_example_has_linkages_and_gears(job):
@@ -27,17 +22,9 @@ def test_the_example_has_linkages_and_gears(job):
 def test_designs_are_drawn_and_driven(client, job):
     for n, design in enumerate(job["result"]["designs"]):
         place = f"/v1/jobs/{job['id']}/designs/{n}"
-        drawing = client.get(f"{place}.svg")
-        assert drawing.status_code == 200, drawing.text
-        root = ElementTree.fromstring(drawing.text)
-        joints = {e.get("data-joint") for e in root.iter(f"{SVG}circle")} - {None}
-        assert joints == set(design["mechanism"]["skeleton"]["joints"])
+        root = drawn(client, place, design)
         assert len([g for g in root.iter() if g.get("data-configuration")]) == 3
         assert {g.get("data-diagram") for g in root.iter() if g.get("data-diagram")} == {"outer", "error"}
-        for form in ("gif", "dxf", "csv"):
-            file = client.get(f"{place}.{form}")
-            assert file.status_code == 200, file.text
-            assert len(file.content) > 10_000
         motion = client.get(f"{place}/motion?steps=36")
         assert motion.status_code == 200, motion.text
         assert all(motion.json()["valid"])

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 
 from synthesis.problems.straight_line import LINE_MECHANISMS
+from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented, joint
-
-
-def finished(client, problem):
-    """The job of a problem, when it has ended."""
-    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"}).json()
-    while job["status"] in ("queued", "running"):
-        time.sleep(0.2)
-        job = client.get(f"/v1/jobs/{job['id']}").json()
-    return job
 
 
 @pytest.mark.parametrize("mechanism", LINE_MECHANISMS)
