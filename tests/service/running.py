@@ -30,7 +30,7 @@ def until(condition, seconds=10.0, what="the condition"):
     while time.monotonic() < deadline:
         if value := condition():
             return value
-        time.sleep(0.01)
+        time.sleep(0.01)  # what is waited for is of any sort, and tells nobody
     raise AssertionError(f"{what} did not come about within {seconds} s")
 
 

@@ -39,7 +39,7 @@ def solve(problem, progress):
         case 105:
             progress(0.0, "waiting")
             while not (FOLDER / "open").exists():
-                time.sleep(0.01)
+                time.sleep(0.01)  # a file tells nobody that it is there
         case 106:
             while not (FOLDER / "open").exists():
                 time.sleep(0.01)
@@ -64,7 +64,7 @@ def solve(problem, progress):
             begin()
             programme.solve(solver="CLARABEL")
         case seed if seed >= TOLD:
-            time.sleep(0.25)
+            time.sleep(0.25)  # so long does the computation take, and the ones below
             progress(0.5, "half")
         case seed if seed >= BRIEF:
             time.sleep(0.02)
@@ -144,7 +144,7 @@ if __name__ in ("__main__", "__mp_main__"):
     dispatch.warm_up_rest = lambda: None
     crash_points()
 if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
-    time.sleep(60)
+    time.sleep(60)  # it is killed before
 
 
 def break_lanes():

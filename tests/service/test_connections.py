@@ -29,7 +29,7 @@ async def app(scope, receive, send):
             # Among the readers, like a callback that waits for an interpreter that another thread holds: the loop
             # looks at its timers after this, and only then for what has arrived.
             os.read(end, 1)
-            time.sleep(0.6)
+            time.sleep(0.6)  # the block itself, well past the moment
             loop.remove_reader(end)
             os.close(end)
             os.close(begin)

@@ -246,6 +246,14 @@ def new_job(store):
     return store.create(tenant="", kind="motion", label=None, problem="{}")
 
 
+async def begun(feed, job):
+    """A stream of the job that has become a listener."""
+    following = asyncio.create_task(stream(feed, job))
+    while not feed.listeners:
+        await asyncio.sleep(0)
+    return following
+
+
 def test_the_store_is_read_once_for_all_listeners(store):
     job = new_job(store)
 
@@ -270,7 +278,7 @@ def test_the_store_is_not_read_for_nobody(store):
         await asyncio.sleep(0.6)  # more than two periods
         assert store.reads == 0
         await stream(feed, store.get(job.id))
-        await asyncio.sleep(0.6)
+        await asyncio.sleep(0.6)  # and again
         return store.reads
 
     assert with_feed(store, listen) <= 1
@@ -280,8 +288,7 @@ def test_a_job_that_is_removed_before_its_end_was_seen(store):
     job = new_job(store)
 
     async def listen(feed):
-        following = asyncio.create_task(stream(feed, job))
-        await asyncio.sleep(0.1)
+        following = await begun(feed, job)
         store.cancel(job.id)
         store.delete(job.id)
         return await following
@@ -320,8 +327,7 @@ def test_listeners_wait_while_the_store_does_not_answer(store):
 
     async def listen(feed):
         store.summaries = out_of_reach
-        following = asyncio.create_task(stream(feed, job))
-        await asyncio.sleep(0.1)
+        following = await begun(feed, job)
         store.cancel(job.id)
         return await following
 
