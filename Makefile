@@ -54,9 +54,10 @@ test-browser: $(STAMP) $(NODE)
 campaign: $(STAMP)
 	$(BIN)/pytest -m campaign $(SPREAD)
 
-# Processes are killed at random and at every write, and what became of the jobs is printed. Ten to twenty minutes.
+# Processes are killed at random and at every write, and what became of the jobs is printed. A quarter of an hour on one
+# machine, and as long on many.
 test-faults: $(STAMP) engines
-	$(BIN)/pytest -m "faults and not cluster" -s -q tests/faults
+	$(BIN)/pytest -m "faults and not cluster" -n 2 -rP -q tests/faults
 	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgres+rabbitmq tests/faults
 
 check: $(STAMP)
