@@ -22,13 +22,13 @@ from sqlalchemy import (
     ColumnElement,
     Connection,
     Engine,
-    RowMapping,
+    Integer,
     and_,
+    bindparam,
     case,
     delete,
     func,
     insert,
-    literal,
     or_,
     select,
     text,
@@ -68,9 +68,10 @@ _HOST_FORGOTTEN_S = 3600.0
 _CROWD = 500
 """More servers' connections than can insert at once: so far from its limit, the queue needs no exact count."""
 
-_ROW = tuple(field.name for field in fields(JobRow))
+_ROW = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
 _SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 _WHOLE = [jobs.c[name] for name in _ROW]
+_STATUS = _ROW.index("status")
 _MESSAGE_LENGTH = 200
 _IDS_AT_ONCE = 500  # databases bound the number of parameters of a statement
 
@@ -128,7 +129,7 @@ class JobStore:
         QueueFull
             When ``max_queued`` jobs are queued already.
         """
-        return self._insert(_new_row(tenant, kind, label, problem), max_queued)
+        return self._insert({**_new_row(tenant, kind, label, problem), **_NO_KEY}, max_queued)
 
     def create_once(
         self,
@@ -192,18 +193,18 @@ class JobStore:
             jobs.c.tenant == tenant, jobs.c.idempotency_key == repeatable.key
         )
         with self._engine.connect() as connection:
-            row = connection.execute(query).mappings().one_or_none()
+            row = connection.execute(query).one_or_none()
         if row is None:
             return None
-        if row["request_hash"] != repeatable.request_hash:
-            raise KeyReused(row["id"])
-        return JobRow(**{name: value for name, value in _values(row).items() if name in _ROW})
+        if row.request_hash != repeatable.request_hash:
+            raise KeyReused(row.id)
+        return JobRow(*_values(row[:-1]))
 
     def get(self, job_id: str) -> JobRow | None:
         """The job, or None where there is none."""
         with self._engine.connect() as connection:
-            row = connection.execute(select(*_WHOLE).where(jobs.c.id == job_id)).mappings().one_or_none()
-        return None if row is None else JobRow(**_values(row))
+            row = connection.execute(_BY_ID, {"job": job_id}).one_or_none()
+        return None if row is None else JobRow(*_values(row))
 
     def unfinished(self) -> dict[str, int]:
         """How many jobs are in each of the states that are not final."""
@@ -218,8 +219,8 @@ class JobStore:
         with self._engine.connect() as connection:
             for start in range(0, len(job_ids), _IDS_AT_ONCE):
                 query = select(*_SUMMARY).where(jobs.c.id.in_(job_ids[start : start + _IDS_AT_ONCE]))
-                for row in connection.execute(query).mappings():
-                    found[row["id"]] = JobSummary(**_values(row))
+                for row in connection.execute(query):
+                    found[row.id] = JobSummary(*_values(row))
         return found
 
     def page(
@@ -240,34 +241,15 @@ class JobStore:
         if before is not None:
             query = query.where(jobs.c.id < before)
         with self._engine.connect() as connection:
-            return [JobSummary(**_values(row)) for row in connection.execute(query).mappings()]
+            return [JobSummary(*_values(row)) for row in connection.execute(query)]
 
     def claim(self, job_id: str, claim: str) -> Claim | None:
         """Take a queued job under the mark ``claim``; None when it is not there to be taken.
 
         Only one of many claimants gets it. Who has got it and does not know may ask again.
         """
-        change = (
-            update(jobs)
-            .where(
-                jobs.c.id == job_id,
-                or_(
-                    jobs.c.status.in_(MOVES["claim"].sources),
-                    and_(jobs.c.status == MOVES["claim"].target, jobs.c.claim == claim),
-                ),
-            )
-            .values(
-                status=MOVES["claim"].target,
-                revision=jobs.c.revision + 1,
-                progress_message="running",
-                started_at=now(),
-                attempt=jobs.c.attempt + 1,
-                claim=claim,
-                due_at=StoreClock() + LEASE_S,
-            )
-        )
         with self._engine.begin() as connection:
-            row = connection.execute(change.returning(jobs.c.attempt, jobs.c.kind, jobs.c.problem)).one_or_none()
+            row = connection.execute(_CLAIM, {"job": job_id, "mark": claim, "moment": now()}).one_or_none()
         return None if row is None else Claim(*row)
 
     def renew(self, claims: Mapping[str, str]) -> set[str]:
@@ -303,24 +285,20 @@ class JobStore:
 
     def succeed(self, job_id: str, attempt: int, result: str) -> bool:
         """End the attempt with its result (JSON text); False when the attempt is no longer the one that counts."""
-        change = self._moved(
-            "succeed", job_id, result=result, progress_fraction=1.0, progress_message="succeeded", finished_at=now()
-        )
-        return self._changed(change.where(jobs.c.attempt == attempt))
+        return self._changed(_SUCCEED, {"job": job_id, "of": attempt, "answer": result, "moment": now()})
 
     def fail(self, job_id: str, attempt: int, error: str) -> bool:
         """End the attempt with an error (JSON text); False when the attempt is no longer the one that counts."""
-        change = self._moved("fail", job_id, error=error, progress_message="failed", finished_at=now())
-        return self._changed(change.where(jobs.c.attempt == attempt))
+        return self._changed(_FAIL, {"job": job_id, "of": attempt, "answer": error, "moment": now()})
 
     def give_up(self, job_id: str, claim: str, error: str) -> bool:
         """Fail the job from outside; for the executor that has it run under this claim, or has been about to."""
-        change = self._moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
+        change = _moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
         return self._changed(change.where(_not_anothers(claim)))
 
     def cancel(self, job_id: str) -> bool:
         """Cancel an unfinished job; False when there is none. No attempt can write to it afterwards."""
-        return self._changed(self._moved("cancel", job_id, progress_message="cancelled", finished_at=now()))
+        return self._changed(_moved("cancel", job_id, progress_message="cancelled", finished_at=now()))
 
     def delete(self, job_id: str) -> bool:
         """Remove a finished job; False when there is none."""
@@ -346,7 +324,7 @@ class JobStore:
 
     def requeue(self, job_id: str, claim: str) -> bool:
         """Put an unfinished job back into the queue because the executor that has it run under this claim stops."""
-        return self._changed(self._moved("requeue", job_id, **_BACK_IN_QUEUE).where(_not_anothers(claim)))
+        return self._changed(_moved("requeue", job_id, **_BACK_IN_QUEUE).where(_not_anothers(claim)))
 
     def requeue_unfinished(self) -> list[str]:
         """Put all unfinished jobs back into the queue and name them, oldest first.
@@ -441,20 +419,22 @@ class JobStore:
         with self._engine.connect() as connection:
             return connection.execute(query).scalar() or 0
 
-    def _moved(self, name: str, job_id: str, **values: Any) -> Any:
-        move = MOVES[name]
-        return (
-            update(jobs)
-            .where(jobs.c.id == job_id, jobs.c.status.in_(move.sources))
-            .values(status=move.target, revision=jobs.c.revision + 1, **values)
-        )
-
-    def _changed(self, change: Any) -> bool:
+    def _changed(self, change: Any, values: Mapping[str, Any] | None = None) -> bool:
         with self._engine.begin() as connection:
-            rows: int = connection.execute(change).rowcount
+            rows: int = connection.execute(change, values).rowcount
         return rows > 0
 
 
+def _moved(name: str, job_id: Any, **values: Any) -> Any:
+    move = MOVES[name]
+    return (
+        update(jobs)
+        .where(jobs.c.id == job_id, jobs.c.status.in_(move.sources))
+        .values(status=move.target, revision=jobs.c.revision + 1, **values)
+    )
+
+
+_NO_KEY: Mapping[str, None] = {"idempotency_key": None, "request_hash": None}
 _BACK_IN_QUEUE: Mapping[str, Any] = {
     "progress_fraction": 0.0,
     "progress_message": "queued",
@@ -470,21 +450,14 @@ def _there(connection: Connection, job_id: str) -> bool:
 
 def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
     """Insert a row unless ``max_queued`` jobs are queued already; tells whether."""
-    row = {**row, "queued_at": StoreClock(), "due_at": StoreClock() + RESEND_S}
     if max_queued is None:
-        connection.execute(insert(jobs).values(row))
+        connection.execute(_INSERT, row)
         return True
-    # Counted by the statement that inserts, so that many who come at once cannot all find the last place.
-    queued = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(max_queued).subquery()
-    count = select(func.count()).select_from(queued)
-    if connection.dialect.name == "postgresql" and connection.execute(count).scalar_one() > max_queued - _CROWD:
+    room = {"most": max_queued}
+    if connection.dialect.name == "postgresql" and connection.execute(_COUNT, room).scalar_one() > max_queued - _CROWD:
         # SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
         connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK)))
-    values = (
-        value if isinstance(value, ColumnElement) else literal(value, jobs.c[name].type) for name, value in row.items()
-    )
-    new = insert(jobs).from_select(list(row), select(*values).where(count.scalar_subquery() < max_queued))
-    return connection.execute(new.execution_options(preserve_rowcount=True)).rowcount > 0
+    return connection.execute(_INSERT_WITH_ROOM, {**row, **room}).rowcount > 0
 
 
 def _not_anothers(claim: str) -> ColumnElement[bool]:
@@ -543,5 +516,60 @@ def _new_row(tenant: str, kind: str, label: str | None, problem: str) -> dict[st
     }
 
 
-def _values(row: RowMapping) -> dict[str, Any]:
-    return {**row, "status": Status(row["status"])}
+def _values(row: Sequence[Any]) -> list[Any]:
+    values = [*row]
+    values[_STATUS] = Status(values[_STATUS])
+    return values
+
+
+# What every job goes through is stated once. SQLAlchemy takes several times as long to put a statement together, and to
+# recognize it in its cache of compiled ones, as the database to execute it.
+_BY_ID = select(*_WHOLE).where(jobs.c.id == bindparam("job"))
+_STORED = [*_new_row("", "", None, ""), *_NO_KEY]
+_TIMES = {"queued_at": StoreClock(), "due_at": StoreClock() + RESEND_S}
+_INSERT = insert(jobs).values(_TIMES)
+_QUEUED = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(bindparam("most", type_=Integer)).subquery()
+_COUNT = select(func.count()).select_from(_QUEUED)
+# Counted by the statement that inserts, so that many who come at once cannot all find the last place.
+_INSERT_WITH_ROOM = (
+    insert(jobs)
+    .from_select(
+        [*_STORED, *_TIMES],
+        select(*(bindparam(name, type_=jobs.c[name].type) for name in _STORED), *_TIMES.values()).where(
+            _COUNT.scalar_subquery() < bindparam("most", type_=Integer)
+        ),
+    )
+    .execution_options(preserve_rowcount=True)
+)
+_CLAIM = (
+    update(jobs)
+    .where(
+        jobs.c.id == bindparam("job"),
+        or_(
+            jobs.c.status.in_(MOVES["claim"].sources),
+            and_(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark")),
+        ),
+    )
+    .values(
+        status=MOVES["claim"].target,
+        revision=jobs.c.revision + 1,
+        progress_message="running",
+        started_at=bindparam("moment"),
+        attempt=jobs.c.attempt + 1,
+        claim=bindparam("mark"),
+        due_at=StoreClock() + LEASE_S,
+    )
+    .returning(jobs.c.attempt, jobs.c.kind, jobs.c.problem)
+)
+_OF_THE_ATTEMPT = jobs.c.attempt == bindparam("of")
+_SUCCEED = _moved(
+    "succeed",
+    bindparam("job"),
+    result=bindparam("answer"),
+    progress_fraction=1.0,
+    progress_message="succeeded",
+    finished_at=bindparam("moment"),
+).where(_OF_THE_ATTEMPT)
+_FAIL = _moved(
+    "fail", bindparam("job"), error=bindparam("answer"), progress_message="failed", finished_at=bindparam("moment")
+).where(_OF_THE_ATTEMPT)
