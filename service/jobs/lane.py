@@ -27,6 +27,7 @@ from ulid import ULID
 
 from service.jobs import faults, worker
 from service.jobs.executor import Changed
+from service.jobs.orphans import tell_children
 from service.jobs.states import Status
 from service.jobs.store import JobStore
 from service.metrics import Metrics
@@ -172,6 +173,7 @@ class Lane(threading.Thread):
             return
         if self._pool is not None:
             self._replace_worker("died_idle")
+        tell_children()
         # spawn: a forked child would inherit the server's threads' locks and open connections.
         self._pool = pebble.ProcessPool(
             max_workers=1, initializer=worker.start, initargs=(self._settings,), context=get_context("spawn")

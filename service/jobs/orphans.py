@@ -12,6 +12,8 @@ import time
 
 _PR_SET_PDEATHSIG = 1
 _WATCH_PERIOD_S = 0.5
+_PARENT = "MECHSYNTH_PARENT_PID"
+"""Not a setting: how a process is told, before it is told anything else, whose child it is."""
 
 
 def die_with(parent_pid: int) -> None:
@@ -34,12 +36,18 @@ def die_with(parent_pid: int) -> None:
 def die_with_parent_from_the_start() -> None:
     """The same, at the first line of our own that a spawned process runs; nothing in any other process.
 
-    What a worker imports before it can be told anything takes a second, and ten on a busy machine. A server that is
-    killed meanwhile would leave it behind for so long.
+    What a worker imports before it can be told anything takes a second, and a minute on a very busy machine. A server
+    that is killed meanwhile would leave it behind for so long. One that was killed before this line has left it to
+    another parent already, so the worker does not ask who that is.
     """
     # The mark that multiprocessing itself goes by while it imports the main module again.
     if sys.platform == "linux" and getattr(multiprocessing.current_process(), "_inheriting", False):
-        die_with(os.getppid())
+        die_with(int(os.environ.pop(_PARENT, os.getppid())))
+
+
+def tell_children() -> None:
+    """Let the processes that this one spawns from now on know whose children they are."""
+    os.environ[_PARENT] = str(os.getpid())
 
 
 def _watch(parent_pid: int) -> None:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
@@ -27,6 +28,7 @@ from tests.service.scripted_server import (
 )
 
 TIMEOUT_S = 4.0
+LATE = (str(Path(__file__).with_name("late_server.py")),)
 
 
 @pytest.fixture(scope="module")
@@ -224,19 +226,22 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
 
 
 @pytest.mark.embedded
-def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path):
+@pytest.mark.parametrize("begun", [True, False], ids=["in our lines", "before our lines"])
+def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path, begun):
     (tmp_path / "slow-start").touch()
+    program = SCRIPTED if begun else LATE
     with (
         (tmp_path / "log").open("wb") as log,
         subprocess.Popen(
-            [sys.executable, *SCRIPTED, "serve"], env=environment(tmp_path, workers=1), stdout=log, stderr=log
+            [sys.executable, *program, "serve"], env=environment(tmp_path, workers=1), stdout=log, stderr=log
         ) as server,
     ):
         (worker,) = until(lambda: workers_of(server.pid), 60.0, "the worker")
-        time.sleep(2.0)  # it has come to the first of our own lines, and is held up in the next ones
+        if begun:
+            time.sleep(2.0)  # it has come to the first of our own lines, and is held up in the next ones
         server.kill()
         server.wait(10)
-        until(lambda: not alive(worker), 5.0, "the end of the worker")
+        until(lambda: not alive(worker), 5.0 if begun else 15.0, "the end of the worker")
 
 
 def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
