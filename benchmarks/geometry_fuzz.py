@@ -155,11 +155,18 @@ def _moved(mechanism: dict[str, Any]) -> str:
     return ""
 
 
+def _begin(kind: str) -> None:
+    """Have the kernels compiled before the first case, which is not to be blamed for it."""
+    from synthesis.dispatch import warm_up_kind
+
+    warm_up_kind(kind)
+
+
 def tally(kind: str, numbers: Iterable[int], workers: int = 1) -> Tally:
     """All the cases, each in a process that can be ended."""
     counted = Tally()
     # A process that has run out of its time is replaced, and nobody else waits.
-    with ProcessPool(max_workers=workers, context=get_context("spawn")) as pool:
+    with ProcessPool(max_workers=workers, context=get_context("spawn"), initializer=_begin, initargs=[kind]) as pool:
         asked = [(number, pool.schedule(run, args=[kind, number], timeout=WALL_S)) for number in numbers]
         for number, answer in asked:
             try:

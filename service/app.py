@@ -69,7 +69,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
             await run_in_threadpool(executor.stop)
             engine.dispose()
 
-    app = _application(lifespan)
+    app = application(lifespan)
     app.state.settings = settings
     app.state.metrics = measured
     return app
@@ -82,10 +82,11 @@ def api_document() -> str:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
 
-    return json.dumps(_application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(application(lifespan).openapi(), indent=1, ensure_ascii=False) + "\n"
 
 
-def _application(lifespan: Lifespan[FastAPI]) -> FastAPI:
+def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
+    """All routes and errors of the service, around whatever its life brings."""
     app = FastAPI(
         title="mechsynth",
         summary="A REST service that designs mechanisms.",

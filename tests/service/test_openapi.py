@@ -1,9 +1,10 @@
 """What the service promises is kept with the source: it does not change by the way."""
 
 import json
+from contextlib import asynccontextmanager
 from pathlib import Path
 
-from service.app import api_document
+from service.app import api_document, application
 
 KEPT = Path(__file__).parents[2] / "docs" / "openapi.json"
 
@@ -27,3 +28,15 @@ def test_the_document_is_the_one_that_is_kept():
 
 def test_the_document_is_written_the_same_way_each_time():
     assert KEPT.read_text(encoding="utf-8") == api_document()
+
+
+def test_every_route_for_tenants_is_in_the_document():
+    """So that what enumerates the document, as the tests of tenants do, forgets no route."""
+
+    @asynccontextmanager
+    async def lifespan(app):
+        yield
+
+    app = application(lifespan)
+    served = {route.path for route in app.state.routes if getattr(route, "path", "").startswith("/v1")}
+    assert served == {path for path in json.loads(KEPT.read_text(encoding="utf-8"))["paths"] if path.startswith("/v1")}

@@ -35,7 +35,7 @@ def kept(tmp_path_factory):
     try:
         with client_with(server, key) as client:
             # The first reader of the document waits for it to be made.
-            assert client.get("/openapi.json").status_code == 200
+            assert client.get("/openapi.json", timeout=300.0).status_code == 200
             server.jobs = [solved(client, kind) for kind in QUICKLY_SOLVED]
         yield server
     finally:
