@@ -41,7 +41,7 @@ def case(kind: str, number: int) -> dict[str, Any]:
     return problem
 
 
-def _numbers(value: Any, *, keys: bool = True) -> Iterator[tuple[Any, Any, str]]:
+def _numbers(value: Any) -> Iterator[tuple[Any, Any, str]]:
     """Every number with its container, its key there, and the name of the field that it belongs to."""
 
     def walk(inside: Any, name: str) -> Iterator[tuple[Any, Any, str]]:
@@ -80,17 +80,17 @@ def _scaled(problem: dict[str, Any], rng: random.Random) -> None:
 
 
 def _one_scaled(problem: dict[str, Any], rng: random.Random) -> None:
-    inside, key, _ = rng.choice(list(_numbers(problem)))
+    inside, key, _ = rng.choice(list(_numbers(problem)) or [({"": 0.0}, "", "")])
     inside[key] = inside[key] * 10.0 ** rng.uniform(-9.0, 9.0)
 
 
 def _extreme(problem: dict[str, Any], rng: random.Random) -> None:
-    inside, key, _ = rng.choice(list(_numbers(problem)))
+    inside, key, _ = rng.choice(list(_numbers(problem)) or [({"": 0.0}, "", "")])
     inside[key] = rng.choice(INTEGERS) if isinstance(inside[key], int) else rng.choice(EXTREMES)
 
 
 def _negated(problem: dict[str, Any], rng: random.Random) -> None:
-    inside, key, _ = rng.choice(list(_numbers(problem)))
+    inside, key, _ = rng.choice(list(_numbers(problem)) or [({"": 0.0}, "", "")])
     inside[key] = -inside[key]
 
 

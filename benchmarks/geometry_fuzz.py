@@ -107,7 +107,7 @@ def _way(kind: str, number: int) -> Outcome:
     if not problem.include_failed and not all(design.verification.passed for design in designs):
         return Outcome("unverified", "a design that failed its checks", wrong=True)
     if designs and number % DRAWN == 0:
-        nan = _drawn(designs[0], problem) or _moved(json.loads(stored)["designs"][0]["mechanism"])
+        nan = _drawn(designs[0], problem) or _moved(stored)
         if nan:
             return Outcome("NaN", nan, wrong=True)
     if designs:
@@ -146,10 +146,14 @@ def _drawn(design: Any, problem: Any) -> str:
     return ""
 
 
-def _moved(mechanism: dict[str, Any]) -> str:
-    from synthesis.analyses import family
+def _moved(stored: str) -> str:
+    from service.api.errors import Refusal
+    from service.api.jobs import motion
 
-    answer = family(mechanism).request.over_the_cycle(mechanism, 36)
+    try:
+        answer = json.loads(motion(stored, "0", 36))
+    except Refusal:
+        return ""
     if "valid" in answer and not any(answer["valid"]):
         return "the motion of the design is not valid anywhere"
     return ""

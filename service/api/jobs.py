@@ -8,7 +8,7 @@ from importlib.metadata import version
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import from_json, to_json
 from starlette.concurrency import run_in_threadpool
 
@@ -403,7 +403,7 @@ class MotionSteps(BaseModel):
         200: {"description": "The motion.", "content": {"application/json": {"schema": ANALYSIS}}},
         **errors.responses(
             e404="There is no such job or design.",
-            e409="The job has no result (yet).",
+            e409="The job has no result (yet), or the design is of a size that is not analysed.",
             e422="A parameter is not valid; `errors` says which.",
             e503="Other analyses have kept this one from being begun.",
         ),
@@ -419,15 +419,28 @@ async def move_design(
     `POST /v1/analyses`.
     """
     _, result = await _solved(desk, tenant, job_id)
-    return await answered(analyst, _motion, result, number, query.steps)
+    return await answered(analyst, motion, result, number, query.steps)
 
 
-def _motion(result: str, number: str, steps: int) -> bytes:
+def motion(result: str, number: str, steps: int) -> bytes:
+    """The motion of design ``number`` of a stored result, in JSON.
+
+    Raises
+    ------
+    Refusal
+        404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
+    """
+    from kinematics import errors as kinematics
     from synthesis.analyses import family
+    from synthesis.mechanisms import MechanismError
 
     designs = from_json(result)["designs"]
     mechanism = designs[_design_index(number, len(designs))]["mechanism"]
-    answer = family(mechanism).request.over_the_cycle(mechanism, steps)
+    try:
+        answer = family(mechanism).request.over_the_cycle(mechanism, steps)
+    except (ValidationError, MechanismError, kinematics.MechanismError):
+        # A design for lengths at the end of what can be stated may itself lie beyond that.
+        raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None
     return to_json(answer, inf_nan_mode="null")
 
 

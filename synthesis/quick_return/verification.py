@@ -77,6 +77,8 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     output = OUTPUTS[design.type]
     try:
         mechanism = _GIVEN.validate_python(told).mechanism()
+        # Where a body stands on the rocker, only the skeleton says.
+        carrier = None if problem.positions is None else _GIVEN.validate_python(design.model_dump()).mechanism()
         here = holding_reference(mechanism, branches(mechanism))
         measured = strokes(mechanism, output)
     except (ValidationError, MechanismError, DimensionError, TopologyError):
@@ -109,7 +111,7 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     )
     checks = [
         *_task_checks(problem, metrics),
-        *_body_checks(problem, design, measured),
+        *_body_checks(problem, design, carrier, measured),
         *_constraint_checks(problem, mechanism, lengths, metrics),
     ]
     return QuickReturnDesign(
@@ -145,7 +147,9 @@ def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> li
     return checks
 
 
-def _body_checks(problem: QuickReturnProblem, design: QuickReturnMechanisms, measured: Strokes) -> list[Check]:
+def _body_checks(
+    problem: QuickReturnProblem, design: QuickReturnMechanisms, mechanism: Mechanism | None, measured: Strokes
+) -> list[Check]:
     """The body on the rocker stands at its two positions when the driven rocker is at its limits.
 
     The skeleton says where the body is fixed on the rocker; nothing else does.
@@ -153,7 +157,7 @@ def _body_checks(problem: QuickReturnProblem, design: QuickReturnMechanisms, mea
     if problem.positions is None:
         return []
     assert isinstance(design, FourbarMechanism)
-    mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
+    assert mechanism is not None
     motion = drive(mechanism, measured.inputs, order=0)
     points = motion.joints["C"][0]
     turned = motion.angles["output"][0] - mechanism.link_angle("output")

@@ -1,8 +1,13 @@
 """``GET /v1/jobs/{id}/designs/{n}/motion``: the cycle of a design that the service has found."""
 
+import copy
+import json
+
 import numpy as np
 import pytest
 
+from service.api import jobs
+from service.api.errors import Refusal
 from tests.service.running import PROBLEM
 from tests.service.test_analyses import assert_as_documented, joint
 
@@ -94,3 +99,11 @@ def test_a_bad_parameter_is_named(client, found, query, path):
     answer = client.get(f"/v1/jobs/{found['id']}/designs/0/motion?{query}")
     assert answer.status_code == 422
     assert [error["path"] for error in answer.json()["errors"]] == [path]
+
+
+def test_a_design_beyond_what_can_be_stated_is_not_moved_but_said_to_be_so(found):
+    result = copy.deepcopy(found["result"])
+    result["designs"][0]["mechanism"]["skeleton"]["joints"]["B"] = [2e9, 0.0]
+    with pytest.raises(Refusal) as refused:
+        jobs.motion(json.dumps(result), "0", 36)
+    assert (refused.value.status, refused.value.type) == (409, "/problems/no-motion")

@@ -44,3 +44,8 @@ def test_what_is_nearly_nothing_is_refused_at_its_field(number):
         parse_problem(stated)
     stated["positions"][0]["x"] = 0.0
     assert parse_problem(stated)
+
+
+@pytest.mark.parametrize(("kind", "number"), [("quick_return", 83), ("steering", 32), ("parallel_motion", 70)])
+def test_what_was_found(kind, number):
+    assert not run(kind, number).wrong
