@@ -62,6 +62,10 @@ FULL_TURN = 2.0 * np.pi
 NEWTON_STEPS = 20
 """Steps at most; from inside the ball three or four do."""
 
+CLOSED = 1e-13
+"""Misfit of the loops, as a part of the size, that a position may have: where the equations are all but singular,
+rounding may keep Newton's method from where the theorem has it, and there is no position to give."""
+
 
 class Loops(NamedTuple):
     """Loop equations of one design: C (loops, links), k and c (loops,), and the names of the unknown links in order."""
@@ -214,7 +218,8 @@ class _Side:
             nodes, reach = np.empty(NODES_AT_ONCE), np.empty(NODES_AT_ONCE)
             angles = np.empty((NODES_AT_ONCE, self._angles.shape[1]))
             nodes[0], reach[0], angles[0] = self._nodes[-1], self._reach[-1], self._angles[-1]
-            count, self._ended = _march(*self._equations, self._sign, target, nodes, reach, angles)
+            count, self._ended, lost = _march(*self._equations, self._sign, target, nodes, reach, angles)
+            self.given_up = self.given_up or lost
             self._nodes = np.concatenate([self._nodes, nodes[1:count]])
             self._reach = np.concatenate([self._reach, reach[1:count]])
             self._angles = np.concatenate([self._angles, angles[1:count]])
@@ -242,8 +247,9 @@ def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> floa
 @njit(cache=True, nogil=True)
 def _march(
     c: Complex, k: Complex, fixed: Complex, sign: float, target: float, nodes: Real, reach: Real, angles: Real
-) -> tuple[int, bool]:
-    """Nodes until the target is passed, the first of them known: how many, and whether a toggle has ended them."""
+) -> tuple[int, bool, bool]:
+    """Nodes until the target is passed, the first of them known: how many, whether they end there, at a toggle or lost,
+    and whether lost."""
     links = c.shape[1]
     phi, value = angles[0].copy(), np.empty(links)
     inverse, slope = np.empty((links, links)), np.empty(links)
@@ -252,15 +258,16 @@ def _march(
     for n in range(1, len(nodes)):
         step = reach[n - 1]
         if step < STALLED:
-            return n, True
+            return n, True, False
         if nodes[n - 1] + step >= target:
-            return n, False
+            return n, False, False
         at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
-        _newton(c, k, fixed, phi, at, to, value, inverse, slope)
+        if not _newton(c, k, fixed, phi, at, to, value, inverse, slope):
+            return n, True, True
         nodes[n], angles[n] = nodes[n - 1] + step, phi
         # Newton's last inverse is that of the solution but for a correction of rounding size.
         reach[n] = _certified(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
-    return len(nodes), False
+    return len(nodes), False, False
 
 
 @njit(cache=True, nogil=True)
@@ -287,14 +294,18 @@ def _near(
         if rotation[n] != at:
             _evaluate(c, k, fixed, phi, at, value, inverse)
             _invert(inverse)
-            _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope)
+            if not _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope):
+                phi[:] = np.nan
 
 
 @njit(cache=True, nogil=True)
 def _newton(
     c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, to: float, value: Real, inverse: Real, slope: Real
-) -> None:
-    """Move a solution at one input to another within its certified step; ``inverse`` is J⁻¹ before and after."""
+) -> bool:
+    """Move a solution at one input to another within its certified step; ``inverse`` is J⁻¹ before and after.
+
+    Returns whether the loops close there.
+    """
     loops = len(k)
     turned = 1j * complex(math.cos(at), math.sin(at)) * (to - at)
     for row in range(loops):
@@ -305,7 +316,11 @@ def _newton(
         _evaluate(c, k, fixed, phi, to, value, inverse)
         _invert(inverse)
         if _subtract(phi, inverse, value) < CONVERGED:
-            break
+            return True
+    _evaluate(c, k, fixed, phi, to, value, inverse)
+    misfit = np.abs(value).max()
+    _invert(inverse)
+    return bool(misfit < CLOSED)
 
 
 @njit(cache=True, nogil=True)

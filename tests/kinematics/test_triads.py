@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
-from kinematics.linkage.drive import decompose, drive
+from kinematics.linkage import catalogue
+from kinematics.linkage.drive import decompose, drive, given_up
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics.mechanism_sampling import CLASS_THREE, take
@@ -226,3 +229,24 @@ def test_an_input_is_reached_from_whichever_side_of_the_reference(name: str) -> 
             for joint, jet in first.joints.items():
                 np.testing.assert_allclose(again.joints[joint][0][both], jet[0][both], atol=1e-9)
     assert bounded > 6
+
+
+def test_all_but_singular_equations_give_no_wrong_position() -> None:
+    """Two fixed pivots a millionth apart and E beside C: a linkage that can nearly turn about O2 as one body."""
+    joints = {
+        "O2": -4.46697e-07 + 6.1903e-07j,
+        "O4": 1.190498e-06 + 2.37395556e-07j,
+        "A": -1.0j,
+        "C": 1.0j,
+        "B": -2.000000566957 - 1.000000260164407j,
+        "D": -1.0j,
+        "E": 8.3e-10 + 0.999999999626716j,
+    }
+    mechanism = catalogue.sixbar("stephenson_2", joints)
+    found = drive(mechanism, np.linspace(0.0, TURN, 361), order=0)
+    assert found.valid.sum() > 50
+    for listed in mechanism.links.values():
+        for one, other in pairwise(listed):
+            length = np.abs(found.joints[one][0] - found.joints[other][0])[found.valid]
+            assert np.abs(length - abs(joints[one] - joints[other])).max() < 1e-12
+    assert found.valid.all() or given_up(mechanism)
