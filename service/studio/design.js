@@ -24,7 +24,7 @@ const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears,
 };
 
-/** @typedef {{stop: () => void}} Moving */
+/** @typedef {{stop: () => void, pause?: () => void}} Moving */
 /** @typedef {{choice: import("./cognates.js").Choice, design: any, motion: any, circuits: any}} Film */
 
 export class Shown {
@@ -111,6 +111,7 @@ export class Shown {
   show(make) {
     this.moving?.stop();
     this.moving = make();
+    if (this.explorer) this.moving.pause?.();
   }
 
   /** The motion of a cognate; null where it cannot be driven. @param {import("./cognates.js").Choice} choice @returns {Promise<Film | null>} */
@@ -138,6 +139,8 @@ export class Shown {
     const inside = el("div");
     const details = el("details", { id: "explore", ontoggle: () => {
       this.explorer?.stop();
+      // Two motions at once are one too many, for the eye and for the display.
+      if (details.open) this.moving?.pause?.();
       this.explorer = details.open ? new Explorer(inside, mechanism, problem, demanded(problem, this.design), this.state) : null;
     } }, el("summary", {}, "Explore: drag its pins"), inside);
     return [details];

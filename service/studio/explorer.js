@@ -73,9 +73,15 @@ export class Explorer {
     };
     dot.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
       dot.setPointerCapture(event.pointerId);
+      // While a pin is led the picture has that to follow; the motion goes on when it is let go.
+      const { playing } = this.player;
+      this.player.stop();
       const move = (/** @type {PointerEvent} */ now) => put(this.view.under(this.picture, now));
       dot.addEventListener("pointermove", move);
-      dot.addEventListener("lostpointercapture", () => dot.removeEventListener("pointermove", move), { once: true });
+      dot.addEventListener("lostpointercapture", () => {
+        dot.removeEventListener("pointermove", move);
+        if (playing && !this.gone.signal.aborted) this.player.play();
+      }, { once: true });
     });
     group.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
       const step = this.view.step(event.shiftKey ? 1 : 10);
@@ -131,6 +137,7 @@ export class Explorer {
         this.curve.removeAttribute("d");
         this.ghost.node.setAttribute("hidden", "");
         const refused = /** @type {api.Refused} */ (error);
+        for (const one of [this.facts, this.checks, this.buttons]) delete one.dataset.said;
         this.facts.replaceChildren(el("dt", {}, "Refused"), el("dd", {}, refused.errors?.[0]?.detail ?? refused.message));
         this.checks.replaceChildren();
         this.buttons.replaceChildren();
@@ -159,10 +166,11 @@ export class Explorer {
       ...(missed.length ? { "Farthest target from the curve": shown(Number(Math.max(...missed).toPrecision(3))) } : {}),
       "Circuits": shown(answer.circuits.length),
     };
-    this.facts.replaceChildren(...Object.entries(facts).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+    renewed(this.facts, Object.entries(facts), ([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
     this.judge(turns, least, grashof, missed);
-    this.buttons.replaceChildren(...beginnings(this.problem, this.skeleton, answer, this.targets).map(({ text, statement }) =>
-      el("button", { type: "button", class: "small", onclick: () => this.state(statement()) }, text)));
+    const offered = () => beginnings(this.problem, this.skeleton, this.motion, this.targets);
+    renewed(this.buttons, offered().map(({ text }) => text), (text) => [el("button", { type: "button", class: "small",
+      onclick: () => offered().filter((one) => one.text === text).forEach(({ statement }) => this.state(statement())) }, text)]);
     this.move(this.player.at);
   }
 
@@ -179,8 +187,8 @@ export class Explorer {
     if (wanted.grashof && wanted.grashof !== "any" && grashof) {
       checks.push([words(wanted.grashof), wanted.grashof === "non_grashof" ? grashof === "rocker_rocker" : grashof === wanted.grashof]);
     }
-    this.checks.replaceChildren(...checks.map(([name, passed]) => el("li", { class: passed ? "good" : "bad" },
-      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, passed ? " passed" : " failed"))));
+    renewed(this.checks, checks, ([name, passed]) => [el("li", { class: passed ? "good" : "bad" },
+      el("span", {}, passed ? "✓ " : "✗ "), name, el("span", { class: "hidden" }, passed ? " passed" : " failed"))]);
   }
 
   /** @param {number} at */
@@ -204,6 +212,17 @@ export class Explorer {
     this.gone.abort();
     this.player.stop();
   }
+}
+
+/**
+ * Fill a place anew where it is to say something else; otherwise the page need not be laid out again.
+ * @template T @param {HTMLElement} place @param {T[]} said @param {(one: T) => Element[]} make
+ */
+function renewed(place, said, make) {
+  const now = JSON.stringify(said);
+  if (place.dataset.said === now) return;
+  place.dataset.said = now;
+  place.replaceChildren(...said.flatMap(make));
 }
 
 /** Of each slide the joint of its own link that its line passes, if there is one. @param {any} skeleton @returns {(string | null)[]} */

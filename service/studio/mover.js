@@ -154,6 +154,10 @@ export class Mover {
     return `${shown(Math.round(10 * input) / 10)}${sliding ? "" : "°"}`;
   }
 
+  pause() {
+    this.player.stop();
+  }
+
   stop() {
     this.player.stop();
   }

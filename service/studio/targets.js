@@ -51,6 +51,8 @@ export function canvas(place, problem, changed) {
   const last = handles.at(-1)?.get() ?? [0, 0];
   const size = (0.4 * WIDTH) / view.scale;
   const how = `Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
+  // An empty plane says nothing: what may be placed in it stands below.
+  picture.toggleAttribute("hidden", !handles.length && !add);
   place.replaceChildren(picture, el("div", { class: "row" },
     add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
     ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {

@@ -224,6 +224,7 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     page = studio.page
     state(page, PLAIN)
     studio.solve()
+    page.wait_for_selector(".moving .live .link")
     page.click("#explore summary")
     page.wait_for_selector("#explore .curve[d]")
     until(lambda: page.locator("#explore dd").count() == 5, 30, "the figures")
@@ -231,7 +232,7 @@ def test_a_pin_is_dragged_and_the_analysis_follows(studio):
     drag(page, "#explore .target:has(text:text-is('O4')) .dot", (40, 25))
     until(lambda: page.get_attribute("#explore .curve", "d") != curve, 30, "another curve")
     until(lambda: page.inner_text("#explore .facts") != figures, 30, "other figures")
-    page.get_by_role("button", name="Begin a statement").click()
+    page.get_by_role("button", name="Begin a statement with these fixed pivots").click()
     begun = stated(page)
     assert begun["input_side"]["fixed_pivot"] == [0, -20]
     assert begun["output_side"]["fixed_pivot"][0] > 20
@@ -257,6 +258,7 @@ def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
     page = studio.page
     state(page, PLAIN)
     studio.solve()
+    page.wait_for_selector(".moving .live .link")
     page.click("#explore summary")
     page.wait_for_selector("#explore .curve[d]")
     page.evaluate(FRAMES)
@@ -273,5 +275,7 @@ def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
     page.mouse.up()
     taken = page.evaluate("frames_ms")
     assert len(taken) >= 40
-    assert statistics.median(taken) <= 50.0
+    median = statistics.median(taken)
+    print(f"the picture follows a dragged pin in {median:.1f} ms (median of {len(taken)} moves)")
+    assert median <= 50.0
     assert len(curves) >= 10, "the curve follows while the pin is dragged, not when it is let go"
