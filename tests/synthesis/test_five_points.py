@@ -1,5 +1,6 @@
 """Five points on given pivots: all solutions, against planted linkages, another formulation, and Newton's method."""
 
+import json
 import math
 
 import numpy as np
@@ -11,6 +12,7 @@ from synthesis.kinds import parse_problem
 from synthesis.path.five_point_start import random_problem, solve_by_monodromy, start
 from synthesis.path.five_point_system import SOLUTIONS, residuals
 from synthesis.path.five_points import five_points
+from tests.cases import HERE
 
 ROCKER = Fourbar(0.0, 8.0 + 1.0j, 2.5, 7.0, 6.0, 4.0 + 3.0j)
 
@@ -146,6 +148,21 @@ def test_a_good_crank_rocker_comes_back_at_any_size_and_place(size, away):
     wanted = np.array([abs(8.0 + 1.0j), 2.5, 7.0, 6.0]) * size
     links = [np.array(list(design.mechanism.links.model_dump().values())) for design in result.designs]
     assert any(np.allclose(found, wanted, rtol=1e-5) for found in links)
+
+
+def test_five_points_on_a_line_have_the_known_real_solutions():
+    """33 finite solutions instead of 36, 15 of them real, as tens of thousands of starts have found (Newton)."""
+    rows = json.loads((HERE / "path_benchmarks.json").read_text(encoding="utf-8"))
+    (row,) = (row for row in rows if row["id"] == "mw7_five_points")
+    points = np.array([complex(*point) for point in row["inputs"]["points"]])
+    o2, o4 = (complex(*pivot) for pivot in row["inputs"]["fixed_pivots"])
+    found = five_points(points, o2, o4, np.random.default_rng(0))
+    assert (found.found, len(found.linkages)) == (33, row["reference"]["value"])
+    assert not found.complete
+    pins = np.array([[one.a - one.p, one.b - one.p] for one in found.linkages])
+    for x_1, x_2, y_1, y_2, *_ in row["reference"]["solutions"]:
+        known = np.array([complex(x_1, y_1), complex(x_2, y_2)])
+        assert min(np.abs(pins - pair).max(axis=1).min() for pair in (known, known[::-1])) < 1e-9
 
 
 def test_solutions_move_with_the_points():
