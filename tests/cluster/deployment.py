@@ -68,6 +68,14 @@ class Deployment:
             raise
         self.clients = [httpx.Client(base_url=server.url, timeout=60.0) for server in self.servers]
 
+    def complete(self):
+        """Start again whatever does not run."""
+        ended = [process for process in (*self.hosts, *self.servers) if process.process.poll() is not None]
+        for process in ended:
+            process.start()
+        for process in ended:
+            until(process.ready, 2 * START_S, f"{process.name} again")
+
     def log(self):
         return (self.folder / "log").read_text()
 

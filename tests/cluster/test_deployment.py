@@ -10,17 +10,26 @@ import pytest
 
 from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment, alive_now
-from tests.service.running import PROBLEM, until
+from tests.service.running import PROBLEM, STOP_S, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE
 
 pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
 
 
 @pytest.fixture(scope="module")
-def deployed(tmp_path_factory):
+def shared(tmp_path_factory):
     deployment = Deployment(tmp_path_factory.mktemp("deployment"), servers=2, hosts=2, workers=1)
     yield deployment
     assert deployment.stop() == [0, 0, 0, 0]
+
+
+@pytest.fixture
+def deployed(shared):
+    """The deployment with all its processes, whatever a test before has left."""
+    (shared.folder / "open").touch()
+    shared.complete()
+    until(lambda: not shared.unfinished(), 120.0, "the end of the jobs before")
+    return shared
 
 
 def post(client, seed, wait=None):
@@ -98,9 +107,9 @@ def test_a_host_that_stops_gives_its_job_to_another(deployed):
     began = time.monotonic()
     for host in deployed.hosts:  # whichever has it
         host.process.send_signal(signal.SIGTERM)
-        assert host.process.wait(15) == 0
-        host.start()
-        until(host.ready, 90.0, "the host again")
+        assert host.process.wait(STOP_S) == 0
+    assert [row[2] for row in deployed.jobs() if row[0] == job["id"]] == ["queued"]
+    deployed.complete()
     reaches(client, job["id"], "running")
     (deployed.folder / "open").touch()
     reaches(client, job["id"], "succeeded")
@@ -121,8 +130,6 @@ def test_a_host_that_is_killed_leaves_no_worker_and_its_job_runs_elsewhere(deplo
     (deployed.folder / "open").touch()
     for job in jobs:
         reaches(client, job["id"], "succeeded")
-    host.start()
-    until(host.ready, 90.0, "the host again")
 
 
 def test_a_store_that_is_away_is_answered_503_and_found_again(deployed):

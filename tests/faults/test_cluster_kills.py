@@ -46,7 +46,7 @@ def test_no_job_is_lost_or_doubled_or_wrong(tmp_path):
                 longest_orphan_s = max(longest_orphan_s, time.monotonic() - died)
                 killed[what] += 1
                 process.start()
-                until(process.ready, START_S, f"{process.name} again")
+                until(process.ready, 4 * START_S, f"{process.name} again")
         until(lambda: not deployment.unfinished(), 300.0, "the end of all jobs")
         jobs = deployment.jobs()
         became = verdict(load.accepted, jobs)
