@@ -160,8 +160,8 @@ def test_five_points_on_a_line_have_the_known_real_solutions():
     assert (found.found, len(found.linkages)) == (33, row["reference"]["value"])
     assert not found.complete
     pins = np.array([[one.a - one.p, one.b - one.p] for one in found.linkages])
-    for x_1, x_2, y_1, y_2, *_ in row["reference"]["solutions"]:
-        known = np.array([complex(x_1, y_1), complex(x_2, y_2)])
+    for x, y, u, v, *_ in row["reference"]["solutions"]:
+        known = np.array([complex(x, y), complex(u, v)])
         assert min(np.abs(pins - pair).max(axis=1).min() for pair in (known, known[::-1])) < 1e-9
 
 
