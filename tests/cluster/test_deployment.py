@@ -181,7 +181,7 @@ def test_connections_that_break_in_a_commit_make_one_job_each(deployed):
 
     def cut():
         with psycopg.connect(url, autocommit=True) as connection:
-            while not done.wait(0.05):
+            while not done.wait(0.3):  # often, and yet there is time for some to end
                 connection.execute(
                     "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "
                     "WHERE datname = current_database() AND pid <> pg_backend_pid()"
