@@ -106,10 +106,8 @@ function field(sheet, schema, name, owner, path, required) {
       return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>
         union(sheet, what.options, owner, name, path));
     case "map":
-      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () => {
-        owner[name] ??= {};
-        return members(sheet, what.item ?? {}, owner[name], path);
-      });
+      return group(sheet, schema, name, note, path, required || !what.nullable, owner, set, () =>
+        members(sheet, what.item ?? {}, owner, name, path));
     case "shapes":
       return shapes(sheet, what, schema, name, note, path, required, owner, set);
     default:
@@ -156,13 +154,16 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
   return /** @type {HTMLElement} */ (inside);
 }
 
-/** Objects by names that are given to them. @param {Sheet} sheet @param {Schema} item @param {Record<string, any>} found @param {string} path */
-function members(sheet, item, found, path) {
+/** Objects by names that are given to them. @param {Sheet} sheet @param {Schema} item @param {any} owner @param {string} field @param {string} path */
+function members(sheet, item, owner, field, path) {
+  /** @type {Record<string, any>} */
+  const found = owner[field] ?? {};
   const name = el("input", { type: "text", "aria-label": "Name of another one", spellcheck: "false" });
   const add = el("button", { type: "button", class: "small", onclick: () => {
     const stated = name.value.trim();
     if (!stated) return name.focus();
-    found[stated] ??= initial(item, sheet.root);
+    // What is only looked at is not stated.
+    owner[field] = { ...found, [stated]: found[stated] ?? initial(item, sheet.root) };
     sheet.rebuild();
   } }, "Add");
   return [...Object.keys(found).flatMap((key) => [
