@@ -29,7 +29,7 @@ def server(tmp_path_factory):
     running = RunningServer(tmp_path_factory.mktemp("studio"))
     # On a busy machine the analysis core is loaded some time after the server is ready; until then it answers 503,
     # which the page bears, but the browser reports.
-    until(lambda: running.client.post("/v1/analyses", json=FOURBAR).status_code == 200, 120, "the analysis core")
+    until(lambda: running.client.post("/v1/analyses", json=FOURBAR).status_code == 200, 300, "the analysis core")
     yield running
     assert running.stop() == 0
 
