@@ -6,9 +6,9 @@ freedoms). Each kind lists such faults by field in ``contradictions``, so that a
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 ABSURD = 1e9
 """Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
@@ -17,17 +17,15 @@ ROUNDED_OFF = 1e-10
 """Lengths below this share of the coordinates that they lie at have lost most of their digits there."""
 
 TINY = 1e-30
-"""Numbers nearer to 0, but not 0, are no measure of anything either; a few of them multiplied are 0."""
+"""Numbers nearer to 0 are read as 0: they are what rounding has left of it, and a few of them multiplied are 0."""
 
 
-def _sizable(number: float) -> float:
-    if number != 0.0 and -TINY < number < TINY:
-        raise ValueError(f"a number that is not 0 must be {TINY:g} at least in size")
-    return number
+def _sizable(number: Any) -> Any:
+    return 0.0 if isinstance(number, float) and -TINY < number < TINY else number
 
 
-Sizable = AfterValidator(_sizable)
-"""Of numbers that have bounds of their own: not so near to 0 that it makes no difference."""
+Sizable = BeforeValidator(_sizable)
+"""Of numbers that have bounds of their own: what is so near to 0 that it makes no difference is 0."""
 
 Number = Annotated[float, Field(strict=True, ge=-ABSURD, le=ABSURD, allow_inf_nan=False), Sizable]
 NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable]

@@ -258,7 +258,7 @@ BAD_MECHANISMS = {
     "a length too many": (changed(FOURBAR, ("links", "rocker"), 1.0), "/mechanism/links/rocker"),
     "a length too few": (changed(FOURBAR, ("links",), {"input": 1.0, "coupler": 1.0}), "/mechanism/links/output"),
     "an absurd pivot": (changed(FOURBAR, ("fixed_pivots", "output"), [1e10, 0.0]), "/mechanism/fixed_pivots/output/0"),
-    "half a pivot": (changed(FOURBAR, ("fixed_pivots", "input"), [1.0]), "/mechanism/fixed_pivots/input/1"),
+    "half a pivot": (changed(FOURBAR, ("fixed_pivots", "input"), [1.0]), "/mechanism/fixed_pivots/input"),
     "one pivot twice": (changed(FOURBAR, ("fixed_pivots", "output"), [0.0, 0.0]), "/mechanism/fixed_pivots"),
     "links that do not reach": (changed(FOURBAR, ("links", "output"), 90.0), "/mechanism/links"),
     "an angle out of reach": ({**STUCK, "reference_input_angle": 180.0}, "/mechanism/reference_input_angle"),

@@ -90,7 +90,7 @@ def test_the_openapi_document_is_complete(openapi):
     assert sorted(ids) == [
         "analyse", "animate_design", "create_job", "delete_job", "draw_design", "export_design_csv",
         "export_design_dxf", "follow_job", "get_job", "healthz", "list_jobs", "list_problems", "metrics",
-        "move_design", "readyz",
+        "move_design", "readyz", "report_job",
     ]  # fmt: skip
     schemas = openapi["components"]["schemas"]
     assert not {"HTTPValidationError", "ValidationError"} & set(schemas)

@@ -5,7 +5,7 @@ import pytest
 from synthesis.analyses import families
 
 DRIVEN = [family.request for family in families() if "motion" in family.request.model_fields]
-LONG = {"time": {"end": 1e9, "step": 5e-324}}
+LONG = {"time": {"end": 1e9, "step": 1e-25}}
 BACKWARDS = {"time": {"start": 1.0, "end": 0.0, "step": 0.1}}
 TWO_SPEEDS = {"from": 0.0, "to": 90.0, "speed": 1.0, "speed_rpm": 60.0}
 
