@@ -205,6 +205,17 @@ def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) 
     return given
 
 
+def followed_to(mechanism: Mechanism, inputs: Real) -> Mask:
+    """Whether the motion of a class III design leads from the reference to inputs, shape (N,), without a toggle.
+
+    A branch of more than a turn has some inputs twice. The positions that :func:`drive` gives are of either place; this
+    takes each input for the place that many full turns away that it says.
+    """
+    at = float(mechanism.reference_input)
+    there: Mask = np.isfinite(_track(mechanism, 0)[1].followed(inputs - at)[0])
+    return there
+
+
 def given_up(mechanism: Mechanism) -> bool:
     """Whether continuation, in drives of this class III design so far, left a way before its end.
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.branches import Branch, cycle, dyadic_branches
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import assembly_signs, drive, drive_one
+from kinematics.linkage.drive import assembly_signs, drive, drive_one, followed_to
 from kinematics.linkage.mechanism import Mechanism
 from kinematics.linkage.other_driver import branches_by_other_driver
 from kinematics.linkage.program import program_of
@@ -51,13 +51,17 @@ def toggles(mechanism: Mechanism, found: list[Branch]) -> list[float]:
 
 
 def holding_reference(mechanism: Mechanism, found: list[Branch]) -> Branch | None:
-    """The branch that the reference configuration lies on; None where the reference is at a toggle of several."""
+    """The branch that the reference configuration lies on; None where the reference is at a toggle of several.
+
+    Of ``found``, the reference's circuit comes first, as in :func:`branches`.
+    """
     at = float(mechanism.reference_input)
     steps = decompose(mechanism)
     period = np.inf if mechanism.driven_by_slide else cycle(mechanism)
     for branch in found:
+        length = branch.high - branch.low
         offset = at - branch.low if mechanism.driven_by_slide else float(np.mod(at - branch.low, period))
-        if not -SAME_TOGGLE <= offset <= branch.high - branch.low + SAME_TOGGLE:
+        if not -SAME_TOGGLE <= offset <= length + SAME_TOGGLE:
             continue
         if branch.signs:
             choice = [
@@ -67,16 +71,24 @@ def holding_reference(mechanism: Mechanism, found: list[Branch]) -> Branch | Non
             ]
             if tuple(choice) == branch.signs:
                 return branch
-        elif branch.full or _reaches_just(mechanism, at - offset, at - offset + branch.high - branch.low):
-            return branch
+        elif branch.full:
+            if followed_to(mechanism, np.array([at - period, at + period])).all():
+                return branch
+        else:
+            # More than a turn long, the branch has the reference's input more than once.
+            turns = 1 if mechanism.driven_by_slide else 1 + int((length + SAME_TOGGLE - offset) // period)
+            lows = [at - offset - turn * period for turn in range(turns)]
+            if any(_reaches_just(mechanism, low, low + length) for low in lows):
+                return branch
     return None
 
 
 def _reaches_just(mechanism: Mechanism, low: float, high: float) -> bool:
     """Whether the motion from the reference reaches nearly to both ends and not beyond."""
     hair = 1e-6 * (high - low)
-    valid = drive(mechanism, np.array([low - hair, low + hair, high - hair, high + hair]), order=0).valid
-    return bool(np.array_equal(valid, [False, True, True, False]))
+    inputs = np.array([low - hair, low + hair, high - hair, high + hair])
+    there = drive(mechanism, inputs, order=0).valid if mechanism.driven_by_slide else followed_to(mechanism, inputs)
+    return bool(np.array_equal(there, [False, True, True, False]))
 
 
 def limit_positions(

@@ -157,13 +157,13 @@ class Track:
         -------
         float, shape (links, N)
         """
-        found = self._followed(rotation)
+        found = self.followed(rotation)
         lost = np.flatnonzero(np.isnan(found[0]) & np.isfinite(rotation))
         least = np.mod(rotation + np.pi, FULL_TURN) - np.pi
         turns = 0
         while len(lost) and not all(side.ended_before(FULL_TURN * (turns - 0.5)) for side in self._sides.values()):
             for away in (-1.0, 1.0) if turns else (0.0,):
-                found[:, lost] = self._followed(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
+                found[:, lost] = self.followed(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
                 lost = lost[np.isnan(found[0, lost])]
             turns += 1
         return found
@@ -173,7 +173,8 @@ class Track:
         """Whether a way was so long that it was left before its end: what is not reached may then exist."""
         return any(side.given_up for side in self._sides.values())
 
-    def _followed(self, rotation: Real) -> Real:
+    def followed(self, rotation: Real) -> Real:
+        """The same, each input by its own rotation only: NaN where a toggle lies before it."""
         found = np.full((len(self._loops.links), len(rotation)), np.nan)
         for sign, side in self._sides.items():
             chosen = np.flatnonzero(sign * rotation >= 0.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from kinematics.linkage.drive import drive
+from kinematics.linkage.drive import drive, followed_to
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism
 from kinematics.linkage.triad_transmission import Leg, triad_of
@@ -83,3 +83,21 @@ def test_the_angle_vanishes_at_toggles_and_only_there(name: str) -> None:
             assert np.all(np.abs(sines[-2:]) < 0.05)
             met += 1
     assert met >= 3
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_references_branch_does_not_depend_on_the_order_of_branches(name: str) -> None:
+    """Two branches between the same two toggles may differ by a turn; following the motion tells which it is."""
+    designs = CLASS_THREE[name](np.random.default_rng(23), 12)
+    for n in range(12):
+        mechanism: Mechanism = take(designs, n)
+        found = branches(mechanism)
+        held = holding_reference(mechanism, found)
+        assert held == holding_reference(
+            mechanism, sorted(found, key=lambda branch: (branch.circuit, -branch.low, -branch.high))
+        )
+        if held is not None and not held.full:
+            at = float(mechanism.reference_input)
+            low = at - np.mod(at - held.low, TURN)
+            inside = np.linspace(low, low + held.high - held.low, 60)[1:-1]
+            assert followed_to(mechanism, inside).all() or held.high - held.low > TURN
