@@ -5,6 +5,7 @@
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make campaign  the checks with thousands of random problems
+# make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
 # make lock    resolve the dependencies of pyproject.toml anew
@@ -20,7 +21,7 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean
+.PHONY: serve test fuzz test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -29,7 +30,7 @@ demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
 test: check
-	$(BIN)/pytest -m "not campaign and not faults and not browser and not cluster" $(SPREAD)
+	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis: the real servers, on free ports.
 CONTRACT := $(addprefix tests/service/test_,store.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
@@ -54,6 +55,9 @@ test-browser: $(STAMP) $(NODE)
 campaign: $(STAMP)
 	$(BIN)/pytest -m campaign $(SPREAD)
 
+fuzz: $(STAMP)
+	$(BIN)/pytest -m fuzz -s
+
 # Processes are killed at random and at every write, and what became of the jobs is printed. A quarter of an hour on one
 # machine, and as long on many.
 test-faults: $(STAMP) engines
@@ -68,7 +72,7 @@ check: $(STAMP)
 
 # The inner loop: everything but the tests marked slow.
 quick: $(STAMP)
-	$(BIN)/pytest -m "not slow and not campaign and not faults and not browser and not cluster" -q $(SPREAD)
+	$(BIN)/pytest -m "not slow and not campaign and not fuzz and not faults and not browser and not cluster" -q $(SPREAD)
 
 bench: $(STAMP)
 	$(BIN)/python -m benchmarks.analysis

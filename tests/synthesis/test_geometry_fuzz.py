@@ -8,7 +8,7 @@ from synthesis.kinds import KINDS, parse_problem
 from synthesis.problems.base import TINY
 
 
-@pytest.mark.campaign
+@pytest.mark.fuzz
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize("kind", KINDS)
 def test_whatever_is_stated_is_answered_or_refused(kind):
