@@ -3,10 +3,12 @@
 import copy
 import math
 import re
+import time
 
 import pytest
 
 from synthesis.kinds import examples
+from tests.service.running import until
 
 TIMED = [example for example in examples("path") if example.get("timing") == "prescribed"]
 
@@ -55,3 +57,21 @@ def test_refusals_name_the_field(client, change, path):
     answer = client.post("/v1/jobs", json={"problem": problem})
     assert answer.status_code == 422
     assert path in [error["path"] for error in answer.json()["errors"]]
+
+
+NINE_POINTS = [
+    {"x": x, "y": y} for x, y in zip([5, 9, 14, 18, 20, 19, 15, 9, 5], [2, 0, 1, 4, 8, 12, 14, 12, 7], strict=True)
+]
+
+
+def test_a_nine_point_search_tells_its_progress_and_is_cancelled_within_two_seconds(server):
+    """The search takes seconds, nearly all of them in compiled code."""
+    job = server.post(problem={"kind": "path", "points": NINE_POINTS})
+    until(lambda: 0.0 < server.job(job["id"])["progress"]["fraction"] < 0.9, 60.0, "progress")
+    (worker,) = server.workers()
+    began = time.monotonic()
+    assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
+    server.reaches(job["id"], "cancelled", 2.0)
+    until(lambda: worker not in server.workers(), 2.0, "the end of its worker")
+    assert time.monotonic() - began < 2.0
+    assert server.post(problem=TIMED[0], wait=60)["status"] == "succeeded"
