@@ -68,10 +68,10 @@ def test_a_nine_point_search_tells_its_progress_and_is_cancelled_within_two_seco
     """The search takes seconds, nearly all of them in compiled code."""
     job = server.post(problem={"kind": "path", "points": NINE_POINTS})
     until(lambda: 0.0 < server.job(job["id"])["progress"]["fraction"] < 0.9, 60.0, "progress")
-    (worker,) = server.workers()
+    workers = set(server.workers())
     began = time.monotonic()
     assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
     server.reaches(job["id"], "cancelled", 2.0)
-    until(lambda: worker not in server.workers(), 2.0, "the end of its worker")
+    until(lambda: not workers <= set(server.workers()), 2.0, "the end of its worker")
     assert time.monotonic() - began < 2.0
     assert server.post(problem=TIMED[0], wait=60)["status"] == "succeeded"
