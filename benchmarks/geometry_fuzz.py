@@ -77,7 +77,7 @@ def run(kind: str, number: int) -> Outcome:
     resource.setrlimit(resource.RLIMIT_CPU, (int(began) + CPU_S + 1, hard))
     try:
         outcome = _way(kind, number)
-    except Exception as error:
+    except Exception as error:  # whatever a case raises is what is counted, as wrong
         place = traceback.extract_tb(error.__traceback__)[-1]
         said = f"{type(error).__name__}: {error} ({place.filename.rpartition('/')[2]}:{place.lineno})"
         outcome = Outcome("exception", said[:300], wrong=True)

@@ -162,7 +162,7 @@ def until_settled(server: RunningServer, workers: int = 2) -> None:
     until(lambda: len(server.workers()) == workers, 60.0)
     used = [sum(map(processor_s, server.workers()))]
     while len(used) < 4 or used[-1] > used[-4] + 0.03:
-        time.sleep(1.0)
+        time.sleep(1.0)  # the span over which their processor time is looked at
         used.append(sum(map(processor_s, server.workers())))
 
 

@@ -134,8 +134,8 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
 
 def _announce(host: Host) -> None:
     while host.lanes.ready() == 0:
-        time.sleep(BEAT_PERIOD_S / 10)
-    print(f"mechsynth worker {host.id} is ready", flush=True)  # noqa: T201 (for whoever started it)
+        time.sleep(BEAT_PERIOD_S / 10)  # lanes tell nobody that they are ready; this is the host's start only
+    print(f"mechsynth worker {host.id} is ready", flush=True)
 
 
 def _pool_of(host: Host) -> type[TaskPool]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+import psycopg
 import structlog
 from sqlalchemy import text
+from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.database import listening
 from service.jobs.executor import Changed
@@ -43,6 +45,8 @@ class News(threading.Thread):
             try:
                 self._listen()
             except Exception as error:  # psycopg's own errors come through here, and SQLAlchemy's
+                if not isinstance(error, (OSError, SQLAlchemyError, psycopg.Error)):
+                    log.exception("the news of the store could not be followed")
                 log.warning("no news from the store", error=type(error).__name__)
                 self._stopping.wait(RETRY_PERIOD_S)
 

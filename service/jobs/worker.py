@@ -146,7 +146,7 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
             if not unreachable(error):
                 raise
             log.warning("the store is out of reach", error=type(error).__name__)
-            time.sleep(RETRY_PERIOD_S)
+            time.sleep(RETRY_PERIOD_S)  # the answer is kept; a store that is started again needs seconds
 
 
 def _solve(store: JobStore, job_id: str, claim: Claim) -> str:

@@ -84,7 +84,7 @@ class Engine:
                 raise AssertionError(
                     f"{type(self).__name__} does not start: {(self.folder / 'log').read_text()[-3000:]}"
                 )
-            time.sleep(0.1)
+            time.sleep(0.1)  # an engine that starts tells nobody
 
     def stop(self, how=signal.SIGTERM):
         if self.process.poll() is None:

@@ -68,7 +68,7 @@ class Load:
             assert answer.headers["retry-after"]
             assert answer.headers["content-type"] == "application/problem+json"
             self.refused += 1
-            time.sleep(0.2)
+            time.sleep(0.2)  # refused: Retry-After is seconds, and the load should find the first moment
 
 
 def verdict(accepted, jobs):

@@ -91,8 +91,7 @@ def test_lost_messages_are_sent_again(deployed):
     for job in blocking:
         reaches(client, job["id"], "running")
     waiting = [post(client, INSTANT) for _ in range(10)]
-    time.sleep(0.5)  # they are on their way
-    lost = CHOSEN.broker.purge(CHOSEN.mark(deployed.folder))
+    lost = until(lambda: CHOSEN.broker.purge(CHOSEN.mark(deployed.folder)), what="a message in the queue")
     (deployed.folder / "open").touch()
     for job in (*blocking, *waiting):
         reaches(client, job["id"], "succeeded")

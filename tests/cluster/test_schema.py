@@ -53,7 +53,7 @@ def test_many_may_upgrade_at_once(tmp_path):
         engine = connect(url, durable=False)
         try:
             upgrade(engine)
-        except Exception as failure:
+        except Exception as failure:  # a thread of its own would keep it; the test must see it
             failures.append(failure)
         engine.dispose()
 
