@@ -76,9 +76,8 @@ def holding_reference(mechanism: Mechanism, found: list[Branch]) -> Branch | Non
                 return branch
         else:
             # More than a turn long, the branch has the reference's input more than once.
-            turns = 1 if mechanism.driven_by_slide else 1 + int((length + SAME_TOGGLE - offset) // period)
-            lows = [at - offset - turn * period for turn in range(turns)]
-            if any(_reaches_just(mechanism, low, low + length) for low in lows):
+            again = np.arange(0.0, length + SAME_TOGGLE - offset, period)
+            if any(_reaches_just(mechanism, low, low + length) for low in at - offset - again):
                 return branch
     return None
 

@@ -93,9 +93,14 @@ def test_the_references_branch_does_not_depend_on_the_order_of_branches(name: st
         mechanism: Mechanism = take(designs, n)
         found = branches(mechanism)
         held = holding_reference(mechanism, found)
-        assert held == holding_reference(
+        other = holding_reference(
             mechanism, sorted(found, key=lambda branch: (branch.circuit, -branch.low, -branch.high))
         )
+        assert (held is None) == (other is None)
+        if held is not None and other is not None:
+            # Two branches of one circuit may lie between the same two toggles, which rounding alone tells apart.
+            assert (held.circuit, held.full) == (other.circuit, other.full)
+            assert [held.low, held.high] == pytest.approx([other.low, other.high], abs=1e-9)
         if held is not None and not held.full:
             at = float(mechanism.reference_input)
             low = at - np.mod(at - held.low, TURN)
