@@ -18,6 +18,7 @@ SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
 START_S = 240.0  # the first start ever compiles the kernels, and a machine may be very busy
 STOP_S = 60.0  # how long it takes in good health is for the tests of that; a machine may be ten times as busy
 REACHED_S = 120.0  # a worker may have to be started first
+SOON_S = 20.0  # a hang is longer; how soon it is on a machine in good health is for the tests of faults
 PROBLEM = {
     "kind": "motion",
     "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 10.0, "y": 5.0, "angle": 30.0}],

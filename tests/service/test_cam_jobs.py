@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import copy
-import time
 
 import pytest
 
 from synthesis.kinds import KINDS
-from tests.service.running import until
+from tests.service.running import REACHED_S, SOON_S, until
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
 NAMES = ("double dwell", "rise-fall-dwell", "critical path", "valve", "barrel")
@@ -54,7 +53,7 @@ def test_a_groove_is_drawn_with_both_walls(client):
     assert "outer_wall_x [mm]" in client.get(f"{place}.csv").text
 
 
-def test_a_convex_program_tells_its_progress_and_is_cancelled_within_two_seconds(server):
+def test_a_convex_program_tells_its_progress_and_is_cancelled(server):
     """Motion and size of 24 optimal segments together: some programs of thousands of variables, one after the other."""
     segments = [
         {"motion": "rise" if k % 2 == 0 else "fall", "angle": 15.0, "lift": 10.0, "law": "optimal"} for k in range(24)
@@ -69,15 +68,13 @@ def test_a_convex_program_tells_its_progress_and_is_cancelled_within_two_seconds
     job = server.post(problem=problem)
     heard = until(
         lambda: (found := server.job(job["id"])) and "convex program" in found["progress"]["message"] and found,
-        60.0,
+        REACHED_S,
         "a message from the convex program",
     )
     assert heard["status"] == "running"
     assert 0.0 < heard["progress"]["fraction"] < 1.0
-    began = time.monotonic()
     assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
-    cancelled = server.reaches(job["id"], "cancelled", 2.0)
-    assert time.monotonic() - began < 2.0
+    cancelled = server.reaches(job["id"], "cancelled", SOON_S)
     assert cancelled["result"] is None
     # Its worker is free again: the next job is answered.
-    assert server.post(problem=EXAMPLES[0], wait=30)["status"] == "succeeded"
+    server.reaches(server.post(problem=EXAMPLES[0])["id"], "succeeded")

