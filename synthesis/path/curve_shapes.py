@@ -408,23 +408,16 @@ def _placed(
     x, sign = drawn.x[order].copy(), drawn.sign[order].copy()
     at = np.empty((len(order), SHAPE_POINTS))
     place = np.arange(SHAPE_POINTS)
+    cycles = drawn.end[order] - drawn.begin[order]
     for i, (length, start, manner) in enumerate(where):
         ring = bool(rings[i])
-        cycle = float(drawn.end[order[i]] - drawn.begin[order[i]])
-        points = np.append(curves[i], curves[i, 0]) if ring else curves[i]
-        angles = np.append(theta[i], theta[i, 0] + cycle) if ring else theta[i]
-        along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
-        along /= along[-1]
         if closed:
             share = (place - start) / SHAPE_POINTS
         else:
             size = WINDOW_LENGTHS[length]
             begin = start / WINDOW_STARTS if ring else (1.0 - size) * start / (WINDOW_STARTS - 1)
             share = begin + size * place / (SHAPE_POINTS - 1)
-        turns = np.floor(share) if ring else np.zeros(SHAPE_POINTS)
-        share = share - turns
-        z = np.interp(share, along, points.real) + 1j * np.interp(share, along, points.imag)
-        at[i] = np.interp(share, along, angles) + cycle * turns
+        z, at[i] = _at_shares(curves[i], theta[i], ring, float(cycles[i]), share)
         if manner % 2:
             z, at[i] = z[::-1], at[i, ::-1].copy()
         if manner >= 2:
@@ -436,6 +429,23 @@ def _placed(
         _move(family, x[i], ratio, alpha, complex(target.mean()) - alpha * complex(z.mean()))
         at[i] += cmath.phase(alpha)
     return x, at, sign
+
+
+@njit(cache=True, nogil=True)
+def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Real) -> tuple[Complex, Real]:
+    """Points and crank angles at shares of a curve's length; of a ring, beyond its end too."""
+    count = len(curve) + 1 if ring else len(curve)
+    points, angles, along = np.empty(count, np.complex128), np.empty(count), np.zeros(count)
+    points[: len(curve)], angles[: len(curve)] = curve, theta
+    if ring:
+        points[-1], angles[-1] = curve[0], theta[0] + cycle
+    for k in range(1, count):
+        along[k] = along[k - 1] + abs(points[k] - points[k - 1])
+    along /= along[-1]
+    turns = np.floor(share) if ring else np.zeros(len(share))
+    inside = share - turns
+    z = np.interp(inside, along, points.real) + 1j * np.interp(inside, along, points.imag)
+    return z, np.interp(inside, along, angles) + cycle * turns
 
 
 def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
@@ -478,7 +488,7 @@ def _different(
     """Rows that are not near one another, nor far too large, at most ``keep`` of them."""
     lengths, chart = np.empty(4), np.empty((4, 4))
     kept: list[int] = []
-    marks: list[Real] = []
+    marks = np.empty((keep, 8 if family == GEARED_FIVEBAR else 7))
     for i in range(len(x)):
         lengths[:] = 0.0
         natural(family, x[i], lengths, chart)
@@ -487,9 +497,9 @@ def _different(
         pin = complex(x[i, 0], x[i, 1]) + lengths[0 if family > FOURBAR else 1] * cmath.exp(1j * theta[i, 0])
         far = lengths[:4] if family == GEARED_FIVEBAR else lengths[1:]
         mark = np.array([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
-        if all(float(np.abs(mark - other).max()) > SAME_PLACE * size for other in marks):
+        if (np.abs(marks[: len(kept)] - mark).max(axis=1) > SAME_PLACE * size).all():
+            marks[len(kept)] = mark
             kept.append(i)
-            marks.append(mark)
             if len(kept) == keep:
                 break
     return np.array(kept, np.int64)

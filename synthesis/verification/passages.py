@@ -157,9 +157,9 @@ def in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
 
     Of all ways to do so the one with the least sum of squared distances, within one turn of the input.
     """
-    found = [_ordered(fourbar, points, way) for way in (1.0, -1.0)]
-    run, _ = min(found, key=lambda pair: pair[1])
-    return _driven(fourbar, points, run, run=True)
+    low, high = _branch(fourbar)
+    period = math.tau if full_rotation(fourbar.linkage) else None
+    return _driven(fourbar, points, ordered_run(_place(fourbar), points, low, high, period), run=True)
 
 
 def nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
@@ -218,16 +218,10 @@ def _gaps(places: Complex, points: Complex) -> Real:
     return np.where(np.isfinite(gaps), gaps.real**2 + gaps.imag**2, np.inf)
 
 
-def _ordered(fourbar: DrivenFourbar, points: Complex, way: float) -> tuple[Real, float]:
-    low, high = _branch(fourbar)
-    period = math.tau if full_rotation(fourbar.linkage) else None
-    return ordered_run(_place(fourbar), points, low, high, period, way)
-
-
 def ordered_run(
-    place: Callable[[Real], Complex], points: Complex, low: float, high: float, period: float | None, way: float
-) -> tuple[Real, float]:
-    """The run of the input, turning one way, with the least sum of squared distances, and that sum.
+    place: Callable[[Real], Complex], points: Complex, low: float, high: float, period: float | None
+) -> Real:
+    """The run of the input, turning one way or the other, with the least sum of squared distances.
 
     Parameters
     ----------
@@ -239,22 +233,45 @@ def ordered_run(
         The branch's inputs; ``high - low`` is the period where there is one.
     period : float or None
         Rotation after which P is where it was, for an input that turns through.
-    way : float
-        +1 or −1: which way the input turns.
     """
     count = GRID * max(1, round((high - low) / math.tau))
-    if way < 0.0:
-        low, high = high, low
     grid = np.linspace(low, high, count + 1)
-    squares = np.minimum(_gaps(place(grid)[None], points), OUT_OF_REACH)
-    step = abs(high - low) / count
-    columns = _round(squares[:, :-1].copy()) if period is not None else _along(squares)
-    run = np.asarray(low + way * step * columns, np.float64)
+    path = place(grid)
+    squares = np.minimum(_gaps(path[None], points), OUT_OF_REACH)
+    if period is None:
+        found = [(way, *_along(ways.copy())) for way, ways in ((1.0, squares), (-1.0, squares[:, ::-1]))]
+    else:
+        # A run that is taken to the grid, and to one of the starts tried there, has its places moved by so many steps
+        # at most: by so much may the looks shorten the one way until it is less than the other.
+        moved = math.sqrt(len(points)) * (STRIDE + 1) * float(np.abs(np.diff(path)).max())
+        columns, least = _round(squares[:, :-1].copy(), math.inf)
+        back = _round(squares[:, :0:-1].copy(), (math.sqrt(least) + moved) ** 2)
+        found = [(1.0, columns, least), (-1.0, *back)]
+    runs = []
+    for way, columns, least in found:
+        if math.isfinite(least):
+            start = low if way > 0.0 else high
+            run = np.asarray(start + way * (high - low) / count * columns, np.float64)
+            runs.append(_looked_at(place, points, low, high, period, way, run))
+    return min(runs, key=lambda pair: pair[1])[0]
+
+
+def _looked_at(
+    place: Callable[[Real], Complex],
+    points: Complex,
+    low: float,
+    high: float,
+    period: float | None,
+    way: float,
+    run: Real,
+) -> tuple[Real, float]:
+    """A run on the grid by closer and closer looks, and its sum of squared distances."""
+    step = (high - low) / (GRID * max(1, round((high - low) / math.tau)))
     longest = math.inf if period is None else period
     for _ in range(LOOKS):
         tried: Real = run[:, None] + way * step * np.linspace(-1.0, 1.0, SPREAD)
         if period is None:
-            tried = np.clip(tried, min(low, high), max(low, high))
+            tried = np.clip(tried, low, high)
         found = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
         run = way * _chosen(found, way * tried, longest)
         step *= CLOSER
@@ -262,22 +279,31 @@ def ordered_run(
 
 
 @njit(cache=True, nogil=True)
-def _least(squares: Real, first: int, count: int, totals: Real, back: NDArray[np.int32], chosen: Whole) -> float:
-    """The least sum over columns that do not fall from row to row: ``count`` of them from ``first``, modulo all."""
-    rows, columns = squares.shape
+def _least(
+    squares: Real, first: int, count: int, bound: float, totals: Real, back: NDArray[np.int32], chosen: Whole
+) -> float:
+    """The least sum over columns that do not fall from row to row: ``count`` of them from ``first``.
+
+    Infinite, and nothing chosen, as soon as no sum below ``bound`` is left.
+    """
+    rows = len(squares)
     for k in range(count):
-        totals[0, k] = squares[0, (first + k) % columns]
+        totals[0, k] = squares[0, first + k]
     for row in range(1, rows):
         before, now = totals[(row - 1) % 2], totals[row % 2]
         best, at = np.inf, 0
         for k in range(count):
             if before[k] < best:
                 best, at = before[k], k
-            now[k] = best + squares[row, (first + k) % columns]
+            now[k] = best + squares[row, first + k]
             back[row, k] = at
+        if best >= bound:
+            return np.inf
     last = totals[(rows - 1) % 2]
     k = int(np.argmin(last[:count]))
     least = float(last[k])
+    if least >= bound:
+        return np.inf
     for row in range(rows - 1, -1, -1):
         chosen[row] = first + k
         if row:
@@ -286,27 +312,31 @@ def _least(squares: Real, first: int, count: int, totals: Real, back: NDArray[np
 
 
 @njit(cache=True, nogil=True)
-def _along(squares: Real) -> Whole:
-    """Columns that do not fall from row to row, with the least sum."""
+def _along(squares: Real) -> tuple[Whole, float]:
+    """Columns that do not fall from row to row, with the least sum, and that sum."""
     rows, columns = squares.shape
     chosen = np.empty(rows, np.int64)
-    _least(squares, 0, columns, np.empty((2, columns)), np.empty((rows, columns), np.int32), chosen)
-    return chosen
+    back = np.empty((rows, columns), np.int32)
+    return chosen, _least(squares, 0, columns, np.inf, np.empty((2, columns)), back, chosen)
 
 
 @njit(cache=True, nogil=True)
-def _round(squares: Real) -> Whole:
-    """The same for a curve that closes: columns go on beyond the last with the first, over one turn from the start."""
+def _round(squares: Real, bound: float) -> tuple[Whole, float]:
+    """The same for a curve that closes: columns go on beyond the last with the first, over one turn from the start.
+
+    The sum is infinite where none is below ``bound``.
+    """
     rows, columns = squares.shape
+    twice = np.concatenate((squares, squares), axis=1)
     totals, back = np.empty((2, columns + 1)), np.empty((rows, columns + 1), np.int32)
     chosen, trial = np.empty(rows, np.int64), np.empty(rows, np.int64)
     best = np.inf
     for first in range(0, columns, STRIDE):
-        least = _least(squares, first, columns + 1, totals, back, trial)
+        least = _least(twice, first, columns + 1, min(best, bound), totals, back, trial)
         if least < best:
             best = least
             chosen[:] = trial
-    return chosen
+    return chosen, best
 
 
 @njit(cache=True, nogil=True)

@@ -100,8 +100,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     points = np.array([point.point for point in problem.points])
     low, high = driven.range()
     period = cycle(mechanism) if here.full else None
-    found = [ordered_run(driven.place, points, low, high, period, way) for way in (1.0, -1.0)]
-    inputs, _ = min(found, key=lambda pair: pair[1])
+    inputs = ordered_run(driven.place, points, low, high, period)
     motion = driven.at(inputs)
     if not motion.valid.all():
         return None

@@ -10,7 +10,7 @@ import signal
 import httpx
 import pytest
 
-from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
+from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE, TOLD
 
 RUNS = int(os.environ.get("MECHSYNTH_FAULT_RUNS", "20"))
@@ -46,7 +46,7 @@ class Folder:
     def again(self):
         """A server after one that has died."""
         self.server.client.close()
-        assert self.server.process.wait(10) == -signal.SIGKILL
+        assert self.server.process.wait(REACHED_S) == -signal.SIGKILL
         assert not self.mark.exists()
         self.server = self.started()
 
@@ -68,7 +68,9 @@ def test_a_worker_dies_at(folder, point, moment):
     for run in range(RUNS):
         folder.arm(moment, point)
         job = folder.post(seed + run if seed >= BRIEF else seed)
-        ended = until(lambda job=job: (now := folder.server.job(job["id"]))["finished_at"] and now, 30.0, "the end")
+        ended = until(
+            lambda job=job: (now := folder.server.job(job["id"]))["finished_at"] and now, REACHED_S, "the end"
+        )
         assert not folder.mark.exists(), "it has died there"
         if seed == BROKEN:
             assert (ended["status"], ended["error"]["type"]) == ("failed", "/problems/internal-error")
@@ -169,7 +171,7 @@ def dies_at_crashed(folder, moment, run):
     (folder.path / "died").unlink(missing_ok=True)
     folder.arm(moment, "crashed")
     job = folder.post(DIES_ONCE)
-    until(lambda: folder.server.process.poll() is not None, 20.0, "the death of the server")
+    until(lambda: folder.server.process.poll() is not None, REACHED_S, "the death of the server")
     folder.again()
     folder.server.reaches(job["id"], "succeeded")
 
@@ -177,7 +179,7 @@ def dies_at_crashed(folder, moment, run):
 def dies_at_give_up(folder, moment, run):
     folder.arm(moment, "give_up")
     job = folder.post(NATIVE)
-    until(lambda: folder.server.process.poll() is not None, 20.0, "the death of the server")
+    until(lambda: folder.server.process.poll() is not None, REACHED_S, "the death of the server")
     folder.again()
     failed = folder.server.reaches(job["id"], "failed")
     assert failed["error"]["type"] == "/problems/timeout"
