@@ -1,7 +1,10 @@
-"""How long a connection may keep the server waiting.
+"""How long a connection may keep the server waiting, and how much of it the server keeps in memory.
 
 The web server itself closes idle connections only. A client that sends a request by halves, or does not read its
-answer, would keep its connection for ever; nine hundred of them would keep everybody else out.
+answer, would keep its connection for ever; nine hundred of them would keep everybody else out. And it takes heads of
+any length, and any number of requests ahead of their answers: a few seconds of either fill the memory.
+
+What is refused here no operation has seen. It is answered like everything else, with a problem, and is counted.
 
 An idle connection is closed late and with care. A client that uses it again at the moment of its end sees a reset, and
 cannot know whether its request was seen. The usual clients drop a connection that has been idle for 5 to 60 seconds by
@@ -15,9 +18,15 @@ import asyncio
 import json
 import resource
 import select
-from typing import Any, cast
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Any, ClassVar, cast
 
+import structlog
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from service.metrics import Metrics
+from service.telemetry import CUT_SHORT
 
 REQUEST_S = 8.0
 """From the first byte of a request, or the opening of the connection, to the last byte of its body. Ten seconds are the
@@ -29,21 +38,50 @@ READING_S = 10.0
 IDLE_S = 75
 """How long a connection may wait for its next request."""
 
+MOST_HEAD_BYTES = 64 << 10
+"""Longest address and headers of a request together, and longest piece of anything else that is not its body."""
+
+MOST_AHEAD = 500
+"""Requests that a client may send before the first of them is answered. Hardly any client sends a second."""
+
 _MORE_S = 1.0
 _SPARE_FILES = 128
-_TIMEOUT = json.dumps(
-    {
-        "type": "/problems/request-timeout",
-        "title": "Request timeout",
-        "status": 408,
-        "detail": f"The request was not complete within {REQUEST_S:g} seconds.",
-        "instance": "",
-    }
-).encode()
-_TOO_SLOW = (
-    b"HTTP/1.1 408 Request Timeout\r\ncontent-type: application/problem+json\r\nconnection: close\r\n"
-    b"content-length: %d\r\n\r\n%b" % (len(_TIMEOUT), _TIMEOUT)
-)
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What is wrong with a connection: the status and type of the problem that answers it."""
+
+    status: int
+    type: str
+    title: str
+    detail: str
+
+    def answer(self) -> bytes:
+        """The whole answer, after which the connection is closed."""
+        problem = {"type": self.type, "title": self.title, "status": self.status, "detail": self.detail, "instance": ""}
+        body = json.dumps(problem).encode()
+        return (
+            b"HTTP/1.1 %d %b\r\ncontent-type: application/problem+json\r\nconnection: close\r\n"
+            b"content-length: %d\r\n\r\n%b" % (self.status, HTTPStatus(self.status).phrase.encode(), len(body), body)
+        )
+
+
+TOO_SLOW = Fault(
+    408, "/problems/request-timeout", "Request timeout",
+    f"The request was not complete within {REQUEST_S:g} seconds.",
+)  # fmt: skip
+NOT_HTTP = Fault(400, "/problems/malformed-request", "Malformed request", "What came is not HTTP.")
+HEAD_TOO_LARGE = Fault(
+    431, "/problems/head-too-large", "Head too large",
+    f"The address and the headers of a request may have {MOST_HEAD_BYTES} bytes together.",
+)  # fmt: skip
+
+
+class Unacceptable(Exception):
+    """Ends the parsing of a connection; its fault has been noted."""
 
 
 def raise_file_limit() -> int:
@@ -55,15 +93,21 @@ def raise_file_limit() -> int:
 
 
 class ImpatientProtocol(HttpToolsProtocol):
-    """HTTP/1.1 with an end to every wait for the client."""
+    """HTTP/1.1 with an end to every wait for the client, and to what it may send."""
 
-    most = 1 << 20
+    most: ClassVar[int] = 1 << 20
     """Connections at once; one more is closed at once, since files that run out would hit the store as well."""
+
+    metrics: ClassVar[Metrics | None] = None
+    """Where requests are counted that are refused before any operation sees them."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._request_due: asyncio.TimerHandle | None = None
         self._reading_due: asyncio.TimerHandle | None = None
+        self._fault = NOT_HTTP
+        self._head = 0
+        self._unread = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin to wait for the first request."""
@@ -79,17 +123,58 @@ class ImpatientProtocol(HttpToolsProtocol):
         self._cancel(self._reading_due)
         super().connection_lost(exc)
 
+    def data_received(self, data: bytes) -> None:
+        """Bytes have come. The parser keeps them until it can make something of them."""
+        self._unread += len(data)
+        super().data_received(data)
+        if self._unread > MOST_HEAD_BYTES:
+            self._refuse(HEAD_TOO_LARGE)
+
     def on_message_begin(self) -> None:
         """A request begins."""
         if self._request_due is None:
             self._await_request(REQUEST_S)
+        self._head = self._unread = 0
         super().on_message_begin()
+
+    def on_url(self, url: bytes) -> None:
+        """A part of the address."""
+        self._add_to_head(len(url))
+        super().on_url(url)
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """A header, or a trailer behind the body."""
+        self._add_to_head(len(name) + len(value))
+        super().on_header(name, value)
+
+    def on_headers_complete(self) -> None:
+        """The head of a request is there."""
+        if len(self.pipeline) >= MOST_AHEAD:
+            self.transport.abort()
+            raise Unacceptable
+        super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """A part of the body, which the application bounds."""
+        self._unread = 0
+        super().on_body(body)
 
     def on_message_complete(self) -> None:
         """A request is there, whole."""
+        self._unread = 0
         self._cancel(self._request_due)
         self._request_due = None
         super().on_message_complete()
+
+    def on_response_complete(self) -> None:
+        """An answer is given. Nothing more is read while requests wait for theirs."""
+        super().on_response_complete()
+        if self.pipeline:
+            self.flow.pause_reading()
+
+    def send_400_response(self, msg: str) -> None:
+        """The parser has given up."""
+        self._refuse(self._fault)
 
     def pause_writing(self) -> None:
         """The client does not read as fast as it is answered."""
@@ -124,12 +209,35 @@ class ImpatientProtocol(HttpToolsProtocol):
             # It is the server that has not come to it.
             self._await_request(_MORE_S)
             return
-        begun = self.scope is not None
-        if begun and (cycle is None or of_an_earlier_request or not cycle.response_started):
-            self.transport.write(_TOO_SLOW)
-            if cycle is not None:
-                cycle.disconnected = True
-                cycle.message_event.set()
+        if self.scope is None:  # a connection without a request is just closed
+            self.transport.close()
+        else:
+            self._refuse(TOO_SLOW)
+
+    def _add_to_head(self, size: int) -> None:
+        self._unread = 0
+        self._head += size
+        if self._head > MOST_HEAD_BYTES:
+            self._fault = HEAD_TOO_LARGE
+            raise Unacceptable
+
+    def _refuse(self, fault: Fault) -> None:
+        """Answer the request that is coming in, where its answer has not begun, and close the connection."""
+        if self.transport.is_closing():
+            return
+        cycle = self.cycle
+        seen = cycle is not None and cycle.scope is self.scope and self._request_due is not None
+        if seen and not cycle.response_started:
+            self.transport.write(fault.answer())
+            # The operation that waits for the rest is told that there is none; it counts as answered with this.
+            cycle.scope["state"][CUT_SHORT] = (fault.status, fault.type)
+            cycle.disconnected = True
+            cycle.message_event.set()
+        elif not seen and (cycle is None or cycle.response_complete):
+            self.transport.write(fault.answer())
+            log.info("request refused", status=fault.status, problem=fault.type)
+            if self.metrics is not None:
+                self.metrics.refused_unread(fault.status, fault.type)
         self.transport.close()
 
     @staticmethod

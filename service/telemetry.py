@@ -21,6 +21,10 @@ from ulid import ULID
 from service.api.head import asked_for_head
 from service.metrics import Metrics
 
+CUT_SHORT = "mechsynth.cut_short"
+"""Where the state of a request says with which status and problem its connection has answered in place of the
+operation, which was still waiting for the rest of it."""
+
 _CLIENTS_ID = re.compile("[A-Za-z0-9._:/+=@-]{1,100}")
 
 log = structlog.get_logger(__name__)
@@ -97,6 +101,8 @@ class Telemetry:
             self._tell(scope, record, time.perf_counter() - began)
 
     def _tell(self, scope: Scope, record: _Record, seconds: float) -> None:
+        if CUT_SHORT in scope.get("state", ()):
+            record.status, record.refused = scope["state"][CUT_SHORT]
         route = scope.get("route")
         operation = getattr(route, "operation_id", None) or getattr(route, "name", None) or "none"
         method = "HEAD" if asked_for_head(scope) else scope["method"]

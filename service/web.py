@@ -40,6 +40,7 @@ class WebServer(uvicorn.Server):
         self._executor = executor
         self._announcement: asyncio.Task[None] | None = None
         ImpatientProtocol.most = raise_file_limit()
+        ImpatientProtocol.metrics = metrics
         super().__init__(
             uvicorn.Config(
                 HeadAsGet(Telemetry(_with_cors(self._app, settings.cors_origins), metrics)),

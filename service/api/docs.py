@@ -18,6 +18,17 @@ from service.api.guard import SCHEME
 _ASSETS = "/docs/assets"
 
 
+_REFUSED_TO_TENANTS = errors.responses(
+    e401="A key is needed, and there is none or none in force.",
+    e429="The key has asked too often.",
+    e503="The job store does not answer.",
+)
+_REFUSED_TO_ALL = errors.responses(
+    e408="The request did not come to its end in time.", e431="The address and the headers are too large."
+)
+"""What the connection answers before any operation sees the request."""
+
+
 def install(app: FastAPI) -> None:
     """Serve ``/docs``, and complete ``/openapi.json``."""
     generate = app.openapi
@@ -62,14 +73,12 @@ def _complete(document: dict[str, Any]) -> None:
             "description": "An API key, where the service has keys; without any it is open to its own machine.",
         }
     }
-    refused = errors.responses(
-        e401="A key is needed, and there is none or none in force.", e429="The key has asked too often."
-    )
     for path, methods in document["paths"].items():
         for operation in methods.values():
             if path.startswith("/v1/"):
                 operation["security"] = [{SCHEME: []}]
-                operation["responses"].update({str(status): response for status, response in refused.items()})
+                _add(operation, _REFUSED_TO_TENANTS)
+            _add(operation, _REFUSED_TO_ALL)
     # The framework assumes that every parameter can be refused with its own kind of 422, which does not exist here.
     for methods in document["paths"].values():
         for operation in methods.values():
@@ -77,3 +86,11 @@ def _complete(document: dict[str, Any]) -> None:
                 del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         schemas.pop(name, None)
+
+
+def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:
+    """Add responses to those of an operation; one of the same status is one more reason for it."""
+    for status, response in responses.items():
+        own = operation["responses"].get(str(status))
+        also = response if own is None else {**own, "description": f"{own['description']} {response['description']}"}
+        operation["responses"][str(status)] = also

@@ -107,6 +107,15 @@ def invalid_request(errors: Sequence[tuple[str, str]]) -> Refusal:
     return Refusal(422, "invalid-request", "Invalid request", _counted(len(errors)), errors=errors)
 
 
+def store_unavailable() -> Refusal:
+    """The store does not answer, so that nothing is known."""
+    return Refusal(
+        503, "store-unavailable", "Store unavailable",
+        "The job store does not answer; send this again later. With an Idempotency-Key that makes one job at most.",
+        headers={"Retry-After": str(STORE_RETRY_AFTER_S)},
+    )  # fmt: skip
+
+
 def sentence(text: str) -> str:
     """A detail as a sentence: with a capital and a full stop.
 
@@ -119,7 +128,12 @@ def sentence(text: str) -> str:
 def responses(**described: str) -> dict[int | str, dict[str, Any]]:
     """The error responses of an endpoint for OpenAPI: ``responses(e404="There is no such job.")``."""
     content = {PROBLEM_JSON: {"schema": {"$ref": "#/components/schemas/ProblemDetails"}}}
-    return {int(name[1:]): {"description": text, "content": content} for name, text in described.items()}
+    again = {"Retry-After": {"description": "Ask again after so many seconds.", "schema": {"type": "integer"}}}
+    return {
+        int(name[1:]): {"description": text, "content": content}
+        | ({"headers": again} if name in ("e429", "e503") else {})
+        for name, text in described.items()
+    }
 
 
 def pointer(location: Iterable[str | int]) -> str:
@@ -176,11 +190,7 @@ async def _store_error(request: Request, error: Exception) -> Response:
     if not unreachable(error):
         raise error
     log.warning("the store does not answer", error=type(error).__name__)
-    return _answer(
-        request, 503, "/problems/store-unavailable", "Store unavailable",
-        "The job store does not answer; send this again later. With an Idempotency-Key that makes one job at most.",
-        headers={"Retry-After": str(STORE_RETRY_AFTER_S)},
-    )  # fmt: skip
+    return await _refused(request, store_unavailable())
 
 
 async def _defect(request: Request, _error: Exception) -> Response:

@@ -15,7 +15,7 @@ from fastapi.sse import EventSourceResponse, format_sse_event
 from pydantic_core import to_json
 
 from service.api import errors
-from service.api.errors import Refusal, not_found
+from service.api.errors import Refusal, not_found, store_unavailable
 from service.api.guard import GuardedRoute, Tenant
 from service.api.head import asked_for_head
 from service.api.jobs import NO_JOB, TAG, ULID
@@ -121,7 +121,7 @@ async def _present(feed: Feed, job_id: str) -> JobSummary | None:
     with feed.follow(job_id) as follower:
         await follower.news(STORE_ANSWERS_S)
         if not follower.read:
-            raise Refusal(503, "not-ready", "Not ready", "The job store does not answer.", headers={"Retry-After": "1"})
+            raise store_unavailable()
         return follower.job
 
 

@@ -80,6 +80,12 @@ def is_healthy(connection):
     return received.startswith(b"HTTP/1.1 200")
 
 
+def counted(server, sample):
+    """What the metrics say of a sample; 0 where they have none."""
+    found = re.search(re.escape(f"mechsynth_http_{sample} ") + "([0-9.]+)", server.client.get("/metrics").text)
+    return float(found[1]) if found else 0.0
+
+
 BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
 HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
 WHOLE = HEAD + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY
@@ -142,6 +148,7 @@ def test_half_open_connections_end_while_honest_clients_are_served(server):
 
 @pytest.mark.slow
 def test_each_sort_of_half_open_connection_ends_in_time(server):
+    before = counted(server, 'rejections_total{reason="request-timeout"}')
     connections = {name: connected(server) for name in HALVES}
     began = time.monotonic()
     for name, half in HALVES.items():
@@ -155,12 +162,15 @@ def test_each_sort_of_half_open_connection_ends_in_time(server):
     waiting.sendall(
         WHOLE.replace(b'"seed": %d' % INSTANT, b'"seed": %d' % GATED).replace(b"Host: x", b"Host: x\r\nPrefer: wait=20")
     )
+    told = 0
     for name, connection in connections.items():
         received, seconds = until_closed(connection, began)
         assert seconds < REQUEST_S, name
         if b"408" in received:
             assert b'"/problems/request-timeout"' in received
+            told += 1
         connection.close()
+    assert counted(server, 'rejections_total{reason="request-timeout"}') - before == told >= 5
     time.sleep(max(0.0, REQUEST_S + 1.0 - (time.monotonic() - began)))  # a pause is what is tried
     assert is_healthy(idle)
     gate.touch()
