@@ -117,10 +117,13 @@ def _worker() -> int:
         return EXIT_USAGE
     from sqlalchemy.exc import SQLAlchemyError
 
-    from service.jobs.host import run_host
+    from service.jobs.host import HostError, run_host
 
     try:
         run_host(settings)
+    except HostError as error:
+        print(f"mechsynth worker: {error}", file=sys.stderr)
+        return EXIT_FAILURE
     except (SQLAlchemyError, OSError) as error:
         # Not the URL itself, which may hold a password.
         print(f"mechsynth worker: cannot use the database ({type(error).__name__})", file=sys.stderr)

@@ -30,13 +30,71 @@ _JOB_SECONDS = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0,
 log = structlog.get_logger(__name__)
 
 
-class Metrics:
-    """All metrics of one server, in a registry of their own."""
+class WorkerMetrics:
+    """What is known of workers and of the process that has them, in a registry of its own."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
         for collector in (ProcessCollector, PlatformCollector, GCCollector):
             collector(registry=self.registry)
+        self._attempts = Counter(
+            "mechsynth_job_attempts",
+            "Attempts at jobs that have ended, by how.",
+            ["outcome"],
+            registry=self.registry,
+        )
+        self._job_seconds = Histogram(
+            "mechsynth_job_seconds",
+            "Computation of an attempt at a job that its worker has brought to an end.",
+            ["kind"],
+            buckets=_JOB_SECONDS,
+            registry=self.registry,
+        )
+        self._worker_restarts = Counter(
+            "mechsynth_worker_restarts",
+            "Worker processes that were replaced, by why.",
+            ["reason"],
+            registry=self.registry,
+        )
+        self._workers = Gauge(
+            "mechsynth_workers_ready", "Worker processes that have finished starting.", registry=self.registry
+        )
+
+    def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
+        """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
+        self._attempts.labels(outcome.replace(" ", "_")).inc()
+        if kind is not None:
+            self._job_seconds.labels(kind).observe(seconds)
+
+    def worker_restart(self, reason: str) -> None:
+        """A worker process is being replaced."""
+        self._worker_restarts.labels(reason).inc()
+
+
+class HostMetrics(WorkerMetrics):
+    """All metrics of one worker host."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._jobs = Gauge(
+            "mechsynth_host_jobs",
+            "Jobs that the broker has given to this host: a worker computes them, or none is free for them yet.",
+            ["status"],
+            registry=self.registry,
+        )
+
+    def watch(self, workers: Callable[[], int], running: Callable[[], int], waiting: Callable[[], int]) -> None:
+        """Ask these whenever the metrics are read: ready workers, and the jobs of the host by their state."""
+        self._workers.set_function(workers)
+        self._jobs.labels("running").set_function(running)
+        self._jobs.labels("waiting").set_function(waiting)
+
+
+class Metrics(WorkerMetrics):
+    """All metrics of one server."""
+
+    def __init__(self) -> None:
+        super().__init__()
         self._requests = Counter(
             "mechsynth_http_requests",
             "Requests that were answered.",
@@ -59,36 +117,19 @@ class Metrics:
         self._jobs_accepted = Counter(
             "mechsynth_jobs_accepted", "Jobs that were accepted.", ["kind"], registry=self.registry
         )
-        self._attempts = Counter(
-            "mechsynth_job_attempts",
-            "Attempts at jobs that have ended, by how.",
-            ["outcome"],
-            registry=self.registry,
-        )
-        self._job_seconds = Histogram(
-            "mechsynth_job_seconds",
-            "Computation of an attempt at a job that its worker has brought to an end.",
-            ["kind"],
-            buckets=_JOB_SECONDS,
-            registry=self.registry,
-        )
-        self._worker_restarts = Counter(
-            "mechsynth_worker_restarts",
-            "Worker processes that were replaced, by why.",
-            ["reason"],
-            registry=self.registry,
-        )
         self._listeners = Gauge(
             "mechsynth_event_listeners", "Clients that listen to the events of a job.", registry=self.registry
-        )
-        self._workers = Gauge(
-            "mechsynth_workers_ready", "Worker processes that have finished starting.", registry=self.registry
         )
 
     def request(self, operation: str, method: str, status: int, seconds: float) -> None:
         """A request has been answered."""
         self._requests.labels(operation, method if method in METHODS else "other", str(status)).inc()
         self._request_seconds.labels(operation).observe(seconds)
+
+    def refused_unread(self, status: int, type_: str) -> None:
+        """A request was answered with a problem of this type before it was whole, so that no operation has seen it."""
+        self._requests.labels("none", "other", str(status)).inc()
+        self.rejection(type_)
 
     def rejection(self, type_: str) -> None:
         """A request was answered with a problem of this type (``/problems/...``)."""
@@ -97,16 +138,6 @@ class Metrics:
     def accepted(self, kind: str) -> None:
         """A job was accepted."""
         self._jobs_accepted.labels(kind).inc()
-
-    def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
-        """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
-        self._attempts.labels(outcome.replace(" ", "_")).inc()
-        if kind is not None:
-            self._job_seconds.labels(kind).observe(seconds)
-
-    def worker_restart(self, reason: str) -> None:
-        """A worker process is being replaced."""
-        self._worker_restarts.labels(reason).inc()
 
     def watch(
         self, listeners: Callable[[], int], workers: Callable[[], int], queue: Callable[[], Mapping[str, int]]

@@ -43,6 +43,13 @@ class Settings(BaseSettings):
         "mechsynth"
     )
     workers: Annotated[int, Field(ge=1, le=256, description="Worker processes.")] = min(2, os.cpu_count() or 1)
+    worker_metrics_host: str = Field(
+        default="127.0.0.1", min_length=1, description="Address at which a worker host shows its metrics."
+    )
+    worker_metrics_port: (
+        Annotated[int, Field(ge=1, le=65535, description="Port of the metrics of a worker host; none when left out.")]
+        | None
+    ) = None
     max_body_bytes: Annotated[int, Field(ge=1024, le=1 << 30, description="Largest request body, bytes.")] = 1 << 20
     job_timeout_s: Annotated[float, Field(gt=0, le=86_400, description="Longest computation of a job, seconds.")] = (
         600.0

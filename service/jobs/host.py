@@ -17,6 +17,7 @@ from types import FrameType
 import structlog
 from celery.concurrency.thread import TaskPool
 from celery.exceptions import WorkerShutdown
+from prometheus_client import start_http_server
 from sqlalchemy.exc import SQLAlchemyError
 from ulid import ULID
 
@@ -26,7 +27,7 @@ from service.jobs.database import connect, unreachable, upgrade
 from service.jobs.local import LocalExecutor
 from service.jobs.store import JobStore
 from service.jobs.watch import Watch
-from service.metrics import Metrics
+from service.metrics import HostMetrics
 from service.settings import Settings
 
 BEAT_PERIOD_S = 0.5
@@ -35,10 +36,14 @@ BEAT_PERIOD_S = 0.5
 log = structlog.get_logger(__name__)
 
 
+class HostError(Exception):
+    """The worker host cannot run here; the message is a sentence for the operator."""
+
+
 class Host:
     """The lanes of a host, and who waits for their jobs."""
 
-    def __init__(self, settings: Settings, metrics: Metrics) -> None:
+    def __init__(self, settings: Settings, metrics: HostMetrics) -> None:
         self.id = str(ULID())
         self.lanes = LocalExecutor(settings, metrics)
         self._engine = connect(settings.store_url, durable=False)
@@ -49,6 +54,7 @@ class Host:
         self._stopping = threading.Event()
         self._lock = threading.Lock()
         self._waiting: dict[str, list[threading.Event]] = {}
+        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()), self.waiting)
 
     def start(self) -> None:
         """Make the tables where they are missing, and start the lanes."""
@@ -67,6 +73,12 @@ class Host:
         while not done.wait(BEAT_PERIOD_S):
             if self._stopping.is_set():
                 return
+
+    def waiting(self) -> int:
+        """How many jobs the host has that no lane has begun."""
+        with self._lock:
+            taken = set(self._waiting)
+        return len(taken.difference(self.lanes.claims().values()))
 
     def stop(self) -> None:
         """Put the running jobs back into the queue and end the workers. May be called again."""
@@ -101,9 +113,19 @@ class Host:
 
 
 def run_host(settings: Settings) -> None:
-    """Run a worker host until SIGINT or SIGTERM."""
+    """Run a worker host until SIGINT or SIGTERM.
+
+    Raises
+    ------
+    HostError
+        When the port of its metrics cannot be had.
+    SQLAlchemyError, OSError
+        When the store cannot be reached.
+    """
     logs.configure(settings.log_level, settings.log_format)
-    host = Host(settings, Metrics())
+    metrics = HostMetrics()
+    host = Host(settings, metrics)
+    show(metrics, settings)
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)
     try:
@@ -126,6 +148,26 @@ def run_host(settings: Settings) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         host.stop()
+
+
+def show(metrics: HostMetrics, settings: Settings) -> None:
+    """Serve the metrics to Prometheus where the settings say so, in a thread that ends with the process.
+
+    Raises
+    ------
+    HostError
+        When the port cannot be had.
+    """
+    address, port = settings.worker_metrics_host, settings.worker_metrics_port
+    if port is None:
+        return
+    try:
+        start_http_server(port, address, metrics.registry)
+    except OSError as error:
+        raise HostError(
+            f"cannot show metrics on {address} port {port} ({error.strerror}); set MECHSYNTH_WORKER_METRICS_PORT"
+        ) from None
+    log.info("metrics", host=address, port=port)
 
 
 def _end(_signal: int, _frame: FrameType | None) -> None:

@@ -30,7 +30,7 @@ from service.jobs.executor import Changed
 from service.jobs.orphans import tell_children
 from service.jobs.states import Status
 from service.jobs.store import JobStore
-from service.metrics import Metrics
+from service.metrics import WorkerMetrics
 
 CHECK_PERIOD_S = 1.0
 """An idle lane looks this often whether its worker is alive, so that a job never meets a dead one."""
@@ -71,7 +71,7 @@ class Lane(threading.Thread):
         settings: worker.WorkerSettings,
         timeout_s: float,
         changed: Changed,
-        metrics: Metrics,
+        metrics: WorkerMetrics,
         after: Lane | None,
     ) -> None:
         super().__init__(name=name, daemon=True)

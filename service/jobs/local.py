@@ -12,7 +12,7 @@ from service.jobs.executor import Changed
 from service.jobs.lane import Lane
 from service.jobs.store import JobStore
 from service.jobs.worker import WorkerSettings
-from service.metrics import Metrics
+from service.metrics import WorkerMetrics
 from service.settings import Settings
 
 STOP_TIMEOUT_S = 5.0
@@ -31,7 +31,7 @@ class LocalExecutor:
         When the store cannot be reached.
     """
 
-    def __init__(self, settings: Settings, metrics: Metrics) -> None:
+    def __init__(self, settings: Settings, metrics: WorkerMetrics) -> None:
         self._settings = settings
         self._metrics = metrics
         # What the executor writes is found out anew if it is lost, like what the workers write.

@@ -7,8 +7,10 @@ import sys
 from pathlib import Path
 
 import httpx
+from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
+from tests.cluster.engines import free_port
 from tests.service.running import SCRIPTED, START_S, STOP_S, environment, until, workers_of
 
 
@@ -40,6 +42,12 @@ class Process:
     def url(self):
         return f"http://127.0.0.1:{self.port}"
 
+    def metrics(self):
+        """What a worker host tells Prometheus: values by names and labels."""
+        text = httpx.get(f"http://127.0.0.1:{self.settings['worker_metrics_port']}/metrics").text
+        samples = [sample for family in text_string_to_metric_families(text) for sample in family.samples]
+        return {(sample.name, *sample.labels.values()): sample.value for sample in samples}
+
     def children(self):
         return workers_of(self.process.pid)
 
@@ -57,7 +65,9 @@ class Deployment:
 
     def __init__(self, folder: Path, servers=2, hosts=2, **settings):
         self.folder = folder
-        self.hosts = [Process(folder, f"host-{n}", "worker", **settings) for n in range(hosts)]
+        self.hosts = [
+            Process(folder, f"host-{n}", "worker", worker_metrics_port=free_port(), **settings) for n in range(hosts)
+        ]
         self.servers = [Process(folder, f"server-{n}", "serve", **settings) for n in range(servers)]
         try:
             for process in (*self.hosts, *self.servers):

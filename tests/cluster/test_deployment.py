@@ -3,6 +3,7 @@
 import signal
 import threading
 import time
+from collections import Counter
 
 import httpx
 import psycopg
@@ -47,6 +48,16 @@ def reaches(client, job_id, status, seconds=60.0):
     return until(there, seconds, f"job {status}")
 
 
+def gated(deployed, jobs=1):
+    """So many jobs that run until the gate is opened; they run now."""
+    (deployed.folder / "open").unlink(missing_ok=True)
+    client = deployed.clients[0]
+    posted = [post(client, GATED) for _ in range(jobs)]
+    for job in posted:
+        reaches(client, job["id"], "running")
+    return posted
+
+
 def test_a_job_of_one_server_is_a_job_of_all(deployed):
     here, there = deployed.clients
     job = post(here, INSTANT, wait=30)
@@ -85,11 +96,8 @@ def test_events_are_heard_at_another_server(deployed):
 
 
 def test_lost_messages_are_sent_again(deployed):
-    (deployed.folder / "open").unlink(missing_ok=True)
     client = deployed.clients[0]
-    blocking = [post(client, GATED) for _ in deployed.hosts]
-    for job in blocking:
-        reaches(client, job["id"], "running")
+    blocking = gated(deployed, len(deployed.hosts))
     waiting = [post(client, INSTANT) for _ in range(10)]
     lost = until(lambda: CHOSEN.broker.purge(CHOSEN.mark(deployed.folder)), what="a message in the queue")
     (deployed.folder / "open").touch()
@@ -99,10 +107,8 @@ def test_lost_messages_are_sent_again(deployed):
 
 
 def test_a_host_that_stops_gives_its_job_to_another(deployed):
-    (deployed.folder / "open").unlink(missing_ok=True)
     client = deployed.clients[0]
-    job = post(client, GATED)
-    reaches(client, job["id"], "running")
+    [job] = gated(deployed)
     began = time.monotonic()
     for host in deployed.hosts:  # whichever has it
         host.process.send_signal(signal.SIGTERM)
@@ -117,11 +123,8 @@ def test_a_host_that_stops_gives_its_job_to_another(deployed):
 
 
 def test_a_host_that_is_killed_leaves_no_worker_and_its_job_runs_elsewhere(deployed):
-    (deployed.folder / "open").unlink(missing_ok=True)
     client = deployed.clients[0]
-    jobs = [post(client, GATED) for _ in deployed.hosts]
-    for job in jobs:
-        reaches(client, job["id"], "running")
+    jobs = gated(deployed, len(deployed.hosts))
     host = deployed.hosts[0]
     children = host.children()
     host.kill()
@@ -129,6 +132,34 @@ def test_a_host_that_is_killed_leaves_no_worker_and_its_job_runs_elsewhere(deplo
     (deployed.folder / "open").touch()
     for job in jobs:
         reaches(client, job["id"], "succeeded")
+
+
+def test_each_host_shows_what_its_workers_do(deployed):
+    """Job times by kind, attempts, restarts of workers, and the jobs that it has: added up over the hosts."""
+
+    def seen():
+        added = Counter()
+        for host in deployed.hosts:
+            added.update(host.metrics())
+        return added
+
+    until(lambda: seen()["mechsynth_workers_ready",] == len(deployed.hosts), 60.0, "workers on all hosts")
+    before = seen()
+    here = deployed.clients[0]
+    assert post(here, INSTANT, wait=30)["status"] == "succeeded"
+    running = gated(deployed, len(deployed.hosts))
+    assert all(host.metrics()["mechsynth_host_jobs", "running"] == 1 for host in deployed.hosts)
+    assert here.delete(f"/v1/jobs/{running[0]['id']}").status_code == 202
+    until(lambda: seen()["mechsynth_host_jobs", "running"] < len(running), 10.0, "the end of the cancelled job")
+    (deployed.folder / "open").touch()
+    for job in running[1:]:
+        reaches(here, job["id"], "succeeded")
+    until(lambda: seen()["mechsynth_host_jobs", "running"] == 0, 10.0, "the end of all jobs")
+    growth = {key: value - before[key] for key, value in seen().items() if value != before[key]}
+    assert growth["mechsynth_job_seconds_count", "motion"] == len(running)
+    assert growth["mechsynth_job_attempts_total", "succeeded"] == len(running)
+    assert growth["mechsynth_job_attempts_total", "cancelled"] == 1
+    assert growth["mechsynth_worker_restarts_total", "cancelled"] == 1
 
 
 def test_a_store_that_is_away_is_answered_503_and_found_again(deployed):

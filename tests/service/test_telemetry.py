@@ -2,13 +2,17 @@
 
 import json
 import re
+import socket
 import threading
 
 import httpx
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from service.metrics import Metrics
+from service.jobs import host
+from service.jobs.host import HostError, show
+from service.metrics import HostMetrics, Metrics
+from service.settings import Settings
 from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE
 
@@ -141,6 +145,36 @@ def test_a_store_that_does_not_answer_costs_only_the_queue():
     text = generate_latest(metrics.registry).decode()
     assert "mechsynth_event_listeners 3.0" in text
     assert "mechsynth_jobs_unfinished{" not in text
+
+
+def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
+    metrics = HostMetrics()
+    metrics.watch(lambda: 2, lambda: 1, lambda: 3)
+    metrics.attempt("succeeded", "motion", 0.25)
+    metrics.worker_restart("timeout")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    show(metrics, Settings(worker_metrics_port=port))
+    text = httpx.get(f"http://127.0.0.1:{port}/metrics").text
+    for line in (
+        "mechsynth_workers_ready 2.0",
+        'mechsynth_host_jobs{status="running"} 1.0',
+        'mechsynth_host_jobs{status="waiting"} 3.0',
+        'mechsynth_job_seconds_sum{kind="motion"} 0.25',
+        'mechsynth_job_attempts_total{outcome="succeeded"} 1.0',
+        'mechsynth_worker_restarts_total{reason="timeout"} 1.0',
+    ):
+        assert f"\n{line}\n" in text
+    assert "process_resident_memory_bytes" in text
+    assert "mechsynth_http" not in text
+    with pytest.raises(HostError, match=f"port {port}.*MECHSYNTH_WORKER_METRICS_PORT"):
+        show(metrics, Settings(worker_metrics_port=port))
+
+
+def test_a_worker_host_that_is_not_told_to_shows_nothing(monkeypatch):
+    monkeypatch.setattr(host, "start_http_server", lambda *_: pytest.fail("it listens"))
+    show(HostMetrics(), Settings())
 
 
 def durations(answer):
