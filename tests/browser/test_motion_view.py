@@ -2,14 +2,18 @@
 
 import math
 import re
+from functools import partial
 
 import pytest
 
 from synthesis.kinds import examples
-from tests.browser.test_studio import PLAIN, state
+from tests.browser import test_studio
+from tests.browser.test_studio import PLAIN
 from tests.service.running import until
 
 pytestmark = pytest.mark.browser
+
+solved = partial(test_studio.solved, shown=".moving .live .link")
 
 TIMED = examples("path")[1]
 """A crank-rocker through five points; its right cognate is one too, with the same crank angles."""
@@ -24,14 +28,6 @@ def motion_of(studio, server, number=0, steps=240):
 
 def number(text):
     return float(text.replace("−", "-").rstrip("°"))
-
-
-def solved(studio, problem):
-    state(studio.page, problem)
-    studio.solve()
-    studio.page.wait_for_selector(".moving .live .link")
-    studio.page.focus("#scrub")
-    studio.page.keyboard.press("Home")
 
 
 def curve(page, selector):

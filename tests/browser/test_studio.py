@@ -33,6 +33,15 @@ def state(page, problem):
     page.fill("#json-text", json.dumps(problem))
 
 
+def solved(studio, problem, shown="#scrub"):
+    """Solve a problem, and when this is shown put the motion of its first design to its beginning."""
+    state(studio.page, problem)
+    studio.solve()
+    studio.page.wait_for_selector(shown)
+    studio.page.focus("#scrub")
+    studio.page.keyboard.press("Home")
+
+
 def drag(page, selector, by):
     page.locator(selector).scroll_into_view_if_needed()
     box = page.locator(selector).bounding_box()

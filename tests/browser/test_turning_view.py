@@ -7,7 +7,7 @@ import pytest
 
 from synthesis.kinds import examples
 from tests.browser.test_motion_view import motion_of, number
-from tests.browser.test_studio import state
+from tests.browser.test_studio import solved
 from tests.service.running import until
 
 pytestmark = pytest.mark.browser
@@ -30,14 +30,6 @@ FOLLOWERS = {
     "translating_flat": examples("cam")[3],
     "oscillating_flat": {**ARM, "follower": {"type": "oscillating_flat", "pivot_distance": 100, "face_offset": 5}},
 }
-
-
-def solved(studio, problem):
-    state(studio.page, problem)
-    studio.solve()
-    studio.page.wait_for_selector("#scrub")
-    studio.page.focus("#scrub")
-    studio.page.keyboard.press("Home")
 
 
 def scrub(page, to):

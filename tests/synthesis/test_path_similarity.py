@@ -18,10 +18,13 @@ ROCKER = Fourbar(0.0, 8.0 + 1.0j, 2.5, 7.0, 6.0, 4.0 + 3.0j)
 ANGLES = np.array([10.0, 55.0, 120.0, 200.0, 290.0])
 EVERY = {"constraints": {"same_branch": False, "in_order": False}, "max_designs": 50}
 
-SIMILARITIES = st.tuples(
-    st.floats(-4.0, 4.0), st.floats(-3.1, 3.1), st.complex_numbers(max_magnitude=100.0, allow_nan=False)
+SIMILARITIES = st.builds(
+    lambda decades, turn, shift: (cmath.rect(10.0**decades, turn), 10.0**decades * shift),
+    st.floats(-4.0, 4.0),
+    st.floats(-3.1, 3.1),
+    st.complex_numbers(max_magnitude=100.0, allow_nan=False),
 )
-"""Decades of the scale, rotation, and shift in scaled units."""
+"""Scale and rotation as a factor, and a shift of up to a hundred scaled units."""
 
 
 def shapes(result: PathResult) -> np.ndarray:
@@ -73,21 +76,17 @@ def answer(statement: dict[str, object]) -> PathResult:
 @pytest.mark.slow
 @given(SIMILARITIES)
 @settings(max_examples=8, deadline=None)
-def test_timed_solutions_move_with_the_points(moved: tuple[float, float, complex]) -> None:
-    decades, turn, shift = moved
-    factor = cmath.rect(10.0**decades, turn)
+def test_timed_solutions_move_with_the_points(moved: tuple[complex, complex]) -> None:
+    factor, shift = moved
     points = points_at(ANGLES)
-    shift = shift * abs(factor)
     compare(timed(points), timed(factor * points + shift), factor, shift)
 
 
 @pytest.mark.slow
 @given(SIMILARITIES)
 @settings(max_examples=8, deadline=None)
-def test_solutions_on_given_pivots_move_with_the_points_and_pivots(moved: tuple[float, float, complex]) -> None:
-    decades, turn, shift = moved
-    factor = cmath.rect(10.0**decades, turn)
-    shift = shift * abs(factor)
+def test_solutions_on_given_pivots_move_with_the_points_and_pivots(moved: tuple[complex, complex]) -> None:
+    factor, shift = moved
     points = points_at(np.array([0.0, 40.0, 95.0, 160.0, 250.0]))
     o2, o4 = complex(ROCKER.input_pivot), complex(ROCKER.output_pivot)
     one = on_pivots(points, o2, o4)
