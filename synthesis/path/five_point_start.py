@@ -1,24 +1,20 @@
 """The start of every five-point problem on given pivots: all solutions for one set of general complex parameters.
 
 Run as a program (``python -m synthesis.path.five_point_start``) it solves one random complex linkage's own parameters,
-follows the solution around random loops of the parameters until there are 36 solutions and more loops find none (Duff
-et al. 2019, doi:10.1093/imanum/dry017), and writes them beside this file.
+finds the other 35 solutions by monodromy (:mod:`synthesis.numerics.monodromy`), and writes them beside this file.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 from functools import cache
 from importlib import resources
-from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.numerics.continuation import REACHED, follow
+from synthesis.numerics.monodromy import Start, all_solutions, remake, stored
 from synthesis.path.five_point_system import (
     GROUPS,
     PARAMETERS,
@@ -42,18 +38,10 @@ QUIET_LOOPS, MOST_LOOPS = 12, 80
 """Loops without a new solution before the search ends, and loops at most."""
 
 
-class Start(NamedTuple):
-    """All solutions, shape (36, 8), for the parameters, shape (12,)."""
-
-    y: Complex
-    p: Complex
-
-
 @cache
 def start() -> Start:
-    """The stored solutions."""
-    with resources.files(__package__).joinpath(FILE).open("rb") as file, np.load(file) as stored:
-        return Start(stored["y"], stored["p"])
+    """The stored solutions, shape (36, 8), and their parameters, shape (12,)."""
+    return stored(resources.files(__package__).joinpath(FILE))
 
 
 def distinct(y: Complex) -> Complex:
@@ -95,34 +83,23 @@ def solve_by_monodromy(rng: np.random.Generator) -> Start:
         When the loops do not come to 36 solutions; another seed will do.
     """
     y, p = random_problem(rng)
-    found, quiet = y[None], 0
     straight = np.zeros(PARAMETERS, np.complex128)
-    for loop in range(MOST_LOOPS):
-        corners = [p, *(rng.normal(size=(2, PARAMETERS, 2)) @ np.array([1.0, 1.0j])), p]
-        moved = found
-        for here, there in pairwise(corners):
-            ends = follow(five_point_system, GROUPS, SCRATCH, moved, here, there, straight, tolerance=1e-3)
-            moved = ends.y[ends.status == REACHED]
-        moved = moved[residuals(moved, p) < SAME]
-        before = len(found)
-        found = distinct(np.concatenate([found, moved]))
-        sys.stdout.write(f"loop {loop + 1}: {len(found)} solutions\n")
-        quiet = quiet + 1 if len(found) == before else 0
-        if len(found) == SOLUTIONS and quiet == QUIET_LOOPS:
-            return Start(found, p)
-    raise RuntimeError(f"{len(found)} solutions after {MOST_LOOPS} loops; {SOLUTIONS} are expected")
 
+    def followed(y: Complex, here: Complex, there: Complex) -> Complex:
+        ends = follow(five_point_system, GROUPS, SCRATCH, y, here, there, straight, tolerance=1e-3)
+        return np.asarray(ends.y[ends.status == REACHED])
 
-def main() -> None:
-    """Make the start anew and store it."""
-    parser = argparse.ArgumentParser(prog="python -m synthesis.path.five_point_start", description=main.__doc__)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--output", type=Path, default=Path(__file__).with_name(FILE))
-    arguments = parser.parse_args()
-    made = solve_by_monodromy(np.random.default_rng(arguments.seed))
-    sys.stdout.write(f"largest residual: {residuals(made.y, made.p).max():.1e}\n")
-    np.savez(arguments.output, y=made.y, p=made.p)
+    return all_solutions(
+        y,
+        p,
+        followed,
+        lambda ends: distinct(ends[residuals(ends, p) < SAME]),
+        rng,
+        count=SOLUTIONS,
+        quiet_loops=QUIET_LOOPS,
+        most_loops=MOST_LOOPS,
+    )
 
 
 if __name__ == "__main__":
-    main()
+    remake(solve_by_monodromy, residuals, Path(__file__).with_name(FILE), SEED)

@@ -1,25 +1,21 @@
 """The start of every nine-point problem: all solutions for one set of general parameters, found by monodromy.
 
 Run as a program (``python -m synthesis.path.nine_point_start``) it draws a fourbar with complex dimensions and
-parameters that it solves, follows the solution around random loops of the parameters, which lead to other solutions of
-the same parameters, and does so with all that are known until there are 1442 orbits and two more loops find none
-(Duff et al. 2019, doi:10.1093/imanum/dry017). What it writes beside this file is read by :func:`start`.
+parameters that it solves, and finds one solution of each of the other 1441 orbits by monodromy
+(:mod:`synthesis.numerics.monodromy`). What it writes beside this file is read by :func:`start`.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 from functools import cache
 from importlib import resources
-from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.numerics.continuation import REACHED, follow
+from synthesis.numerics.monodromy import Start, all_solutions, remake, stored
 from synthesis.path.nine_point_system import (
     GROUPS,
     ORBITS,
@@ -48,19 +44,13 @@ QUIET_LOOPS = 2
 
 MOST_LOOPS = 60
 
-
-class Start(NamedTuple):
-    """One solution of each orbit, shape (1442, 16), for the parameters, shape (16,)."""
-
-    y: Complex
-    p: Complex
+THREADS = 2
 
 
 @cache
 def start() -> Start:
-    """The stored solutions."""
-    with resources.files(__package__).joinpath(FILE).open("rb") as file, np.load(file) as stored:
-        return Start(stored["y"], stored["p"])
+    """The stored solutions, one of each orbit: shape (1442, 16), for parameters of shape (16,)."""
+    return stored(resources.files(__package__).joinpath(FILE))
 
 
 def is_linkage(y: Complex) -> NDArray[np.bool_]:
@@ -105,36 +95,28 @@ def solve_by_monodromy(rng: np.random.Generator) -> Start:
         When the loops do not come to 1442 orbits; another seed will do.
     """
     y, p = random_problem(rng)
-    found, quiet, threads = y[None], 0, 2
     straight = np.zeros(PARAMETERS, np.complex128)
-    for loop in range(MOST_LOOPS):
-        corners = [p, *(np.abs(p).mean() * (rng.normal(size=(2, PARAMETERS, 2)) @ [1.0, 1.0j])), p]
-        moved = found
-        for here, there in pairwise(corners):
-            ends = follow(
-                nine_point_system, GROUPS, SCRATCH, moved, here, there, straight, tolerance=1e-3, threads=threads
-            )
-            moved = ends.y[ends.status == REACHED]
-        moved = moved[is_linkage(moved) & (residuals(moved, p) < SAME_ORBIT)]
-        before = len(found)
-        found = distinct_orbits(np.concatenate([found, moved]), p)
-        sys.stdout.write(f"loop {loop + 1}: {len(found)} orbits\n")
-        quiet = quiet + 1 if len(found) == before else 0
-        if len(found) == ORBITS and quiet == QUIET_LOOPS:
-            return Start(smallest_member(found, p), p)
-    raise RuntimeError(f"{len(found)} orbits after {MOST_LOOPS} loops; {ORBITS} are expected")
 
+    def followed(y: Complex, here: Complex, there: Complex) -> Complex:
+        ends = follow(nine_point_system, GROUPS, SCRATCH, y, here, there, straight, tolerance=1e-3, threads=THREADS)
+        return np.asarray(ends.y[ends.status == REACHED])
 
-def main() -> None:
-    """Make the start anew and store it."""
-    parser = argparse.ArgumentParser(prog="python -m synthesis.path.nine_point_start", description=main.__doc__)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--output", type=Path, default=Path(__file__).with_name(FILE))
-    arguments = parser.parse_args()
-    made = solve_by_monodromy(np.random.default_rng(arguments.seed))
-    sys.stdout.write(f"largest residual: {residuals(made.y, made.p).max():.1e}\n")
-    np.savez(arguments.output, y=made.y, p=made.p)
+    def distinct(ends: Complex) -> Complex:
+        return distinct_orbits(ends[is_linkage(ends) & (residuals(ends, p) < SAME_ORBIT)], p)
+
+    found = all_solutions(
+        y,
+        p,
+        followed,
+        distinct,
+        rng,
+        count=ORBITS,
+        quiet_loops=QUIET_LOOPS,
+        most_loops=MOST_LOOPS,
+        spread=float(np.abs(p).mean()),
+    )
+    return Start(smallest_member(found.y, p), p)
 
 
 if __name__ == "__main__":
-    main()
+    remake(solve_by_monodromy, residuals, Path(__file__).with_name(FILE), SEED)
