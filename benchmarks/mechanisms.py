@@ -1,12 +1,15 @@
-"""One mechanism of every type, stated as a client would, for the benchmark of analyses."""
+"""One mechanism of every type, stated as a client would, for the benchmarks of analyses."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from kinematics.linkage.catalogue import peaucellier, sixbar
-from kinematics.linkage.mechanism import Mechanism
+import numpy as np
+
+from kinematics.linkage.catalogue import fourbar, hart, pantograph, peaucellier, sixbar
+from kinematics.linkage.fourbar import Fourbar
+from kinematics.linkage.mechanism import Mechanism, Slide
 
 
 def by_skeleton(mechanism: Mechanism) -> dict[str, Any]:
@@ -59,6 +62,38 @@ SIXBARS: dict[str, tuple[dict[str, complex], tuple[str, ...]]] = {
     ),
 }
 
+
+def behind(
+    lengths: tuple[float, ...],
+    angle: float,
+    links: dict[str, tuple[str, ...]],
+    slides: tuple[Slide, ...] = (),
+    **joints: complex,
+) -> Mechanism:
+    """A fourbar (input, coupler, output, ground, and P on the coupler's line) that drives further links or a slide."""
+    first = fourbar(Fourbar.from_lengths(*lengths), angle)
+    every = {**first.links, "rocker": first.links["output"]}
+    every |= {"ground": (*first.links["ground"], *(name for name in joints if name[0] == "O"))} | links
+    if "output" not in links:
+        del every["output"]
+    return Mechanism({**first.joints, **joints}, every, "input", slides)
+
+
+def ram(joint: str, place: complex, angle: float, link: str = "ground") -> tuple[Slide]:
+    return (Slide(joint, link, np.asarray(place), np.asarray(angle)),)
+
+
+def dwell_in_a_slot() -> Mechanism:
+    first = fourbar(Fourbar.from_lengths(*HOEKEN[0]), HOEKEN[1])
+    p = complex(first.joints["P"])
+    slot = ram("P", p, 0.2, "output")
+    return behind(*HOEKEN, {"output": ("O6", "C")}, slot, O6=p - 6.0, C=p - 5.0 + 1j)
+
+
+DRAG = (2.0, 2.2, 2.0, 1.0, 0.0), 0.8
+DRAGGED = {"rocker": ("O4", "B", "C"), "link_5": ("C", "D")}
+HOEKEN = (1.0, 2.5, 2.5, 2.0, 5.0), 0.9
+
 STATED: dict[str, dict[str, Any]] = {
     "fourbar, crank": on_pivots("fourbar", [6.0, 0.0], links={"input": 2.0, "coupler": 7.0, "output": 9.0}),
     "fourbar, rocker": on_pivots("fourbar", [6.0, 0.0], links={"input": 5.0, "coupler": 4.0, "output": 3.2}),
@@ -83,5 +118,16 @@ STATED: dict[str, dict[str, Any]] = {
         for kind, (joints, inputs) in SIXBARS.items()
         for link in inputs
     },
+    "drag link, rocker": by_skeleton(
+        behind(*DRAG, {**DRAGGED, "output": ("O6", "D")}, C=0.3 + 1.4j, O6=-6.0, D=-5.4 + 3.5j)
+    ),
+    "drag link, slider": by_skeleton(behind(*DRAG, DRAGGED, ram("D", 8.0, 0.0), C=0.3 + 1.4j, D=8.0)),
+    "dwell, rocker": by_skeleton(
+        behind(*HOEKEN, {"link_5": ("P", "D"), "output": ("O6", "D")}, O6=9.0 + 3j, D=8.0 + 6j)
+    ),
+    "dwell, slider": by_skeleton(behind(*HOEKEN, {"link_5": ("P", "D")}, ram("D", 9.0 + 4j, 0.0), D=9.0 + 4j)),
+    "dwell, slot": by_skeleton(dwell_in_a_slot()),
     "Peaucellier's eightbar": by_skeleton(peaucellier(0.0, -1j, 1.0, 3.5, 2.0, 1.0)),
+    "Hart's inversor": by_skeleton(hart(0.0, -1.0, 1.0, 5.0, 3.0, 0.4, 0.7)),
+    "pantograph": by_skeleton(pantograph(0.0, 4.0, 0.5, 3.0, 6.0, 2.5, 0.7)),
 }  # fmt: skip

@@ -1,12 +1,13 @@
 """The service as its clients meet it: how long a small job takes, what a server bears, and how soon it is ready.
 
-    python -m benchmarks.service [--jobs 200]
+    python -m benchmarks.service [--jobs 200] [--analyses-only]
 
 A real server is started on a free loopback port, and left alone until its workers have loaded everything. The jobs are
 Norton's Problem 5-26, solved and verified, stated with ``Prefer: wait``; the time runs from the request to the last
-byte of the answer. First over one connection, then over eight, and analyses of given mechanisms in 360 steps. A second
-server shows what it bears: reads of a job over four connections, a thousand queued jobs worked off, two hundred
-listeners, a flood of five times its queue, nine hundred half-open connections, and every hostile body of the tests.
+byte of the answer. First over one connection, then over eight. Then analyses in 360 steps of a mechanism of every type:
+their bodies are large, and are received to the end. A second server shows what it bears: reads of a job over four
+connections, a thousand queued jobs worked off, two hundred listeners, a flood of five times its queue, nine hundred
+half-open connections, and every hostile body of the tests.
 
 Beside the times stands the processor time of the server and of its workers: on a machine that is busy with other things
 the times say how busy, the processor time what the work costs.
@@ -28,13 +29,15 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
 import httpx
 
 from benchmarks import http_load
 from benchmarks.http_load import Load
+from benchmarks.mechanisms import STATED
+from synthesis.analyses import families
 from synthesis.kinds import KINDS
 from tests.service import hostile, test_hostile_bodies
 from tests.service.running import RunningServer, alive, until
@@ -53,53 +56,6 @@ PROBLEM_5_26 = {
 POSITIONS_ALONE = {key: PROBLEM_5_26[key] for key in ("kind", "positions")}
 
 
-FOURBAR = {
-    "type": "fourbar",
-    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
-    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
-}
-SLIDER_CRANK = {
-    "type": "slider_crank",
-    "fixed_pivot": [0.0, 0.0],
-    "links": {"crank": 1.4, "coupler": 4.0},
-    "slide": {"point": [0.0, 1.0], "angle": 0.0},
-}
-GEARED_FIVEBAR = {
-    "type": "geared_fivebar",
-    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
-    "links": {"input": 1.0, "coupler_1": 7.0, "coupler_2": 9.0, "output": 4.0},
-    "gear_ratio": 2.0,
-    "phase": 30.0,
-}
-STEPHENSON_2 = {
-    "type": "stephenson_2",
-    "skeleton": {
-        "joints": {
-            "O2": [0.0, 0.0], "O4": [4.0, 0.0], "A": [0.3, 1.0], "C": [0.8, 0.6],
-            "B": [1.5, 3.0], "D": [3.0, 2.2], "E": [4.2, 2.0],
-        },
-        "links": [
-            {"name": "ground", "joints": ["O2", "O4"]},
-            {"name": "input", "joints": ["O2", "A", "C"]},
-            {"name": "link_3", "joints": ["A", "B"]},
-            {"name": "link_4", "joints": ["B", "D", "E"]},
-            {"name": "link_5", "joints": ["C", "D"]},
-            {"name": "output", "joints": ["O4", "E"]},
-        ],
-        "input_link": "input",
-    },
-}  # fmt: skip
-
-
-def analysis_time(client: httpx.Client, mechanism: dict[str, object]) -> float:
-    start = time.perf_counter()
-    answer = client.post("/v1/analyses", json={"mechanism": mechanism, "motion": {"steps": 360}})
-    answer.json()
-    elapsed = time.perf_counter() - start
-    assert answer.status_code == 200
-    return elapsed
-
-
 def job_time(client: httpx.Client, problem: dict[str, object]) -> float:
     start = time.perf_counter()
     answer = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=20"})
@@ -115,6 +71,8 @@ def row(name: str, times: list[float]) -> None:
     print(f"{name:<52}{statistics.median(milliseconds):>10.1f}{statistics.quantiles(milliseconds, n=20)[-1]:>10.1f}")
 
 
+STEPS = 360
+ANALYSES = 60
 QUEUE = 1000
 LISTENERS = 200
 HALF_OPEN = 900
@@ -339,10 +297,56 @@ def bearing() -> None:
                 server.stop()
 
 
+def stated() -> dict[str, dict[str, Any]]:
+    """Requests for 360 steps of every type of linkage, and of the examples of all else that moves."""
+    motion = {"from": 0.0, "to": 360.0, "steps": STEPS, "speed_rpm": 60.0}
+    found = {}
+    for name, mechanism in STATED.items():
+        slide = mechanism.get("driven_by") == "slider"
+        found[name] = {"mechanism": mechanism} | ({} if slide else {"motion": motion})
+    for family in families()[1:]:
+        body = family.request.model_json_schema()["examples"][0]
+        if "steps" in body.get("motion", {}):
+            body = {**body, "motion": {**body["motion"], "from": 0.0, "to": 360.0, "steps": STEPS}}
+        found[body["mechanism"]["type"]] = body
+    return found
+
+
+def analyses(server: RunningServer) -> None:
+    """Times of analyses by type: by the clock, from the request to the last byte, and of the server's processor."""
+    print(
+        f"\n{f'analysis of {STEPS} steps through HTTP':<44}{'median ms':>10}{'worst ms':>10}{'server ms':>10}{'kB':>8}"
+    )
+    medians = {}
+    for name, body in stated().items():
+        request = http_load.request("POST", "/v1/analyses", json.dumps(body).encode())
+        first = http_load.run(server.url, [request] * 3, 1, keep_bodies=True)
+        assert set(first.statuses) == {200}, (name, first.bodies[0])
+        load, effort = spent(server, lambda request=request: http_load.run(server.url, [request] * ANALYSES, 1))
+        medians[name] = 1e3 * statistics.median(load.times)
+        print(
+            f"{name:<44}{medians[name]:>10.1f}{1e3 * max(load.times):>10.1f}{1e3 * effort.server / ANALYSES:>10.1f}"
+            f"{len(first.bodies[0]) / 1e3:>8.0f}"
+        )
+    slowest = max(medians, key=lambda name: medians[name])
+    print(f"slowest: {slowest}, {medians[slowest]:.1f} ms; {sum(t > 50.0 for t in medians.values())} types above 50 ms")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--jobs", type=int, default=200)
-    jobs = parser.parse_args().jobs
+    parser.add_argument("--analyses-only", action="store_true", help="only the analyses, type by type")
+    given = parser.parse_args()
+    if given.analyses_only:
+        with tempfile.TemporaryDirectory() as folder:
+            server = RunningServer(Path(folder), log_level="warning")
+            try:
+                until_settled(server)
+                analyses(server)
+            finally:
+                server.stop()
+        return
+    jobs = given.jobs
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
         server = RunningServer(Path(folder), log_level="warning")
@@ -361,15 +365,7 @@ def main() -> None:
             eight, effort = spent(server, lambda: awaited(server, 2 * jobs, 8))
             row("exact, eight clients", eight.times)
             print(f"\neight clients: {eight.rate:.0f} jobs/s, {effort.each(2 * jobs)}")
-            print(f"\n{'analysis of 360 steps through HTTP':<52}{'median ms':>10}{'p95 ms':>10}")
-            for name, mechanism in (
-                ("fourbar", FOURBAR),
-                ("slider-crank", SLIDER_CRANK),
-                ("geared fivebar, ratio 2", GEARED_FIVEBAR),
-                ("Stephenson II sixbar, class III", STEPHENSON_2),
-            ):
-                analysis_time(server.client, mechanism)
-                row(name, [analysis_time(server.client, mechanism) for _ in range(40)])
+            analyses(server)
         finally:
             server.stop()
     bearing()

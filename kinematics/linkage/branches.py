@@ -17,17 +17,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.closures import decompose
-from kinematics.linkage.configuration_curves import Closures, Curve, circuits, configuration_curves
+from kinematics.linkage.configuration_curves import Closures, Curve, circuits, configuration_curves, gear_rotations
 from kinematics.linkage.drive import assembly_signs
 from kinematics.linkage.mechanism import Mechanism, TopologyError
 
 Real = NDArray[np.float64]
+
+FULL_TURN = 2.0 * np.pi
 
 SAME_END = 1e-7
 """The reference belongs to a branch when it is at most so far beyond its ends, radians."""
 
 TURNS_AT_MOST = 200
 """Turns of the input until a geared mechanism repeats, at most."""
+
+MOST_TURNS = 1000.0
+"""Turns of the fastest geared link until all repeats, at most: what is to be looked at grows with them."""
 
 REPEATS = 1e-9
 """Angle by which a geared link may miss its place after a cycle, radians."""
@@ -56,7 +61,12 @@ def cycle(mechanism: Mechanism) -> float:
     for gear in mechanism.gears:
         ratio = Fraction(gear.ratio).limit_denominator(TURNS_AT_MOST)
         turns = int(np.lcm(turns, ratio.denominator))
-    return 2.0 * np.pi * min(turns, TURNS_AT_MOST)
+    return FULL_TURN * min(turns, TURNS_AT_MOST)
+
+
+def most_turns(mechanism: Mechanism) -> float:
+    """Turns of the fastest link that gears tie to the input, or of the input, until the mechanism repeats."""
+    return max(map(abs, gear_rotations(mechanism, decompose(mechanism).steps).values())) * cycle(mechanism) / FULL_TURN
 
 
 def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
@@ -66,7 +76,8 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
     ------
     TopologyError
         For a class III mechanism or one that is driven by a slide; where the gears do not bring it back within
-        ``TURNS_AT_MOST`` turns; or where a link swings freely at a change point and others depend on it.
+        ``TURNS_AT_MOST`` turns, or turn a link more than ``MOST_TURNS`` times until then; or where a link swings freely
+        at a change point and others depend on it.
     """
     decomposition = decompose(mechanism)
     if decomposition.left or mechanism.driven_by_slide:
@@ -76,6 +87,10 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
         turned = gear.ratio * period
         if abs(turned - 2.0 * np.pi * np.round(turned / (2.0 * np.pi))) > REPEATS:
             raise TopologyError(f"a gear ratio of {gear.ratio!r} does not repeat within {TURNS_AT_MOST} turns")
+    if most_turns(mechanism) > MOST_TURNS:
+        raise TopologyError(
+            f"gears turn a link more than {MOST_TURNS:g} times until all repeats; circuits are not known"
+        )
     closures = Closures(mechanism, decomposition)
     curves = configuration_curves(mechanism, closures, period)
     found = [

@@ -176,7 +176,7 @@ def geared_fivebar(
     """The geared fivebar (Norton, Sec. 4.8): θ5 = λ θ2 + φ, both from the ground line O2 → O5.
 
     ``open``: C, where the couplers meet, lies to the left of the directed line from A to B. ``coupler_point`` is P on
-    coupler 1 in its frame, origin at A, real axis towards C.
+    coupler 1 in its frame, origin at A, real axis towards C. ``input_angle`` counts full turns.
     """
     _require_sign("assembly", assembly)
     require("gear_ratio", "finite", np.asarray(gear_ratio), np.isfinite(gear_ratio))
@@ -209,6 +209,7 @@ def geared_fivebar(
         },
         "input",
         gears=(GearPair("input", "output", gear_ratio),),
+        turns=round((input_angle - float(np.angle(pin_a - o2))) / (2.0 * np.pi)),
     )
 
 

@@ -31,7 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage.closures import Decomposition
+from kinematics.linkage.closures import Decomposition, Step
 from kinematics.linkage.drive import drive_one, margins_of_one
 from kinematics.linkage.mechanism import Mechanism, TopologyError
 from kinematics.linkage.positive_arcs import TOUCHES, Arc, Domain, positive_arcs
@@ -171,11 +171,7 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
     TopologyError
         Where a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
     """
-    turned = {mechanism.input: 1.0}
-    for step in closures.steps:
-        if step.kind == "gear":
-            turned[step.link] = step.ratio * turned.get(step.other, 0.0)
-    waves = max(abs(rotation) for rotation in turned.values())
+    waves = max(map(abs, gear_rotations(mechanism, closures.steps).values()))
     curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
     for level in range(len(closures.links)):
         below = chains(curves) if curves else np.empty((0, 0, 4))
@@ -190,6 +186,15 @@ def configuration_curves(mechanism: Mechanism, closures: Closures, period: float
         arcs = positive_arcs(margin, domains)
         curves = [new for curve, own in zip(curves, arcs, strict=True) for new in _next(closures, level, curve, own)]
     return curves
+
+
+def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, float]:
+    """Rotations of the input and of all links that gears alone tie to it, by the input's."""
+    turned = {mechanism.input: 1.0}
+    for step in steps:
+        if step.kind == "gear":
+            turned[step.link] = step.ratio * turned.get(step.other, 0.0)
+    return turned
 
 
 def chains(curves: Sequence[Curve]) -> Real:

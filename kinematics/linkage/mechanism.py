@@ -66,6 +66,9 @@ class Mechanism:
         See :class:`Slide` and :class:`GearPair`.
     input : str
         Name of a link that is pinned to the ground, or of the joint of a slide on the ground.
+    turns : int
+        Full turns of the input link in the reference beyond the angle, from −π to π, at which its joints show it. With
+        gears of a ratio that is not whole the same input angle a turn on is another configuration.
 
     Raises
     ------
@@ -84,6 +87,7 @@ class Mechanism:
     input: str
     slides: tuple[Slide, ...] = ()
     gears: tuple[GearPair, ...] = ()
+    turns: int = 0
     shape: tuple[int, ...] = field(init=False)
 
     def __init__(
@@ -93,6 +97,7 @@ class Mechanism:
         input: str,
         slides: tuple[Slide, ...] = (),
         gears: tuple[GearPair, ...] = (),
+        turns: int = 0,
     ) -> None:
         points = {name: np.asarray(z, np.complex128) for name, z in joints.items()}
         lines = tuple(
@@ -116,6 +121,7 @@ class Mechanism:
             ("input", input),
             ("slides", lines),
             ("gears", tuple(gears)),
+            ("turns", turns),
             ("shape", shape),
         ):
             object.__setattr__(self, name, value)
@@ -208,7 +214,7 @@ class Mechanism:
             slide = next(s for s in self.slides if s.joint == self.input and s.link == GROUND)
             offset = self.joints[self.input] - slide.point
             return np.asarray((offset * np.exp(-1j * slide.angle)).real)
-        return self.link_angle(self.input)
+        return np.asarray(self.link_angle(self.input) + 2.0 * np.pi * self.turns)
 
     def link_angle(self, link: str) -> Real:
         """Angle of a link (first joint to second; the input link from its pivot) in the reference; radians, shape S."""

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from kinematics.linkage.branches import Branch, cycle
+from kinematics.linkage.branches import Branch, cycle, most_turns
 from kinematics.linkage.limits import branches, holding_reference
 from kinematics.linkage.mechanism import Mechanism, TopologyError
 
@@ -17,10 +15,11 @@ MOST_EFFORT = 200
 def effort(mechanism: Mechanism) -> int:
     """A measure of the work that the circuits of a mechanism are: closures × assemblies × turns of a cycle.
 
-    A dyad closes two links, or one link and a slide, and has two assemblies. An eightbar has an effort of 24.
+    A dyad closes two links, or one link and a slide, and has two assemblies. The turns are those of the fastest link
+    that gears tie to the input. An eightbar has an effort of 24.
     """
     dyads = max(len(mechanism.links) - 2 + len(mechanism.slides) - len(mechanism.gears), 0) // 2
-    return dyads * (1 << dyads) * round(cycle(mechanism) / (2.0 * math.pi))
+    return dyads * (1 << dyads) * round(most_turns(mechanism))
 
 
 def listed_branches(mechanism: Mechanism) -> list[Branch]:

@@ -35,7 +35,10 @@ def analysis(
     ``tracked`` adds to each branch where the joints are along it.
     """
     slide = mechanism.driven_by_slide
-    motion = drive(mechanism, at if slide else np.radians(at), speed=speed, acceleration=acceleration)
+    inputs = at if slide else np.radians(at)
+    motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration)
+    # Ratios and instant centres are of the position alone, and known also where the input just stands still.
+    paced = motion if np.all(speed) else drive(mechanism, inputs, order=1)
     sines = {link: np.abs(sine) for link, sine in motion.sines.items()}
     transmission = {link: _listed(np.degrees(np.arcsin(np.minimum(sine, 1.0)))) for link, sine in sines.items()}
     with np.errstate(invalid="ignore"):
@@ -48,9 +51,9 @@ def analysis(
         "slides": {name: _travel(jet) for name, jet in motion.slides.items()},
         "transmission_angle": [math.nan] * len(at) if least is None else _listed(least),
         "transmission_angles": transmission,
-        "torque_ratio": _ratios(motion, motion.angles, _grounded(mechanism)),
-        "force_ratio": _ratios(motion, motion.slides, _outputs(mechanism)),
-        "instant_centers": _instant_centers(mechanism, motion) if len(at) == 1 else {},
+        "torque_ratio": _ratios(paced, paced.angles, _grounded(mechanism)),
+        "force_ratio": _ratios(paced, paced.slides, _outputs(mechanism)),
+        "instant_centers": _instant_centers(mechanism, paced) if len(at) == 1 else {},
         "classification": _classification(mechanism),
         **_global(mechanism, tracked, _undefined(mechanism, sines)),
     }

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import chain
 from typing import Literal
 
 from kinematics.errors import DimensionError
@@ -67,8 +68,12 @@ def agree(path: str, stated: float | None, found: float, what: str = "the fixed 
         raise MechanismError(path, f"{what} give {found:.9g}; leave the field out or correct it")
 
 
-def assembled(make: Callable[[float], Mechanism], degrees: float | None) -> Mechanism:
-    """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on."""
+def assembled(make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]) -> Mechanism:
+    """The mechanism at its reference angle; where none is stated, at the first degree that will do, from 30° on.
+
+    ``between`` are angles, radians, from the midst of where the lengths let it be assembled, none where they do not:
+    that may be less than a degree. They are not looked at before they are needed.
+    """
     if degrees is not None:
         try:
             return make(math.radians(degrees))
@@ -76,9 +81,33 @@ def assembled(make: Callable[[float], Mechanism], degrees: float | None) -> Mech
             raise MechanismError(
                 "/reference_input_angle", "the mechanism cannot be assembled at this input angle"
             ) from None
-    for step in range(360):
+    for angle in chain((math.radians((FIRST_TRIED + step) % 360) for step in range(360)), between):
         try:
-            return make(math.radians((FIRST_TRIED + step) % 360))
+            return make(angle)
         except DimensionError:
             continue
     raise MechanismError("/links", "the mechanism cannot be assembled with these lengths at any input angle")
+
+
+def reaching(crank: float, o2: complex, o4: complex, least: float, most: float) -> list[float]:
+    """Crank angles, radians, at which its pin is in the midst of the distances from O4 that it can have and may have.
+
+    Law of cosines in the triangle O2, A, O4. None where it has no such distance.
+    """
+    ground = abs(o4 - o2)
+    low, high = max(least, abs(crank - ground)), min(most, crank + ground)
+    if low > high or ground == 0.0:
+        return []
+    reach = 0.5 * (low + high)
+    cosine = ((crank - reach) * (crank + reach) + ground * ground) / (2.0 * crank * ground)
+    turn = math.acos(max(-1.0, min(1.0, cosine)))
+    return [cmath.phase(o4 - o2) + turn, cmath.phase(o4 - o2) - turn]
+
+
+def midst(centre: float, radius: float, bound: float, least: float = -1.0, most: float = 1.0) -> float | None:
+    """Sine, from ``least`` to ``most``, with centre + radius · sine in the midst of what it can be within ± bound.
+
+    None where it cannot be within.
+    """
+    low, high = max(-bound, centre + radius * least), min(bound, centre + radius * most)
+    return None if low > high else max(-1.0, min(1.0, (0.5 * (low + high) - centre) / radius))

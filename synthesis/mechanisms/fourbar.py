@@ -9,7 +9,15 @@ from kinematics.linkage import catalogue
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.fourbar import Fourbar
 from kinematics.linkage.mechanism import Mechanism
-from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
+from synthesis.mechanisms.base import (
+    Assembly,
+    MechanismError,
+    StatedCouplerPoint,
+    StatedPivots,
+    agree,
+    assembled,
+    reaching,
+)
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.problems import PositiveNumber, Statement
 
@@ -43,5 +51,13 @@ class GivenFourbar(GivenByDimensions):
         except DimensionError as error:
             raise MechanismError("/fixed_pivots", str(error)) from None
         return assembled(
-            lambda angle: catalogue.fourbar(linkage, angle, ASSEMBLY[self.assembly]), self.reference_input_angle
+            lambda angle: catalogue.fourbar(linkage, angle, ASSEMBLY[self.assembly]),
+            self.reference_input_angle,
+            reaching(
+                self.links.input,
+                o2,
+                o4,
+                abs(self.links.coupler - self.links.output),
+                self.links.coupler + self.links.output,
+            ),
         )

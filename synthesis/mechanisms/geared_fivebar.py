@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 import math
-from typing import Literal
+from collections.abc import Iterator
+from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from kinematics.linkage import catalogue
@@ -13,6 +17,14 @@ from kinematics.linkage.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.problems import Number, PositiveNumber, Statement
+
+Real = NDArray[np.float64]
+
+SAMPLES, MOST_SAMPLES = 720, 200_000
+"""Input angles for each turn of the faster pin, and at most, at which an assembly is looked for."""
+
+BEST = 16
+"""How many of the places where the pins are farthest inside are looked at closely."""
 
 
 class FivebarLengths(Statement):
@@ -57,4 +69,37 @@ class GivenGearedFivebar(GivenByDimensions):
                 self.coupler_point.vector,
             ),
             self.reference_input_angle,
+            self._between(o2, o5),
         )
+
+    def _between(self, o2: complex, o5: complex) -> Iterator[float]:
+        """Input angles at which the pins A and B are farthest inside the distances that the couplers let them have.
+
+        The distance goes up and down a few times for each turn of either pin. Between samples that show that, the best
+        place is drawn in: the golden section would do no better.
+        """
+        ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
+        low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
+
+        def inside(turn: NDArray[np.floating[Any]]) -> Real:
+            pins = (
+                o5
+                - o2
+                + self.links.output * np.exp(1j * (ground + self.gear_ratio * turn + math.radians(self.phase)))
+                - self.links.input * np.exp(1j * (ground + turn))
+            )
+            return np.asarray(np.minimum(high - np.abs(pins), np.abs(pins) - low) / radius)
+
+        samples = min(round(SAMPLES * max(1.0, abs(self.gear_ratio))), MOST_SAMPLES)
+        step = 2.0 * math.pi / samples
+        at = np.arange(samples) * step
+        found = inside(at)
+        best = at[
+            np.argsort(-np.where((found >= np.roll(found, 1)) & (found >= np.roll(found, -1)), found, -np.inf))[:BEST]
+        ]
+        while step > 1e-15:
+            tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])
+            best = tried[np.arange(len(best)), np.argmax(inside(tried), axis=1)]
+            step *= 0.7
+        for turn in best:
+            yield ground + float(turn)

@@ -48,8 +48,14 @@ class StatedSkeleton(Statement):
     gears: list[StatedGear] = Field(default=[], max_length=10)
     input_link: str
 
-    def mechanism(self) -> Mechanism:
-        """The mechanism in the reference configuration."""
+    def mechanism(self, degrees: float | None = None) -> Mechanism:
+        """The mechanism in the reference configuration, where gears are told the turn of a stated input angle."""
+        made = self._made(0)
+        if degrees is None or not made.gears or made.driven_by_slide:
+            return made
+        return self._made(round((math.radians(degrees) - float(made.reference_input)) / (2.0 * math.pi)))
+
+    def _made(self, turns: int) -> Mechanism:
         names = [link.name for link in self.links]
         if len(set(names)) != len(names):
             raise MechanismError("/skeleton/links", "each link needs a name of its own")
@@ -63,6 +69,7 @@ class StatedSkeleton(Statement):
                     for s in self.slides
                 ),
                 tuple(GearPair(*gear.links, gear.ratio) for gear in self.gears),
+                turns,
             )
         except ValueError as error:
             raise MechanismError("/skeleton", str(error)) from None
@@ -121,7 +128,7 @@ class GivenSkeleton(Statement):
         MechanismError
             For a skeleton that is none, and for dimensions beside it that it does not have.
         """
-        made = self.skeleton.mechanism()
+        made = self.skeleton.mechanism(self.reference_input_angle)
         for name, stated in self.links.items():
             listed = [made.links[name]] if name in made.links else list(made.links.values())
             found = [distance for joints in listed for distance in _distances(made, joints)]
@@ -181,7 +188,7 @@ class GivenByDimensions(Statement, ABC):
         own = self.assembled()
         if self.skeleton is None:
             return own
-        made = self.skeleton.mechanism()
+        made = self.skeleton.mechanism(self.reference_input_angle)
         slack = ROUNDING * max(abs(complex(z)) for m in (own, made) for z in m.joints.values())
         for joints in own.links.values():
             for one, other in combinations([joint for joint in joints if joint in made.joints], 2):

@@ -20,6 +20,8 @@ from synthesis.mechanisms.base import (
     StatedPivots,
     agree,
     assembled,
+    midst,
+    reaching,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.problems import NonNegative, Number, Point, PositiveNumber, Statement
@@ -64,7 +66,13 @@ class GivenSliderCrank(GivenByDimensions):
                 self.driven_by,
             ),
             self.reference_input_angle,
+            self._between(((pivot - line) * cmath.exp(-1j * angle)).imag, angle),
         )
+
+    def _between(self, offset: float, angle: float) -> list[float]:
+        """Crank angles with the pin in the midst of where the coupler reaches the slide from."""
+        sine = midst(offset, self.links.crank, self.links.coupler)
+        return [] if sine is None else [angle + math.asin(sine), angle + math.pi - math.asin(sine)]
 
 
 class InvertedLengths(Statement):
@@ -103,8 +111,10 @@ class GivenInvertedSliderCrank(GivenByDimensions):
         if self.coupler_point is not None:
             if self.reference_input_angle is None:
                 raise MechanismError("/reference_input_angle", "the coupler point is stated for it; it must be given")
-            return self._with_body(assembled(self._at, self.reference_input_angle), self.coupler_point.vector)
-        return assembled(self._at, self.reference_input_angle)
+            return self._with_body(assembled(self._at, self.reference_input_angle, ()), self.coupler_point.vector)
+        nearest = abs(self.links.output * math.sin(math.radians(self.slide.angle)))
+        between = reaching(self.links.input, o2, o4, nearest, math.inf)
+        return assembled(self._at, self.reference_input_angle, between)
 
     def _with_body(self, bare: Mechanism, local: complex) -> Mechanism:
         """The mechanism with the link that slides, and P on it: it keeps its line at a distance from O4."""
@@ -171,4 +181,30 @@ class GivenQuickReturn(GivenByDimensions):
                 ASSEMBLY[self.assembly],
             ),
             self.reference_input_angle,
+            self._between(o2, o4),
         )
+
+    def _between(self, o2: complex, o4: complex) -> list[float]:
+        """Crank angles with C in the midst of where it gets to and the coupler reaches the ram's slide from."""
+        slide, ground = math.radians(self.slide.angle), o2 - o4
+        height = ((o4 - complex(*self.slide.point)) * cmath.exp(-1j * slide)).imag
+        lean = math.pi if self.links.crank > abs(ground) else math.asin(self.links.crank / abs(ground))
+        towards = cmath.phase(ground) - slide
+        ends = [towards - lean, towards + lean]
+        ends += [
+            end for end in (0.5 * math.pi, -0.5 * math.pi) if abs(math.remainder(end - towards, 2 * math.pi)) < lean
+        ]
+        sines = [math.sin(end) for end in ends]
+        sine = midst(height, self.links.rocker, self.links.coupler, min(sines), max(sines))
+        if sine is None:
+            return []
+        found = []
+        for turn in (math.asin(sine), math.pi - math.asin(sine)):
+            rocker = cmath.rect(1.0, slide + turn)
+            # A stands on the rocker's ray from O4, at the crank's length from O2.
+            pivot = ground / rocker
+            square = self.links.crank**2 - pivot.imag**2
+            for root in (math.sqrt(square), -math.sqrt(square)) if square >= 0.0 else ():
+                if pivot.real + root > 0.0:
+                    found.append(cmath.phase((root - 1j * pivot.imag) * rocker))
+        return found
