@@ -140,7 +140,10 @@ def _drawn(design: Any, problem: Any) -> str:
     from service import render
 
     for form in render.forms(problem.kind, design.mechanism.type):
-        drawn = render.exported(design, problem, "fuzz", form)
+        try:
+            drawn = render.exported(design, problem, "fuzz", form)
+        except render.NotBuilt:
+            continue
         if isinstance(drawn, str) and form != "dxf" and any(word in drawn for word in ('"nan', ",nan", ">nan", "inf,")):
             return f"the .{form} file has a number that is none"
     return ""

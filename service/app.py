@@ -16,6 +16,7 @@ from service.access.gate import Gate
 from service.access.keys import KeyStore
 from service.analyst import Analyst
 from service.api import analyses, docs, errors, events, health, jobs, metrics, problems, studio
+from service.drawings import Drawings
 from service.jobs.changes import Changes
 from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
@@ -47,6 +48,7 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
         changes = Changes(asyncio.get_running_loop())
         app.state.analyst = Analyst()
         app.state.analyst.start(after=lambda: executor.ready() > 0)
+        app.state.drawings = Drawings()
         try:
             executor.subscribe(changes.publish)
             executor.start()

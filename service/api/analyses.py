@@ -13,7 +13,7 @@ from pydantic_core import to_json
 from service.analyst import LONGEST_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, invalid_mechanism, invalid_request, sentence
+from service.api.errors import busy, invalid_mechanism, invalid_request, sentence
 from service.telemetry import span
 
 TAG = {"name": "analyses", "description": "Drive a given mechanism."}
@@ -77,9 +77,7 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
         fault = ("/mechanism", f"The analysis was given up after {LONGEST_S:g} seconds; are all lengths meant so?")
         raise invalid_mechanism([fault]) from None
     except Busy:
-        raise Refusal(
-            503, "busy", "Busy", "The service is busy with other analyses; ask again.", headers={"Retry-After": "5"}
-        ) from None
+        raise busy("analyses") from None
 
 
 def _analysed(body: Any) -> bytes:

@@ -116,6 +116,13 @@ def store_unavailable() -> Refusal:
     )  # fmt: skip
 
 
+def busy(with_what: str) -> Refusal:
+    """Others of the same sort have kept this request from its turn."""
+    return Refusal(
+        503, "busy", "Busy", f"The service is busy with other {with_what}; ask again.", headers={"Retry-After": "5"}
+    )
+
+
 def sentence(text: str) -> str:
     """A detail as a sentence: with a capital and a full stop.
 

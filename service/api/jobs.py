@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import base64
 import re
+from collections.abc import Callable
 from importlib.metadata import version
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, ParamSpec, TypeVar
 
 from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import from_json, to_json
-from starlette.concurrency import run_in_threadpool
 
 from service.api import errors, etag
 from service.api.analyses import ANALYSIS, Core, answered
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
+from service.api.errors import Refusal, busy, invalid_problem, invalid_request, not_found, sentence
 from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
+from service.drawings import Busy, Drawings
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
@@ -42,6 +43,11 @@ ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
 
 NO_JOB = "There is no job with this id."
 
+OTHER_DRAWINGS = "Other drawings have kept this one from being begun."
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
 _DESIGN_NUMBER = re.compile("[0-9]{1,4}")
 
 
@@ -52,6 +58,15 @@ async def _desk(request: Request) -> JobDesk:
 
 
 Desk = Annotated[JobDesk, Depends(_desk)]
+
+
+async def _drawings(request: Request) -> Drawings:
+    drawings = request.app.state.drawings
+    assert isinstance(drawings, Drawings)
+    return drawings
+
+
+Board = Annotated[Drawings, Depends(_drawings)]
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
@@ -251,7 +266,8 @@ def _exported(form: Form) -> dict[int | str, dict[str, Any]]:
         200: {"description": "The file.", "content": {_MEDIA_TYPES[form]: {"schema": _FILE_SCHEMAS.get(form, _TEXT)}}},
         **errors.responses(
             e404="There is no such job or design, or no such file of its type of mechanism.",
-            e409="The job has no result (yet).",
+            e409="The job has no result (yet), or the design is of a size that is not drawn.",
+            e503=OTHER_DRAWINGS,
         ),
     }
 
@@ -263,9 +279,9 @@ def _exported(form: Form) -> dict[int | str, dict[str, Any]]:
     response_class=Response,
     responses=_exported("svg"),
 )
-async def draw_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
+async def draw_design(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
     """A labelled drawing of design ``number`` of the job's result, counted from 0."""
-    return await _file(desk, tenant, job_id, number, "svg")
+    return await _file(desk, board, tenant, job_id, number, "svg")
 
 
 @router.get(
@@ -275,9 +291,9 @@ async def draw_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> R
     response_class=Response,
     responses=_exported("gif"),
 )
-async def animate_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
+async def animate_design(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
     """Design ``number`` of the job's result going through its cycle, counted from 0: 60 frames, over and over."""
-    return await _file(desk, tenant, job_id, number, "gif")
+    return await _file(desk, board, tenant, job_id, number, "gif")
 
 
 @router.get(
@@ -287,9 +303,9 @@ async def animate_design(desk: Desk, tenant: Tenant, job_id: str, number: str) -
     response_class=Response,
     responses=_exported("dxf"),
 )
-async def export_design_dxf(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
+async def export_design_dxf(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
     """A DXF file of design ``number`` of the job's result, in true dimensions and with units."""
-    return await _file(desk, tenant, job_id, number, "dxf")
+    return await _file(desk, board, tenant, job_id, number, "dxf")
 
 
 @router.get(
@@ -299,16 +315,23 @@ async def export_design_dxf(desk: Desk, tenant: Tenant, job_id: str, number: str
     response_class=Response,
     responses=_exported("csv"),
 )
-async def export_design_csv(desk: Desk, tenant: Tenant, job_id: str, number: str) -> Response:
+async def export_design_csv(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
     """A table of design ``number`` of the job's result, with units in its header."""
-    return await _file(desk, tenant, job_id, number, "csv")
+    return await _file(desk, board, tenant, job_id, number, "csv")
 
 
-async def _file(desk: JobDesk, tenant: str, job_id: str, number: str, form: Form) -> Response:
+async def _file(desk: JobDesk, board: Drawings, tenant: str, job_id: str, number: str, form: Form) -> Response:
     job, result = await _solved(desk, tenant, job_id)
     with span("drawing"):
-        drawn = await run_in_threadpool(_rendered, job, result, number, form)
+        drawn = await _made(board, _rendered, job, result, number, form)
     return Response(drawn, media_type=_MEDIA_TYPES[form])
+
+
+async def _made(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    try:
+        return await board.made(draw, *args, **kwargs)
+    except Busy:
+        raise busy("drawings") from None
 
 
 def _rendered(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
@@ -324,6 +347,8 @@ def _rendered(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
         return render.exported(designs[n], problem, title, form)
     except render.NoSuchExport:
         raise not_found(f"There is no .{form} file of this type of mechanism.") from None
+    except render.NotBuilt:
+        raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
 
 
 class ReportScope(BaseModel):
@@ -356,17 +381,20 @@ class ReportScope(BaseModel):
             e404=NO_JOB,
             e409="The job has no result (yet).",
             e422="A parameter is not valid; `errors` says which.",
+            e503=OTHER_DRAWINGS,
         ),
     },
 )
-async def report_job(desk: Desk, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]) -> Response:
+async def report_job(
+    desk: Desk, board: Board, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]
+) -> Response:
     """The job as one self-contained page for paper.
 
     The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
     """
     job, result = await _solved(desk, tenant, job_id)
     with span("report"):
-        page, policy = await run_in_threadpool(_reported, job, result, query.designs)
+        page, policy = await _made(board, _reported, job, result, query.designs)
     headers = {
         "Content-Security-Policy": policy,
         "X-Content-Type-Options": "nosniff",

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_args
 
 from service.loading import IMPORTS
 
-__all__ = ["Form", "NoSuchExport", "exported", "forms"]
+__all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms"]
 
 Form = Literal["svg", "gif", "dxf", "csv"]
 
@@ -96,6 +96,10 @@ class NoSuchExport(LookupError):
     """This type of mechanism has no file of this form."""
 
 
+class NotBuilt(ValueError):
+    """The design is of a size that is not taken for a mechanism's: one for lengths at the end of what can be stated."""
+
+
 def forms(kind: str, mechanism: str) -> list[Form]:
     """The forms of files that there are of a type of mechanism in answers to a kind of problem."""
     makers = _makers(kind, mechanism)
@@ -130,6 +134,8 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     ------
     NoSuchExport
         Where there is no such file of this type of mechanism.
+    NotBuilt
+        Where the design cannot be built.
     """
     makers = _makers(problem.kind, design.mechanism.type)
     if form not in makers:

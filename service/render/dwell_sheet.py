@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import Mechanism
@@ -14,10 +13,10 @@ from service.render.diagrams import Diagram
 from service.render.driven_sheet import driven_sheet, verdict
 from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import clean, path
 from service.render.symbols import CURVE, DEMANDED, OUTPUT
 from synthesis.designs import Check, DwellDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import DwellProblem
 
 SAMPLES = 721
@@ -30,12 +29,10 @@ NAMES = {
 }
 """What the types are called on a sheet."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def dwell_sheet(design: DwellDesign, problem: DwellProblem, title: str) -> str:
     """The drawing of a dwell design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     begun = [math.radians(rest.input_angle) for rest in design.targets]
     rotation = math.radians(problem.dwell_angle)
     # The last place is that in which the output stands farthest from its first rest, or the second rest.

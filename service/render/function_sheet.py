@@ -12,7 +12,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import Mechanism
@@ -22,6 +21,7 @@ from service.render.diagrams import ticks
 from service.render.labels import Labels
 from service.render.linkage_drawing import framed
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import (
     Box,
     Element,
@@ -52,7 +52,6 @@ from service.render.symbols import (
 )
 from synthesis.designs import Check
 from synthesis.designs.function import FunctionDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import FunctionProblem
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
@@ -73,8 +72,6 @@ RAIL = 0.12
 NAMES = {"fourbar": "Fourbar function generator", "slider_crank": "Slider-crank function generator"}
 
 ANGLES = frozenset({"transmission_angle"})
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 def function_sheet(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
@@ -114,7 +111,7 @@ def function_sheet(design: FunctionDesign, problem: FunctionProblem, title: str)
 
 
 def _mechanism(design: FunctionDesign) -> Mechanism:
-    return _GIVEN.validate_python(design.mechanism.model_dump(exclude={"skeleton"})).mechanism()
+    return rebuilt(design, without={"skeleton"})
 
 
 def _slide_angle(design: FunctionDesign) -> float:

@@ -6,7 +6,6 @@ import cmath
 import math
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import Mechanism
@@ -15,10 +14,10 @@ from service.render.diagrams import Diagram
 from service.render.driven_sheet import driven_sheet, verdict
 from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import Box, Element, Viewport, clean, line
 from service.render.symbols import CURVE, DEMANDED, OUTPUT
 from synthesis.designs import Check, StraightLineDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import StraightLineProblem
 
 SAMPLES = 721
@@ -39,12 +38,10 @@ NAMES = {
 PERCENT = frozenset({"velocity_variation"})
 """Checks whose value is a percentage."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def line_sheet(design: StraightLineDesign, problem: StraightLineProblem, title: str) -> str:
     """The drawing of a straight-line design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     first, last = (math.radians(target.input_angle) for target in design.targets)
     shown = Scene(mechanism, np.array([first, 0.5 * (first + last), last]), ["P"], "P")
     name, unit = NAMES[design.metrics.family], problem.length_unit

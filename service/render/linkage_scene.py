@@ -6,12 +6,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from service.render.linkage_drawing import Scene
-from synthesis.mechanisms import GivenMechanism
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+from service.render.rebuilt import rebuilt
 
 
 class Demand(NamedTuple):
@@ -33,7 +30,7 @@ def demands(problem: Any) -> list[Demand]:
 
 def scene_of(design: Any) -> Scene:
     """The linkage of a design at its targets, or in its reference configuration where it has none, and P's path."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     targets = getattr(design, "targets", None) or []
     stated = np.array([target.input_angle for target in targets])
     inputs = stated if mechanism.driven_by_slide else np.radians(stated)

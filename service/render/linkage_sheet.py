@@ -6,17 +6,16 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
 
 from kinematics.linkage.branches import cycle
 from kinematics.linkage.mechanism import Mechanism
 from service.render import blocks, tables
 from service.render.linkage_drawing import Scene, drawing
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import Box, Viewport, clean, document, shortened, text
 from service.render.symbols import GREY, INK
 from synthesis.designs import LinkageDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import MotionProblem, PathProblem
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
@@ -37,12 +36,10 @@ NAMES = {
 }
 """What the types are called on a sheet."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def linkage_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, title: str) -> str:
     """The drawing of a linkage design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     stated = np.array([target.input_angle for target in design.targets])
     inputs = stated if mechanism.driven_by_slide else np.radians(stated)
     shown = _scene(mechanism, inputs, problem)

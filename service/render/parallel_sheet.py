@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
 from service.render import blocks
@@ -13,10 +12,10 @@ from service.render.diagrams import Diagram
 from service.render.driven_sheet import driven_sheet, verdict
 from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import clean, line
 from service.render.symbols import DEMANDED, OUTPUT
 from synthesis.designs import Check, ParallelMotionDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import ParallelMotionProblem
 
 NAME = "Watt sixbar for parallel motion"
@@ -35,12 +34,10 @@ BASES = {
 }
 """What a sixbar is made of."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def parallel_sheet(design: ParallelMotionDesign, problem: ParallelMotionProblem, title: str) -> str:
     """The drawing of a parallel-motion design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     first, last = (math.radians(degrees) for degrees in design.metrics.input_range)
     shown = Scene(mechanism, np.linspace(first, last, PLACES + 1)[:-1], ["P", "Q"])
     unit, span = problem.length_unit, last - first

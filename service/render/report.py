@@ -15,7 +15,7 @@ from typing import Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from service.render import NoSuchExport, exported
+from service.render import NoSuchExport, NotBuilt, exported
 from service.render.numbers import length
 from service.render.outline import Outline, outline, words, written
 from service.render.svg import clean
@@ -128,7 +128,7 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
     try:
         drawing = exported(design, problem, title, "svg")
         assert isinstance(drawing, str)
-    except NoSuchExport:
+    except (NoSuchExport, NotBuilt):
         drawing = ""
     parts = [
         ("Dimensions", outline(design.mechanism, units, leave_out={"type", "skeleton"})),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from kinematics.linkage.mechanism import GROUND
 from service.render import blocks
@@ -13,10 +12,10 @@ from service.render.diagrams import Diagram
 from service.render.driven_sheet import driven_sheet, verdict
 from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import clean
 from service.render.symbols import CURVE, OUTPUT
 from synthesis.designs import Check, SteeringDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import SteeringProblem
 
 HEIGHTS = (260.0, 520.0)
@@ -25,12 +24,10 @@ HEIGHTS = (260.0, 520.0)
 NAMES = {"fourbar": "Ackermann steering linkage", "davis": "Davis steering gear"}
 """What the types are called on a sheet."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def steering_sheet(design: SteeringDesign, problem: SteeringProblem, title: str) -> str:
     """The drawing of a steering design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     straight, metrics = float(mechanism.reference_input), design.metrics
     if mechanism.driven_by_slide:
         # Both locks are as far from the straight position.

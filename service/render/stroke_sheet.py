@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from kinematics.linkage.drive import drive
 from kinematics.linkage.mechanism import GROUND, Mechanism
@@ -14,10 +13,10 @@ from service.render.diagrams import Diagram
 from service.render.driven_sheet import driven_sheet, verdict
 from service.render.linkage_drawing import Scene
 from service.render.numbers import angle, length, small
+from service.render.rebuilt import rebuilt
 from service.render.svg import clean
 from service.render.symbols import CURVE, OUTPUT
 from synthesis.designs import Check, QuickReturnDesign
-from synthesis.mechanisms import GivenMechanism
 from synthesis.problems import QuickReturnProblem
 from synthesis.quick_return.verification import OUTPUTS
 
@@ -37,12 +36,10 @@ NAMES = {
 }
 """What the types are called on a sheet."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def stroke_sheet(design: QuickReturnDesign, problem: QuickReturnProblem, title: str) -> str:
     """The drawing of a quick-return design as a complete SVG document."""
-    mechanism = _GIVEN.validate_python(design.mechanism.model_dump()).mechanism()
+    mechanism = rebuilt(design)
     traced = [joint for joint in mechanism.joints if joint not in mechanism.links[GROUND] and joint != "P"]
     shown = Scene(mechanism, np.radians([target.input_angle for target in design.targets]), traced)
     name, unit = NAMES[design.mechanism.type], problem.length_unit
