@@ -20,6 +20,7 @@ _ASSETS = "/docs/assets"
 
 _REFUSED_TO_TENANTS = errors.responses(
     e401="A key is needed, and there is none or none in force.",
+    e403="There are no keys, and the request is meant for another host than this machine.",
     e429="The key has asked too often.",
     e503="The job store does not answer.",
 )

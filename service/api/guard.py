@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
+from ipaddress import ip_address
 from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 import structlog
 from fastapi import Depends, Request, Response
 from fastapi.routing import APIRoute
 
 from service import telemetry
-from service.access.gate import Gate, NoKey, TooOften
+from service.access.gate import ANYBODY, Gate, NoKey, TooOften
 from service.api.errors import Refusal
 
 SCHEME = "bearer"
@@ -56,10 +58,30 @@ async def _admitted(request: Request) -> str:
             f"A key may ask {allowance.limit} times in {allowance.window_s} seconds; this one has.",
             headers={"Retry-After": str(allowance.reset_s)},
         ) from None  # fmt: skip
+    if tenant == ANYBODY and not _meant_for_this_machine(request):
+        raise Refusal(
+            403, "foreign-host", "Foreign host",
+            "Without keys the service is open to this machine only, by the names localhost and 127.0.0.1; "
+            "`mechsynth keys create NAME` makes a key.",
+        )  # fmt: skip
     if allowance is not None:
         telemetry.answer_with(allowance.headers())
         structlog.contextvars.bind_contextvars(tenant=tenant)
     return tenant
+
+
+def _meant_for_this_machine(request: Request) -> bool:
+    """Whether the host that a client believes to speak to is this machine.
+
+    A page from anywhere may give its own host the address 127.0.0.1, and would then be let in by the browser as if it
+    came from here (DNS rebinding); only the name tells. Clients without one are no browsers.
+    """
+    given = request.headers.get("host", "localhost")
+    try:
+        name = urlsplit(f"//{given}").hostname or ""
+        return name in ("localhost", request.app.state.settings.host.lower()) or ip_address(name).is_loopback
+    except ValueError:
+        return False
 
 
 def _key(request: Request) -> str | None:

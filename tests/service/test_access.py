@@ -99,6 +99,10 @@ def test_a_body_is_not_read_for_nobody(shared):
         assert raw.recv(65536).startswith(b"HTTP/1.1 401 ")
 
 
+def test_with_a_key_any_host_is_right(shared):
+    assert shared.clients["acme"].get("/v1/jobs", headers={"Host": "mechanisms.example"}).status_code == 200
+
+
 def test_what_is_open_stays_open(shared):
     for path in ("/healthz", "/readyz", "/metrics", "/docs", "/openapi.json"):
         assert httpx.get(shared.url + path).status_code == 200

@@ -51,6 +51,23 @@ def test_headers_with_odd_bytes(server):
     assert re.match(rb"HTTP/1.1 4\d\d ", answer)
 
 
+@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:80", "127.0.0.1:8000", "127.8.9.1", "[::1]:8000"])
+def test_a_service_without_keys_answers_to_names_of_this_machine(client, host):
+    assert client.get("/v1/jobs", headers={"Host": host}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "host",
+    ["evil.example", "evil.example:8000", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1", "[", ""],
+)
+def test_a_service_without_keys_answers_to_no_other_name(client, host):
+    for method, path in (("GET", "/v1/jobs"), ("POST", "/v1/jobs"), ("DELETE", "/v1/jobs/x"), ("GET", "/v1/problems")):
+        answer = client.request(method, path, headers={"Host": host})
+        assert answer.status_code == 403
+        assert answer.json()["type"] == "/problems/foreign-host"
+    assert client.get("/healthz", headers={"Host": host}).status_code == 200
+
+
 def test_every_kind_is_listed_with_an_example_that_runs(client):
     kinds = client.get("/v1/problems").json()["problems"]
     assert [kind["kind"] for kind in kinds] == list(KINDS)
@@ -149,8 +166,8 @@ def test_a_client_that_leaves_is_no_defect(server):
     host, port = server.url.removeprefix("http://").split(":")
     before = server.log().count("Traceback")
     with socket.create_connection((host, int(port))) as connection:
-        head = "POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 500\r\n\r\n{"
-        connection.sendall(head.encode())
+        head = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        connection.sendall(head + b"Content-Length: 500\r\n\r\n{")
     assert server.client.get("/healthz").status_code == 200
     assert server.client.get("/v1/jobs").status_code == 200
     assert server.log().count("Traceback") == before

@@ -73,7 +73,7 @@ def connected(server):
 
 
 def is_healthy(connection):
-    connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n")
+    connection.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
     received = b""
     while not received.endswith(b'{"status":"ok"}'):
         received += connection.recv(65536)
@@ -87,7 +87,7 @@ def counted(server, sample):
 
 
 BODY = json.dumps({"problem": {**PROBLEM, "seed": INSTANT}}).encode()
-HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
+HEAD = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
 WHOLE = HEAD + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY
 HALVES = {
     "nothing": b"",
@@ -96,7 +96,7 @@ HALVES = {
     "no body": HEAD + b"Content-Length: 500\r\n\r\n",
     "half a body": WHOLE[:-10],
     "a chunk and no end": HEAD + b"Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n",
-    "a request and a half": b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n" + HEAD,
+    "a request and a half": b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n" + HEAD,
     "a refused head and no body": HEAD.replace(b"json", b"xml") + b"Content-Length: 500\r\n\r\n",
 }
 
@@ -160,7 +160,9 @@ def test_each_sort_of_half_open_connection_ends_in_time(server):
     gate.unlink(missing_ok=True)
     waiting = connected(server)
     waiting.sendall(
-        WHOLE.replace(b'"seed": %d' % INSTANT, b'"seed": %d' % GATED).replace(b"Host: x", b"Host: x\r\nPrefer: wait=20")
+        WHOLE.replace(b'"seed": %d' % INSTANT, b'"seed": %d' % GATED).replace(
+            b"Host: localhost", b"Host: localhost\r\nPrefer: wait=20"
+        )
     )
     told = 0
     for name, connection in connections.items():
@@ -183,7 +185,7 @@ def test_each_sort_of_half_open_connection_ends_in_time(server):
 def test_a_client_that_does_not_read_is_left(server):
     connection = connected(server)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-    connection.sendall(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n" * 200)
+    connection.sendall(b"GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n" * 200)
     time.sleep(2.0)  # the buffers fill
     began = time.monotonic()
 

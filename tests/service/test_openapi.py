@@ -43,13 +43,13 @@ def test_every_route_for_tenants_is_in_the_document():
 
 
 def test_every_operation_says_with_what_it_may_be_refused():
-    """By its connection: 408 and 431; for want of a key, of room or of a store: 401, 429, 503; for its body: 4xx."""
+    """By its connection: 408, 431; for want of a key, of room or of a store: 401, 403, 429, 503; for its body: 4xx."""
     document = json.loads(KEPT.read_text(encoding="utf-8"))
     for path, methods in document["paths"].items():
         for method, operation in methods.items():
             expected = {"408", "431"}
             if path.startswith("/v1/"):
-                expected |= {"401", "429", "503"}
+                expected |= {"401", "403", "429", "503"}
             if "requestBody" in operation:
                 expected |= {"400", "413", "415", "422"}
             assert expected <= operation["responses"].keys(), f"{method} {path}"
