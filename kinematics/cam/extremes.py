@@ -51,6 +51,7 @@ _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _FIT = np.cos(np.outer(np.arange(DEGREE + 1), np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)))
 _FIT *= 2.0 / (DEGREE + 1)
 _FIT[0] *= 0.5
+_ENDS = np.stack([(-1.0) ** np.arange(DEGREE + 1), np.ones(DEGREE + 1)])
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,12 @@ def extremes(function: Function, breaks: ArrayLike) -> Extremes:
     breaks : float, shape (n + 1,)
         Ascending.
     """
-    points, values = stationary_points(function, breaks)
+    low, high, series, owner = _fit(function, np.asarray(breaks, dtype=np.float64))
+    # Chebyshev polynomials are at most 1: a part whose series cannot leave the range of what is known holds no extreme.
+    ends = series @ _ENDS.T
+    swing = np.abs(series[:, 1:]).sum(axis=1) * (1.0 + ROUNDED)
+    beyond = (series[:, 0] - swing <= ends.min()) | (series[:, 0] + swing >= ends.max())
+    points, values = _stationary(low, high, series, owner, beyond)
     least, greatest = int(values.argmin()), int(values.argmax())
     return Extremes(float(values[least]), float(values[greatest]), float(points[least]), float(points[greatest]))
 
@@ -92,12 +98,21 @@ def stationary_points(function: Function, breaks: ArrayLike) -> tuple[Real, Real
         At the breaks the limits from within each piece.
     """
     low, high, series, owner = _fit(function, np.asarray(breaks, dtype=np.float64))
-    signs = (-1.0) ** np.arange(DEGREE + 1)
-    row, root = _roots(_differentiated(series))
+    return _stationary(low, high, series, owner, np.ones(len(low), np.bool_))
+
+
+def _stationary(
+    low: Real, high: Real, series: Real, owner: NDArray[np.int64], where: NDArray[np.bool_]
+) -> tuple[Real, Real]:
+    """Points and values where some of the series have no slope, and at the ends of all; ascending."""
+    some = np.flatnonzero(where)
+    row, root = _roots(_differentiated(series[some]))
+    row = some[row]
     inner = _within(low[row], high[row], root)
     points = np.concatenate([low, inner, high])
     at_inner = (series[row] * np.cos(np.arange(DEGREE + 1) * np.arccos(root)[:, None])).sum(axis=1)
-    values = np.concatenate([series @ signs, at_inner, series.sum(axis=1)])
+    ends = series @ _ENDS.T
+    values = np.concatenate([ends[:, 0], at_inner, ends[:, 1]])
     order = np.lexsort((np.concatenate([owner, owner[row], owner]), points))
     return points[order], values[order]
 

@@ -216,9 +216,12 @@ class Mechanism:
             return np.asarray((offset * np.exp(-1j * slide.angle)).real)
         return np.asarray(self.link_angle(self.input) + 2.0 * np.pi * self.turns)
 
-    def link_angle(self, link: str) -> Real:
-        """Angle of a link (first joint to second; the input link from its pivot) in the reference; radians, shape S."""
+    def link_line(self, link: str) -> tuple[str, str]:
+        """The joints from and to which the angle of a link is measured: the first two, the input's from its pivot."""
         first, second = self.links[link][:2]
-        if link == self.input and second == self.input_pivot:
-            first, second = second, first
+        return (second, first) if link == self.input and second == self.input_pivot else (first, second)
+
+    def link_angle(self, link: str) -> Real:
+        """Angle of a link along its line in the reference; radians, shape S."""
+        first, second = self.link_line(link)
         return np.asarray(np.angle(self.joints[second] - self.joints[first]))

@@ -6,12 +6,14 @@ assembled ``valid`` is False and the numbers are NaN, which JSON has as null.
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
 
+from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.closures import decompose
+from kinematics.linkage.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
@@ -19,8 +21,19 @@ from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.designs import Answer
 from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.mechanisms.base import StatedCouplerPoint
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class LinkPoint(StatedCouplerPoint):
+    """A point of a link by its distance and angle there, as P is stated of a coupler.
+
+    The distance is from the joint at which the link's angle is measured: the first in its list, of the input its pivot;
+    the angle from the line to the second joint to the line to the point, degrees.
+    """
+
+    link: str = Field(min_length=1, max_length=50, description="A link in motion, by the name that the answer has.")
 
 
 class LinkageAnalysisRequest(AnalysisRequest):
@@ -56,9 +69,25 @@ class LinkageAnalysisRequest(AnalysisRequest):
         "The others are of a pin-jointed fourbar only.",
     )
 
+    points: dict[Annotated[str, Field(min_length=1, max_length=50)], LinkPoint] = Field(
+        default={}, max_length=20, description="Further points, by names of the client's; `points` has their motion."
+    )
+
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
-        return self.motion.faults()
+        found = self.motion.faults()
+        if not self.points:
+            return found
+        try:
+            links = self.mechanism.mechanism().links
+        except (MechanismError, KinematicsError):  # the answer says so, in its own words
+            return found
+        moving = [link for link in links if link != GROUND]
+        for name, point in self.points.items():
+            if point.link not in moving:
+                token = name.replace("~", "~0").replace("/", "~1")
+                found.append((f"/points/{token}/link", f"no link in motion; they are {', '.join(moving)}"))
+        return found
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
@@ -73,10 +102,11 @@ class LinkageAnalysisRequest(AnalysisRequest):
             motion = Sweep(start=low, end=high)
         at, speed, time = motion.inputs(slide=slide)
         topics = [topic for topic in self.include if topic != "branches"]
+        points = {name: (point.link, point.vector) for name, point in self.points.items()}
         more = fourbar_analysis(mechanism, np.radians(at), topics) if topics else None
         return {
             "time": None if time is None else time.tolist(),
-            **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include),
+            **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include, points=points),
             "fourbar": more,
         }
 
@@ -162,6 +192,7 @@ class LinkageAnalysis(Answer):
     valid: list[bool]
     links: dict[str, Series]
     joints: dict[str, Track]
+    points: dict[str, Track] = Field(description="The further points that the request names.")
     slides: dict[str, Travel]
     transmission_angle: list[float | None] = Field(description="Least of the transmission angles, degrees.")
     transmission_angles: dict[str, list[float | None]] = Field(description="At each dyad, by its link.")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from kinematics.linkage.closures import decompose
 from kinematics.linkage.drive import MechanismMotion, drive, given_up
 from kinematics.linkage.instant_centers import instant_centers
 from kinematics.linkage.limits import holding_reference, limit_positions, toggles
+from kinematics.linkage.link_points import link_point
 from kinematics.linkage.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.program import program_of
 from synthesis.analyses.cycle import listed_branches
@@ -28,11 +31,17 @@ BRANCH_PLACES = 181
 
 
 def analysis(
-    mechanism: Mechanism, at: Real, speed: Real, acceleration: float, *, tracked: bool = False
+    mechanism: Mechanism,
+    at: Real,
+    speed: Real,
+    acceleration: float,
+    *,
+    tracked: bool = False,
+    points: Mapping[str, tuple[str, complex]] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """Drive a mechanism to inputs (degrees, or lengths along the input slide) and list all that is known of it.
 
-    ``tracked`` adds to each branch where the joints are along it.
+    ``tracked`` adds to each branch where the joints are along it; ``points`` are further points by link and place.
     """
     slide = mechanism.driven_by_slide
     inputs = at if slide else np.radians(at)
@@ -48,6 +57,7 @@ def analysis(
         "valid": motion.valid.tolist(),
         "links": {name: _series(jet) for name, jet in motion.angles.items()},
         "joints": {name: _track(jet) for name, jet in motion.joints.items()},
+        "points": {name: _track(link_point(mechanism, motion, *of)) for name, of in points.items()},
         "slides": {name: _travel(jet) for name, jet in motion.slides.items()},
         "transmission_angle": [math.nan] * len(at) if least is None else _listed(least),
         "transmission_angles": transmission,

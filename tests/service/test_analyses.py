@@ -220,6 +220,21 @@ def test_speeds(analyse):
     assert np.allclose(by_rpm["links"]["output"]["omega"], by_radian["links"]["output"]["omega"])
 
 
+def test_further_points_of_links(client):
+    """The coupler point as a further point of the coupler moves as P does; a point must be on a link that moves."""
+    mechanism = EXAMPLE["mechanism"]
+    point = {"link": "coupler", **mechanism["coupler_point"]}
+    body = {"mechanism": mechanism, "motion": {"at": 30.0, "speed": 2.0}, "points": {"mass centre": point}}
+    found = client.post("/v1/analyses", json=body).json()
+    assert_as_documented(found)
+    for field, values in found["points"]["mass centre"].items():
+        assert values == pytest.approx(found["joints"]["P"][field])
+    for link in ("ground", "none"):
+        answer = client.post("/v1/analyses", json={**body, "points": {"a/b": {"link": link, "distance": 1.0}}})
+        assert answer.status_code == 422
+        assert [error["path"] for error in answer.json()["errors"]] == ["/points/a~1b/link"]
+
+
 def changed(mechanism, path, value):
     out = copy.deepcopy(mechanism)
     *parents, last = path

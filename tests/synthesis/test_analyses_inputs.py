@@ -83,15 +83,23 @@ def driven(name: str) -> Driven:
 
 
 def answer(case: Driven, **motion: Any) -> dict[str, Any]:
-    found: dict[str, Any] = parse_request({"mechanism": case.statement, "motion": motion}).answer()
+    """With a point on every link, off the lines of its joints."""
+    points = {
+        f"on {link['name']}": {"link": link["name"], "distance": 0.4 * case.constraints.size[0], "angle": 50.0}
+        for link in case.statement["skeleton"]["links"]
+        if link["name"] != "ground"
+    }
+    request = parse_request({"mechanism": case.statement, "motion": motion, "points": points})
+    assert request.faults() == []
+    found: dict[str, Any] = request.answer()
     assert all(found["valid"])
     assert case.misfit(found) < 1e-12
     return found
 
 
-def joints(found: dict[str, Any], order: str = "") -> dict[str, np.ndarray]:
+def joints(found: dict[str, Any], order: str = "", field: str = "joints") -> dict[str, np.ndarray]:
     """Joints as complex numbers; ``order`` is "", "v", "a" or "j"."""
-    return {n: np.array(t[f"{order}x"]) + 1j * np.array(t[f"{order}y"]) for n, t in found["joints"].items()}
+    return {n: np.array(t[f"{order}x"]) + 1j * np.array(t[f"{order}y"]) for n, t in found[field].items()}
 
 
 def quantities(found: dict[str, Any]) -> list[tuple[str, float, list[np.ndarray]]]:
@@ -100,8 +108,10 @@ def quantities(found: dict[str, Any]) -> list[tuple[str, float, list[np.ndarray]
     for name, link in found["links"].items():
         jet = [np.radians(link["angle"]), *(np.array(link[key]) for key in ("omega", "alpha", "jerk"))]
         moving.append((f"link {name}", False, jet))
-    for name in found["joints"]:
-        moving.append((f"joint {name}", True, [joints(found, order)[name] for order in ("", "v", "a", "j")]))
+    for field in ("joints", "points"):
+        for name in found[field]:
+            jet = [joints(found, order, field)[name] for order in ("", "v", "a", "j")]
+            moving.append((f"{field} {name}", True, jet))
     for name, slide in found["slides"].items():
         jet = [np.array(slide[key]) for key in ("position", "velocity", "acceleration", "jerk")]
         moving.append((f"slide {name}", True, jet))
@@ -158,6 +168,23 @@ def test_in_a_run_rates_are_those_of_the_positions_in_time(case):
         for name, ratio in found[ratios].items():
             power = np.array(ratio) * np.array(found[kind][name][field])
             assert power == pytest.approx(rates[0]), "what goes in comes out"
+
+
+def test_a_further_point_keeps_its_place_in_its_link(case):
+    """At the stated distance and angle from the joint of the link's angle, and as far from all other joints as ever."""
+    found = answer(case, **{"from": case.start, "to": float(case.stated_input(case.way))}, steps=STEPS)
+    skeleton, places, points = case.statement["skeleton"], joints(found), joints(found, field="points")
+    ground = skeleton["links"][0]["joints"]
+    assert skeleton["links"][0]["name"] == "ground"
+    for link in skeleton["links"][1:]:
+        first, second = link["joints"][:2]
+        if link["name"] == skeleton["input_link"] and second in ground:
+            first, second = second, first
+        arm, line = points[f"on {link['name']}"] - places[first], places[second] - places[first]
+        assert np.abs(arm) == pytest.approx(0.4 * case.constraints.size[0])
+        assert np.degrees(np.angle(arm / line)) == pytest.approx(50.0)
+        for joint in link["joints"]:
+            assert np.ptp(np.abs(points[f"on {link['name']}"] - places[joint])) < 1e-12 * case.constraints.size[0]
 
 
 def test_in_a_sweep_rates_are_those_of_the_positions_by_the_input(case):
