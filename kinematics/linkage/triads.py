@@ -46,7 +46,7 @@ MOST_NODES = 100_000
 then given as not reached."""
 
 NODES_AT_ONCE = 256
-"""Steps between two looks at how far the track has come."""
+"""Steps between two looks at how far the track has come, at first; then as many as there are already."""
 
 CERTAIN = 0.9
 """Part of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
@@ -61,6 +61,9 @@ FULL_TURN = 2.0 * np.pi
 
 NEWTON_STEPS = 20
 """Steps at most; from inside the ball three or four do."""
+
+FEW_STEPS = 3
+"""Steps after which one that is not half the one before is rounding: in the ball each is at most half the last."""
 
 CLOSED = 1e-13
 """Misfit of the loops, as a part of the size, that a position may have: where the equations are all but singular,
@@ -216,8 +219,8 @@ class _Side:
             if len(self._nodes) > MOST_NODES:
                 self._ended = self.given_up = True
                 return
-            nodes, reach = np.empty(NODES_AT_ONCE), np.empty(NODES_AT_ONCE)
-            angles = np.empty((NODES_AT_ONCE, self._angles.shape[1]))
+            room = max(NODES_AT_ONCE, min(len(self._nodes), MOST_NODES - len(self._nodes) + 2))
+            nodes, reach, angles = np.empty(room), np.empty(room), np.empty((room, self._angles.shape[1]))
             nodes[0], reach[0], angles[0] = self._nodes[-1], self._reach[-1], self._angles[-1]
             count, self._ended, lost = _march(*self._equations, self._sign, target, nodes, reach, angles)
             self.given_up = self.given_up or lost
@@ -313,11 +316,16 @@ def _newton(
         slope[row] = (k[row] * turned).real
         slope[row + loops] = (k[row] * turned).imag
     _subtract(phi, inverse, slope)
-    for _ in range(NEWTON_STEPS):
+    last = np.inf
+    for n in range(NEWTON_STEPS):
         _evaluate(c, k, fixed, phi, to, value, inverse)
         _invert(inverse)
-        if _subtract(phi, inverse, value) < CONVERGED:
+        change = _subtract(phi, inverse, value)
+        if change < CONVERGED:
             return True
+        if n > FEW_STEPS and change > 0.5 * last:
+            break
+        last = change
     _evaluate(c, k, fixed, phi, to, value, inverse)
     misfit = np.abs(value).max()
     _invert(inverse)
