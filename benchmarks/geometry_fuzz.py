@@ -37,8 +37,9 @@ WALL_S = 600.0
 
 _FIELD = re.compile("[a-z_]+")
 
-DRAWN = 5
-"""Of so many answers with designs one is drawn in every form."""
+DRAWN, ANIMATED = 5, 25
+"""Of so many cases one is drawn in every form, where it has designs; but animated, which takes longer than most cases
+need to be solved, one of so many."""
 
 
 @dataclass(slots=True)
@@ -107,7 +108,7 @@ def _way(kind: str, number: int) -> Outcome:
     if not problem.include_failed and not all(design.verification.passed for design in designs):
         return Outcome("unverified", "a design that failed its checks", wrong=True)
     if designs and number % DRAWN == 0:
-        nan = _drawn(designs[0], problem) or _moved(stored)
+        nan = _drawn(designs[0], problem, number % ANIMATED == 0) or _moved(stored)
         if nan:
             return Outcome("NaN", nan, wrong=True)
     if designs:
@@ -136,10 +137,12 @@ def _not_finite(value: Any, path: str = "") -> str:
     return next((found for key, member in members if (found := _not_finite(member, f"{path}/{key}"))), "")
 
 
-def _drawn(design: Any, problem: Any) -> str:
+def _drawn(design: Any, problem: Any, animated: bool) -> str:
     from service import render
 
     for form in render.forms(problem.kind, design.mechanism.type):
+        if form == "gif" and not animated:
+            continue
         try:
             drawn = render.exported(design, problem, "fuzz", form)
         except render.NotBuilt:
