@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.keys import KeyStore, TenantExists
-from service.jobs.database import connect, upgrade
+from service.jobs.database import LaterTables, connect, upgrade
 from service.jobs.schema import TENANT_LENGTH
 from service.settings import Settings
 
@@ -59,6 +59,8 @@ def _store(settings: Settings) -> Iterator[KeyStore]:
             yield KeyStore(engine)
         finally:
             engine.dispose()
+    except LaterTables as error:
+        raise KeysFailure(str(error)) from None
     except (SQLAlchemyError, ImportError, OSError) as error:
         # Not the URL itself, which may hold a password.
         raise KeysFailure(f"cannot use the database ({type(error).__name__}); set MECHSYNTH_DATABASE_URL") from None

@@ -34,6 +34,10 @@ _POSTGRESQL = {
 }
 
 
+class LaterTables(Exception):
+    """The tables are those of a later version, which this one cannot know; the message is for the operator."""
+
+
 def connect(url: str, *, durable: bool) -> Engine:
     """An engine for the store at ``url``.
 
@@ -112,10 +116,17 @@ def _with_driver(url: URL) -> URL:
 
 
 def upgrade(engine: Engine, revision: str = "head") -> None:
-    """Bring the tables to a revision, the newest by default."""
+    """Bring the tables to a revision, the newest by default.
+
+    Raises
+    ------
+    LaterTables
+        When they are past every revision that is known here.
+    """
     # Alembic takes a tenth of a second to import, which only the server has to spend.
     from alembic import command
     from alembic.config import Config
+    from alembic.util import CommandError
 
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
@@ -123,4 +134,9 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
         if engine.dialect.name == "postgresql":  # servers and worker hosts may start at once
             connection.execute(select(func.pg_advisory_xact_lock(UPGRADE_LOCK)))
         config.attributes["connection"] = connection
-        command.upgrade(config, revision)
+        try:
+            command.upgrade(config, revision)
+        except CommandError as error:  # there is no such revision
+            raise LaterTables(
+                "the tables of the database are of a later version of mechsynth; start that one, or go back to a dump"
+            ) from error

@@ -23,7 +23,7 @@ from ulid import ULID
 
 from service import logs
 from service.jobs.broker import TASK, Publisher, celery_app
-from service.jobs.database import connect, unreachable, upgrade
+from service.jobs.database import LaterTables, connect, unreachable, upgrade
 from service.jobs.local import LocalExecutor
 from service.jobs.store import JobStore
 from service.jobs.watch import Watch
@@ -118,7 +118,7 @@ def run_host(settings: Settings) -> None:
     Raises
     ------
     HostError
-        When the port of its metrics cannot be had.
+        When the port of its metrics cannot be had, or the store is of a later version.
     SQLAlchemyError, OSError
         When the store cannot be reached.
     """
@@ -129,7 +129,7 @@ def run_host(settings: Settings) -> None:
     signal.signal(signal.SIGTERM, _end)
     signal.signal(signal.SIGINT, _end)
     try:
-        host.start()
+        _start(host)
         app = celery_app(settings, publisher=False)
         app.task(host.work, name=TASK)
         announcement = threading.Thread(target=_announce, args=(host,), name="announcement", daemon=True)
@@ -148,6 +148,13 @@ def run_host(settings: Settings) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         host.stop()
+
+
+def _start(host: Host) -> None:
+    try:
+        host.start()
+    except LaterTables as error:
+        raise HostError(str(error)) from None
 
 
 def show(metrics: HostMetrics, settings: Settings) -> None:

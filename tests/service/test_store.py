@@ -7,10 +7,10 @@ from importlib.resources import files
 import pytest
 from alembic import command
 from alembic.config import Config
-from sqlalchemy import delete, insert, select, update
+from sqlalchemy import delete, insert, select, text, update
 
 from service.access.keys import api_keys
-from service.jobs.database import connect, upgrade
+from service.jobs.database import LaterTables, connect, upgrade
 from service.jobs.schema import StoreClock, hosts, jobs, metadata
 from service.jobs.states import FINISHED, MOVES, Status
 from service.jobs.store import (
@@ -314,6 +314,18 @@ def test_upgrading_twice_keeps_the_jobs(engine, store, job):
 def overdue(engine, *job_ids):
     with engine.begin() as connection:
         connection.execute(update(jobs).where(jobs.c.id.in_(job_ids)).values(due_at=jobs.c.due_at - 3600.0))
+
+
+def test_tables_of_a_later_version_are_left_alone(tmp_path):
+    engine = connect(f"sqlite:///{tmp_path}/later.sqlite3", durable=False)
+    upgrade(engine)
+    with engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(LaterTables, match="later version"):
+        upgrade(engine)
+    with engine.connect() as connection:
+        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalar_one() == "9999"
+    engine.dispose()
 
 
 def test_who_does_not_know_whether_it_has_claimed_a_job_may_ask_again(store, job):
