@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 from ezdxf.layouts.layout import Modelspace
-from ezdxf.math import global_bspline_interpolation
+from ezdxf.math import Matrix44, global_bspline_interpolation
 from numpy.typing import NDArray
 
 from kinematics.linkage.mechanism import GROUND
@@ -159,7 +159,11 @@ def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
     kept = kept[apart]
     if len(kept) < 4:
         return
-    spline = global_bspline_interpolation([(z.real, z.imag, 0.0) for z in kept.tolist()], degree=3)
+    # Of unit size, because the library takes what is shorter than 1e-12 for a point.
+    corner = kept[0]
+    unit = [(z.real, z.imag, 0.0) for z in ((kept - corner) / size).tolist()]
+    back = Matrix44.chain(Matrix44.scale(size), Matrix44.translate(corner.real, corner.imag, 0.0))
+    spline = global_bspline_interpolation(unit, degree=3).transform(back)
     space.add_spline(dxfattribs={"layer": layer}).apply_construction_tool(spline)
 
 

@@ -50,6 +50,8 @@ def test_what_is_nearly_nothing_is_nothing(number):
     assert parse_problem(stated).positions[0].x == stated["positions"][0]["x"]
 
 
-@pytest.mark.parametrize(("kind", "number"), [("quick_return", 83), ("steering", 32), ("parallel_motion", 70)])
+@pytest.mark.parametrize(
+    ("kind", "number"), [("quick_return", 83), ("steering", 32), ("parallel_motion", 70), ("straight_line", 555)]
+)
 def test_what_was_found(kind, number):
     assert not run(kind, number).wrong
