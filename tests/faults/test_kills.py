@@ -7,6 +7,8 @@ import contextlib
 import os
 import random
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -101,10 +103,8 @@ def test_no_job_is_lost_or_doubled_or_wrong(tmp_path, busy):
                         n = None
 
     began = time.monotonic()
-    burners = [os.fork() for _ in range(os.cpu_count() or 1)] if busy else []
-    if 0 in burners:
-        while True:  # a child: keeps a core busy until it is killed
-            pass
+    burning = [sys.executable, "-c", "while True: pass"]
+    burners = [subprocess.Popen(burning) for _ in range(os.cpu_count() or 1)] if busy else []
     threads = [threading.Thread(target=submit) for _ in range(CLIENTS)]
     try:
         killer.start()
@@ -118,9 +118,9 @@ def test_no_job_is_lost_or_doubled_or_wrong(tmp_path, busy):
         assert server.post(INSTANT, wait=30)["status"] == "succeeded", "the workers are there again"
         found = every_job(server)
     finally:
-        for pid in burners:
-            os.kill(pid, signal.SIGKILL)
-            os.waitpid(pid, 0)
+        for burner in burners:
+            burner.kill()
+            burner.wait()
         killer.server.kill()
     lost = [job_id for job_id in accepted if job_id not in found]
     labels = [job["label"] for job in found.values() if job["label"]]
