@@ -61,7 +61,7 @@ async def _admitted(request: Request) -> str:
     if tenant == ANYBODY and not _meant_for_this_machine(request):
         raise Refusal(
             403, "foreign-host", "Foreign host",
-            "Without keys the service is open to this machine only, by the names localhost and 127.0.0.1; "
+            "Without keys the service is open to this machine only, not by names that are known elsewhere; "
             "`mechsynth keys create NAME` makes a key.",
         )  # fmt: skip
     if allowance is not None:
@@ -70,18 +70,34 @@ async def _admitted(request: Request) -> str:
     return tenant
 
 
+NOBODYS = ("localhost", "local", "internal", "test", "example", "invalid")
+"""Endings of names that nobody can register (RFC 2606, 6761, 6762)."""
+
+
 def _meant_for_this_machine(request: Request) -> bool:
-    """Whether the host that a client believes to speak to is this machine.
+    """Whether the host that a client believes to speak to can be this machine.
 
     A page from anywhere may give its own host the address 127.0.0.1, and would then be let in by the browser as if it
-    came from here (DNS rebinding); only the name tells. Clients without one are no browsers.
+    came from here (DNS rebinding); only the name tells: one that somebody elsewhere can have registered. Addresses,
+    names without a dot and names that are nobody's are none of those. Clients without a name are no browsers.
     """
     given = request.headers.get("host", "localhost")
     try:
         name = urlsplit(f"//{given}").hostname or ""
-        return name in ("localhost", request.app.state.settings.host.lower()) or ip_address(name).is_loopback
+        if not name.strip("."):
+            return False
+        *registered, last = name.rstrip(".").split(".")
+        return not registered or last in NOBODYS or _is_address(name)
     except ValueError:
         return False
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name)
+    except ValueError:
+        return False
+    return True
 
 
 def _key(request: Request) -> str | None:

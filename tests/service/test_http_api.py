@@ -51,14 +51,36 @@ def test_headers_with_odd_bytes(server):
     assert re.match(rb"HTTP/1.1 4\d\d ", answer)
 
 
-@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:80", "127.0.0.1:8000", "127.8.9.1", "[::1]:8000"])
+@pytest.mark.parametrize(
+    "host",
+    [
+        "localhost",
+        "LOCALHOST:80",
+        "127.0.0.1:8000",
+        "10.0.0.1",
+        "[::1]:8000",
+        "api:8000",
+        "testserver.",
+        "api.internal",
+    ],
+)
 def test_a_service_without_keys_answers_to_names_of_this_machine(client, host):
     assert client.get("/v1/jobs", headers={"Host": host}).status_code == 200
 
 
 @pytest.mark.parametrize(
     "host",
-    ["evil.example", "evil.example:8000", "localhost.evil.example", "127.0.0.1.evil.example", "10.0.0.1", "[", ""],
+    [
+        "evil.com",
+        "EVIL.com:8000",
+        "evil.com.",
+        "localhost.evil.com",
+        "127.0.0.1.evil.com",
+        "test.evil.com",
+        "[",
+        "",
+        ".",
+    ],
 )
 def test_a_service_without_keys_answers_to_no_other_name(client, host):
     for method, path in (("GET", "/v1/jobs"), ("POST", "/v1/jobs"), ("DELETE", "/v1/jobs/x"), ("GET", "/v1/problems")):
