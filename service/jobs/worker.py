@@ -25,12 +25,10 @@ from service.jobs import faults
 from service.jobs.database import connect, unreachable
 from service.jobs.orphans import die_with
 from service.jobs.store import Claim, JobStore
+from service.jobs.telling import Teller
 
 Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "superseded"]
 """What became of a job as its worker knows it; ``superseded``: cancelled or given to another attempt meanwhile."""
-
-PROGRESS_PERIOD_S = 0.2
-"""Progress is stored at most this often: each time is a write to the disk that all workers share."""
 
 RETRY_PERIOD_S = 0.5
 """Pause before a write to a store that is out of reach is tried again."""
@@ -69,6 +67,7 @@ class WorkerSettings:
 @dataclass(frozen=True, slots=True)
 class _Post:
     store: JobStore
+    teller: Teller
     settings: WorkerSettings
 
 
@@ -89,9 +88,11 @@ def start(settings: WorkerSettings) -> None:
     logs.configure(settings.log_level, settings.log_format)
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
+    store = JobStore(connect(settings.store_url, durable=False))
+    teller = Teller(store)
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
-    _post = _Post(JobStore(connect(settings.store_url, durable=False)), settings)
-    _post.store.ping()
+    _post = _Post(store, teller, settings)
+    store.ping()
     # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
 
@@ -122,7 +123,7 @@ def run(job_id: str, mark: str) -> Ran:
 
 def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
     try:
-        result = _solve(post.store, job_id, claim)
+        result = _solve(post.teller, job_id, claim)
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
         stored = _stored(post.store.fail, job_id, claim.attempt, fault.as_json(job_id))
@@ -149,25 +150,13 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
             time.sleep(RETRY_PERIOD_S)  # the answer is kept; a store that is started again needs seconds
 
 
-def _solve(store: JobStore, job_id: str, claim: Claim) -> str:
+def _solve(teller: Teller, job_id: str, claim: Claim) -> str:
     from synthesis import dispatch
     from synthesis.kinds import KINDS
 
     problem = KINDS[claim.kind].problem.model_validate_json(claim.problem)
-    stored_at = time.monotonic()
-
-    def progress(fraction: float, message: str) -> None:
-        nonlocal stored_at
-        now = time.monotonic()
-        if now - stored_at >= PROGRESS_PERIOD_S:
-            stored_at = now
-            try:
-                store.progress(job_id, claim.attempt, fraction, message)
-            except SQLAlchemyError as error:
-                if not unreachable(error):
-                    raise
-
-    return dispatch.solve(problem, progress).model_dump_json()
+    with teller.of(job_id, claim.attempt) as progress:
+        return dispatch.solve(problem, progress).model_dump_json()
 
 
 def _limit_memory(beyond_mb: int) -> None:

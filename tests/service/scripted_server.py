@@ -37,7 +37,8 @@ def solve(problem, progress):
                 mark.touch()
                 os.kill(os.getpid(), signal.SIGKILL)
         case 105:
-            progress(0.0, "waiting")
+            progress(0.0, "begun")
+            progress(0.1, "waiting")
             while not (FOLDER / "open").exists():
                 time.sleep(0.01)  # a file tells nobody that it is there
         case 106:
@@ -64,8 +65,8 @@ def solve(problem, progress):
             begin()
             programme.solve(solver="CLARABEL")
         case seed if seed >= TOLD:
-            time.sleep(0.25)  # so long does the computation take, and the ones below
             progress(0.5, "half")
+            time.sleep(0.25)  # so long does the computation take, and the ones below; progress is told meanwhile
         case seed if seed >= BRIEF:
             time.sleep(0.02)
     search = Search(method="scripted", complete=True, candidates=0, accepted=0, rejected={}, seed=problem.seed)

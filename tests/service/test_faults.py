@@ -188,6 +188,16 @@ def test_progress_is_seen_while_the_job_runs(server):
     assert server.reaches(job["id"], "succeeded")["progress"]["fraction"] == 1.0
 
 
+def test_the_last_report_before_a_long_time_is_told(server):
+    """However soon it came after the start, or after another report."""
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    job = server.post(GATED)
+    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.1, "message": "waiting"}, SOON_S)
+    gate.touch()
+    server.reaches(job["id"], "succeeded")
+
+
 def test_cancelling_at_any_moment_leaves_one_end(server):
     """Jobs that end by themselves while they are being cancelled: each ends once, as one or the other."""
     for pause in (0.0, 0.001, 0.002, 0.003, 0.005, 0.008):

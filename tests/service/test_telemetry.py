@@ -13,7 +13,7 @@ from service.jobs import host
 from service.jobs.host import HostError, show
 from service.metrics import HostMetrics, Metrics
 from service.settings import Settings
-from tests.service.running import PROBLEM, SCRIPTED, RunningServer, until
+from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE
 
 SECRET = "a-word-that-nobody-must-log"
@@ -209,7 +209,11 @@ def test_the_log_leads_from_a_request_to_its_job(server):
     def lines():
         return [json.loads(line) for line in server.log().splitlines()]
 
-    until(lambda: any(line.get("request") == "lead" and line["event"] == "request" for line in lines()))
+    def says(line):
+        return line.get("request") == "lead" or line.get("job") == job["id"]
+
+    for event in ("request", "job failed"):  # server and worker write after the answer
+        until(lambda event=event: any(line["event"] == event and says(line) for line in lines()), SOON_S, event)
     of_request = [line for line in lines() if line.get("request") == "lead"]
     assert [line["event"] for line in of_request] == ["job accepted", "request"]
     assert of_request[0]["job"] == job["id"]
@@ -231,9 +235,13 @@ def test_concurrent_requests_keep_their_ids(server):
         thread.start()
     for thread in threads:
         thread.join(30)
-    lines = [json.loads(line) for line in server.log().splitlines()]
-    for n in range(4):
-        assert sum(line.get("request") == f"client-{n}" for line in lines) == 20
+
+    def logged(n):
+        return sum(f'"client-{n}"' in line for line in server.log().splitlines())
+
+    for n in range(4):  # a line is written after the answer has gone
+        until(lambda n=n: logged(n) >= 20, SOON_S, "20 lines of the log")
+        assert logged(n) == 20
 
 
 def test_a_query_is_not_logged(server):

@@ -1,0 +1,76 @@
+"""How far the job of a worker process is, told to the store."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.jobs.database import unreachable
+from service.jobs.store import JobStore
+
+PERIOD_S = 0.2
+"""Progress is stored at most this often: each time is a write to the disk that all workers share."""
+
+log = structlog.get_logger(__name__)
+
+
+class Teller:
+    """Stores what a job last reported, every :data:`PERIOD_S`, from a thread of its own.
+
+    A report that comes soon after another is thus told late and not lost: it may be the last for minutes. The solver
+    never waits for the store. What was not told when a job ends is dropped, and so is what the store cannot take
+    while it is out of reach.
+    """
+
+    def __init__(self, store: JobStore) -> None:
+        self._store = store
+        self._news = threading.Condition()
+        self._report: tuple[str, int, float, str] | None = None
+        self._due = 0.0
+        threading.Thread(target=self._tell, name="progress", daemon=True).start()
+
+    @contextmanager
+    def of(self, job_id: str, attempt: int) -> Iterator[Callable[[float, str], None]]:
+        """What takes the reports of an attempt, one attempt at a time; the first is told a period after the start."""
+
+        def progress(fraction: float, message: str) -> None:
+            with self._news:
+                waiting = self._report is None
+                self._report = (job_id, attempt, fraction, message)
+                if waiting:
+                    self._news.notify()
+
+        with self._news:
+            self._due = time.monotonic() + PERIOD_S
+        try:
+            yield progress
+        finally:
+            with self._news:
+                self._report = None
+
+    def _next(self) -> tuple[str, int, float, str]:
+        with self._news:
+            while True:
+                left = self._due - time.monotonic()
+                if self._report is None:
+                    self._news.wait()
+                elif left > 0.0:
+                    self._news.wait(left)
+                else:
+                    report, self._report = self._report, None
+                    self._due = time.monotonic() + PERIOD_S
+                    return report
+
+    def _tell(self) -> None:
+        while True:
+            report = self._next()
+            try:
+                self._store.progress(*report)  # changes nothing once the attempt is over
+            except SQLAlchemyError as error:
+                if not unreachable(error):
+                    log.exception("progress could not be stored", job=report[0], attempt=report[1])
