@@ -7,9 +7,9 @@ their ends (to 1e-9 rad) and their assemblies must be the same, and each toggle 
     python -m benchmarks.circuits --designs 1000 [--type watt_2]
 
 Types that dyads close from their input, geared fivebars of six ratios, and those that no dyads close: these are
-eliminated from another link (``tests/oracles/turning.py``), and their circuits compared one by one. A line a type:
-designs, designs without a verdict (no series ended: two roots on one another), branches compared, differences, CPU
-seconds.
+eliminated from another link (``tests/oracles/turning.py``), and their circuits compared one by one. Peaucellier's
+cell has a closed form (``tests/kinematics/test_peaucellier_branches.py``). A line a type: designs, designs without a
+verdict (no series ended: two roots on one another), branches compared, differences, CPU seconds.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
 from tests.kinematics.test_branches import ELIMINATED, same_branches
 from tests.kinematics.test_circuits_from_other_links import TURNED, same_circuits
+from tests.kinematics.test_peaucellier_branches import same_cell
 from tests.oracles.elimination import Undecided
 
 TURNS = {0.5: 2, 2.0 / 3.0: 3}
@@ -69,6 +70,8 @@ def main() -> None:
         made = partial(sampling.geared_fivebar, rng, given.designs, ratio)
         same = partial(same_branches, turns=TURNS.get(ratio, 1))
         jobs.append((f"geared fivebar, ratio {ratio:.3g}", made, same))
+    rng = np.random.default_rng(given.seed + 2)
+    jobs.append(("Peaucellier", partial(EVERY["Peaucellier"], rng, given.designs), same_cell))
     for name, make, same in jobs:
         if given.type not in name:
             continue
