@@ -7,6 +7,7 @@ close by dyads all toggles are roots of polynomials.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -146,11 +147,15 @@ QUICK = (
     "inverted slider-crank",
     "watt_2 driven by its rocker",
 )
+SLOW = ("stephenson_1 driven by its input", "stephenson_2 driven by its output", "drag link and slider", "dwell_slot")
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in TYPES]
-)
+def effort(name: object, quick: Sequence[object], slow: Sequence[object]) -> list[pytest.MarkDecorator]:
+    """How a case is marked: by neither group it belongs to the campaign."""
+    return [] if name in quick else [pytest.mark.slow] if name in slow else [pytest.mark.campaign]
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=effort(name, QUICK, SLOW)) for name in TYPES])
 def test_circuits_branches_and_toggles(name: str) -> None:
     rng = np.random.default_rng([41, TYPES.index(name)])
     check(take(EVERY[name](rng, 2), 0), rng, 1)
@@ -241,9 +246,7 @@ def test_cycle_is_as_many_turns_as_the_gears_need() -> None:
         assert cycle(mechanism) == pytest.approx(period_of(mechanism), rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    "ratio", [pytest.param(ratio, marks=[] if ratio in (-1.0, 0.5) else [pytest.mark.slow]) for ratio in RATIOS]
-)
+@pytest.mark.parametrize("ratio", [pytest.param(ratio, marks=effort(ratio, (-1.0, 0.5), ())) for ratio in RATIOS])
 def test_circuits_branches_and_toggles_of_geared_fivebars(ratio: float) -> None:
     rng = np.random.default_rng([43, RATIOS.index(ratio)])
     check(take(sampling.geared_fivebar(rng, 1, ratio), 0), rng, 1)

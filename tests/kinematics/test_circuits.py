@@ -154,7 +154,7 @@ def test_traverse_agrees_with_the_continuation(m: int) -> None:
     compare_traversals(30 + m, 250, m)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("m", [2, 3, 5])
 def test_traverse_agrees_with_the_continuation_on_many(m: int) -> None:
     compare_traversals(40 + m, 4000, m)

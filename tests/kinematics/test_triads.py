@@ -66,7 +66,7 @@ def test_continuation_agrees_with_small_steps(name: str) -> None:
     assert refused > 10
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", NAMES)
 def test_continuation_agrees_with_small_steps_for_many(name: str) -> None:
     compared, refused = agrees(batch(name, 32, 20))
