@@ -7,14 +7,13 @@ import { el } from "./dom.js";
 export function downloads(job, n, drawing) {
   const place = el("div", { class: "row", id: "downloads", role: "group", "aria-label": "Files to take home" }, el("span", {}, "Take home"));
   const fault = el("span", { class: "error", role: "alert" });
-  const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string | null>} */ make) =>
+  const button = (/** @type {string} */ title, /** @type {string} */ name, /** @type {() => Promise<string>} */ make) =>
     el("button", { type: "button", class: "small", onclick: async (/** @type {any} */ event) => {
       const pressed = event.currentTarget;
       pressed.disabled = true;
       fault.replaceChildren();
       try {
-        const url = await make();
-        if (url) save(url, name);
+        save(await make(), name);
       } catch (error) {
         fault.replaceChildren(/** @type {Error} */ (error).message);
       }
@@ -25,7 +24,8 @@ export function downloads(job, n, drawing) {
       button(form.toUpperCase(), `${job.kind}-${n}.${form}`, () => api.file(job.id, n, form))),
     button("PNG", `${job.kind}-${n}.png`, async () => {
       const image = drawing.querySelector("img");
-      return image && raster(image);
+      if (!image) throw new Error("The drawing is not there yet.");
+      return raster(image);
     }),
     button("JSON", `${job.kind}.json`, async () => {
       const parts = [JSON.stringify({ problem: job.problem, result: job.result }, null, 1)];
@@ -38,7 +38,7 @@ export function downloads(job, n, drawing) {
   return place;
 }
 
-/** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string | null>} */
+/** The drawing in pixels, two for one of its own. @param {HTMLImageElement} image @returns {Promise<string>} */
 async function raster(image) {
   await image.decode();
   const canvas = el("canvas", { width: 2 * image.naturalWidth, height: 2 * image.naturalHeight });
@@ -46,7 +46,9 @@ async function raster(image) {
   pen.fillStyle = "white";
   pen.fillRect(0, 0, canvas.width, canvas.height);
   pen.drawImage(image, 0, 0, canvas.width, canvas.height);
-  return new Promise((done) => canvas.toBlob((/** @type {Blob | null} */ blob) => done(blob && URL.createObjectURL(blob)), "image/png"));
+  const blob = /** @type {Blob | null} */ (await new Promise((done) => canvas.toBlob(done, "image/png")));
+  if (!blob) throw new Error("The drawing is too large for a picture in pixels; the SVG has it whole.");
+  return URL.createObjectURL(blob);
 }
 
 /** @param {string} url @param {string} name */

@@ -56,6 +56,25 @@ def test_the_other_circuit_is_drawn_faint_and_goes_with_the_crank(studio, server
     assert not page.locator(".others").is_visible()
 
 
+@pytest.mark.parametrize("problem", [TIMED, examples("dwell")[1]], ids=["path", "dwell"])
+@pytest.mark.parametrize("width", [390, 1360])
+def test_nothing_below_moves_while_the_motion_plays(studio, problem, width):
+    """Numbers grow and shrink; a button below that moved under the hand would be missed."""
+    page = studio.page
+    page.set_viewport_size({"width": width, "height": 900})
+    solved(studio, problem)
+    until(lambda: test_studio.drawn(page), 90, "the drawing")
+    places = page.evaluate("""async () => {
+      const places = new Set();
+      for (let left = 240; left > 0; left--) {
+        await new Promise(requestAnimationFrame);
+        places.add(document.querySelector("#downloads").getBoundingClientRect().top + scrollY);
+      }
+      return [...places];
+    }""")
+    assert len(places) == 1, places
+
+
 def test_a_rocker_shows_its_toggles(studio, server):
     page = studio.page
     solved(studio, examples("function")[1])

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import pytest
 from ezdxf import recover
 from PIL import Image, ImageChops
+from playwright.sync_api import TimeoutError
 
 from service.render import forms
 from synthesis.kinds import KINDS
@@ -78,8 +79,11 @@ class Words(HTMLParser):
 
 
 def taken(page, name):
-    with page.expect_download(timeout=90_000) as waiting:
-        page.locator("#downloads").get_by_role("button", name=name, exact=True).click()
+    try:
+        with page.expect_download(timeout=90_000) as waiting:
+            page.locator("#downloads").get_by_role("button", name=name, exact=True).click()
+    except TimeoutError as error:
+        raise AssertionError(f"{name}: {page.inner_text('#downloads')}") from error
     return Path(waiting.value.path())
 
 
