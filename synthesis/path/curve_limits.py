@@ -39,9 +39,6 @@ change points, where it vanishes."""
 SHORTENINGS = 6
 """Times that a fit's longest link is brought nearer to the limit; twice are enough as a rule."""
 
-PIVOT_STEPS = 0.15, 0.3, 0.45, 0.6, 0.8, 1.0
-"""Shares of the way that given pivots are moved at a time."""
-
 BOUNDS = -40.0, 40.0
 """No unknown, a logarithm or a coordinate in target sizes, leaves these on the way."""
 
@@ -59,7 +56,6 @@ class Limits:
     cosine: float
     both_pivots: Region | None
     input_pivot: Region | None
-    pivots: tuple[tuple[float | None, float | None], tuple[float | None, float | None]]
     whole: bool
     centre: complex
     size: float
@@ -77,7 +73,6 @@ class Limits:
             cosine=1.0 if angle is None else math.cos(math.radians(angle)),
             both_pivots=demands.fixed_pivot_region,
             input_pivot=demands.input_pivot_region,
-            pivots=(problem.fixed_pivots.input or (None, None), problem.fixed_pivots.output or (None, None)),
             whole=problem.closed or demands.full_rotation,
             centre=centre,
             size=size,
@@ -122,27 +117,9 @@ class Limits:
         """The same with a transmission angle that practice asks for; None where one is stated."""
         return replace(self, cosine=math.cos(math.radians(USABLE))) if self.cosine == 1.0 else None
 
-    @property
-    def free_pivots(self) -> bool:
-        """Whether no coordinate of a fixed pivot is given."""
-        return all(value is None for pivot in self.pivots for value in pivot)
-
     def kept(self, family: int, x: Real, theta: Real) -> bool:
         """Whether all are kept."""
-        off = self.equalities(x, _ground(family, x))
-        inside = float(self.inequalities(family, x, theta).min()) >= -ROOM
-        return inside and (not len(off) or float(np.abs(off).max()) <= ROOM)
-
-    def equalities(self, x: Real, ground: float) -> Real:
-        """Numbers that must vanish: what given pivots are off."""
-        o2 = complex(x[0], x[1])
-        found = []
-        for pivot, (wanted_x, wanted_y) in zip((o2, o2 + cmath.rect(ground, float(x[2]))), self.pivots, strict=True):
-            if wanted_x is not None:
-                found.append(pivot.real - (wanted_x - self.centre.real) / self.size)
-            if wanted_y is not None:
-                found.append(pivot.imag - (wanted_y - self.centre.imag) / self.size)
-        return np.array(found)
+        return float(self.inequalities(family, x, theta).min()) >= -ROOM
 
 
 @njit(**OPTIONS)
@@ -207,7 +184,6 @@ def descend_within(
     if limits.kept(family, free.x, free.theta):
         return None
     x, theta = np.array(free.x), np.array(free.theta)
-    off = limits.equalities(x, _ground(family, x))
     shorter = _shortened(family, free, sign, points, weights, limits)
     if shorter is not None:
         if limits.kept(family, shorter.x, shorter.theta):
@@ -224,27 +200,17 @@ def descend_within(
         settled["theta"] = angles
         return value, gradient.copy()
 
-    def step_to(share: float, at: Real) -> Real:
-        """The fit whose given pivots are off by the rest of what they were off at first."""
-        demands = [{"type": "ineq", "fun": lambda trial: limits.inequalities(family, trial, settled["theta"])}]
-        if len(off):
-            rest = (1.0 - share) * off
-            demands.append({"type": "eq", "fun": lambda trial: limits.equalities(trial, _ground(family, trial)) - rest})
-        return np.asarray(
-            minimize(
-                cost,
-                np.clip(at, *BOUNDS),
-                jac=True,
-                method="SLSQP",
-                bounds=[BOUNDS] * len(at),
-                constraints=demands,
-                options={"maxiter": STEPS, "ftol": ACCURACY},
-            ).x
-        )
-
-    # Pivots may be far from where the free fit has them: they are moved there in steps.
-    for share in PIVOT_STEPS if len(off) else (1.0,):
-        x = step_to(share, x)
+    x = np.asarray(
+        minimize(
+            cost,
+            np.clip(x, *BOUNDS),
+            jac=True,
+            method="SLSQP",
+            bounds=[BOUNDS] * len(x),
+            constraints={"type": "ineq", "fun": lambda trial: limits.inequalities(family, trial, settled["theta"])},
+            options={"maxiter": STEPS, "ftol": ACCURACY},
+        ).x
+    )
     theta = settled["theta"].copy()
     value = settle(family, x, sign, theta, points, weights, gradient)
     if not math.isfinite(value):
@@ -276,9 +242,3 @@ def _shortened(
         )
         fit = Descent(found.x[0], found.theta[0], found.cost[0])
     return None if fit is free or not math.isfinite(fit.cost) else fit
-
-
-def _ground(family: int, x: Real) -> float:
-    lengths, chart = np.zeros(4), np.zeros((4, 4))
-    natural(family, x, lengths, chart)
-    return float(lengths[0])

@@ -7,6 +7,9 @@
 3. *Limits.* Where a demand is broken the descent is repeated under it (:mod:`synthesis.path.curve_limits`).
 4. Every linkage is offered with its cognates, which draw the same curve, from either fixed pivot, and verified.
 
+Where fixed pivots are given the shape alone says little, as size and place are not free: linkages are then fitted to
+points along the target, from many starts (:mod:`synthesis.path.point_fit`), and verified as the others.
+
 A closed curve is to be drawn by a crank that turns through; the families of linkages are written so that it does. A
 stroke may be drawn by any link, between its toggles.
 """
@@ -28,8 +31,9 @@ from synthesis.path.curve_descent import Descent, descend
 from synthesis.path.curve_limits import Limits, descend_within, settle
 from synthesis.path.curve_placement import moved, placement_of, searched, stated
 from synthesis.path.curve_shapes import SHAPE_POINTS, Starts, alike, equal_steps
+from synthesis.path.point_fit import configuration_of, fitted, point_task
 from synthesis.path.traced_curves import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural, place
-from synthesis.problems import PathProblem
+from synthesis.problems import LengthLimits, PathPoint, PathProblem
 from synthesis.ranking import distinct
 from synthesis.verification.curve import distances, verify_curve
 
@@ -64,9 +68,8 @@ the size at every point, that sum says nothing, as the steps lie on straight lin
 LOOKED_AT = 121
 """Places on a candidate's curve at which excursions between the points are looked for."""
 
-LIMITED, PINNED = 7, 3
-"""Refined linkages of a family, all different, that are brought within the problem's limits; fewer where
-pivots are given, to which they are moved in steps."""
+LIMITED = 7
+"""Refined linkages of a family, all different, that are brought within the problem's limits."""
 
 FEW_POINTS, FILL = 12, 0.1
 """Fewer points than this say little of a curve: the lines between them count too, with this share of the weight."""
@@ -104,7 +107,23 @@ class _Candidate(NamedTuple):
 def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by matching the whole curve."""
     target = _Target(problem)
-    limits = Limits.of(searched(problem), target.centre, target.size)
+    sought = searched(problem)
+    limits = Limits.of(sought, target.centre, target.size)
+    sweep = None
+    if sought.fixed_pivots.given():
+        linkages = _at_given_pivots(sought, target, progress)
+    else:
+        candidates, sweep = _alike(problem, target, limits, progress)
+        linkages = [joints for candidate in candidates for joints in with_cognates(_joints(candidate))]
+    designs, rejected = _verified(problem, target, linkages, limits, progress)
+    progress(1.0, "verified")
+    return _result(problem, designs, rejected, sweep)
+
+
+def _alike(
+    problem: PathProblem, target: _Target, limits: Limits, progress: Progress
+) -> tuple[list[_Candidate], CurveSweep]:
+    """The linkages in the running of those whose curves have the target's shape."""
     families = _families(problem)
     candidates: list[_Candidate] = []
     least = math.inf
@@ -130,10 +149,36 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
         refined, least = _refined(target, starts, limits, least, traded=problem.rank_by != "accuracy")
         candidates += refined
         progress(0.8 * (n + 1.0) / len(families), "best shapes refined")
-    candidates = _running(candidates)
-    designs, rejected = _verified(problem, target, candidates, limits, progress)
-    progress(1.0, "verified")
-    return _result(problem, designs, rejected, CurveSweep(linkages=drawn, curves=swept, refined=followed))
+    return _running(candidates), CurveSweep(linkages=drawn, curves=swept, refined=followed)
+
+
+def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) -> list[FourbarConfiguration]:
+    """Linkages with fixed pivots where they are demanded, fitted to points along the target; in the target's unit.
+
+    They are fitted to the target's own points, unless these are few, and where they are not many to equal steps too:
+    between points that lie far apart the nearest linkages may go far astray.
+    """
+    lengths = problem.constraints.link_length or LengthLimits()
+    demands = problem.constraints.model_copy(
+        update={"link_length": lengths.model_copy(update={"max": problem.longest_link})}
+    )
+    fits = [target.points] if len(target.points) >= FEW_POINTS else []
+    if len(target.points) < SHAPE_POINTS:
+        fits.append(target.steps)
+    found = []
+    for n, along in enumerate(fits):
+
+        def told(share: float, message: str, n: int = n) -> None:
+            progress(0.8 * (n + share) / len(fits), message)
+
+        points = [PathPoint(x=float(z.real), y=float(z.imag)) for z in target.centre + target.size * along]
+        changes = {"method": "least_squares", "points": points, "constraints": demands}
+        task = point_task(fit := problem.model_copy(update=changes))
+        for candidate in fitted(fit, task, np.random.default_rng(problem.seed), told):
+            joints = configuration_of(candidate, task)
+            if joints is not None:
+                found.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
+    return found
 
 
 def warm_up() -> None:
@@ -226,12 +271,12 @@ def _refined(
     free.sort(key=lambda pair: pair[0].error)
     found, offered = [], list[_Candidate]()
     usable = limits.usable() if traded else None
-    for candidate, k in free[: LIMITED if limits.free_pivots else PINNED]:
+    for candidate, k in free[:LIMITED]:
         descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
         kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, limits)
         fit = descent if kept is None else kept
         found.append(candidate if kept is None else _candidate(target, family, kept.x, candidate.sign, kept.theta))
-        if usable is not None and limits.free_pivots and len(found) <= ALSO_USABLE:
+        if usable is not None and len(found) <= ALSO_USABLE:
             better = descend_within(family, fit, candidate.sign, target.fitted, target.weights, usable)
             if better is not None:
                 offered.append(_candidate(target, family, better.x, candidate.sign, better.theta))
@@ -329,43 +374,48 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
 
 def _verified(
-    problem: PathProblem, target: _Target, candidates: list[_Candidate], limits: Limits, progress: Progress
+    problem: PathProblem,
+    target: _Target,
+    linkages: list[FourbarConfiguration],
+    limits: Limits,
+    progress: Progress,
 ) -> tuple[list[PathDesign], Counter[str]]:
-    """The candidates and their cognates, driven and measured; and what those that fail were rejected for."""
+    """Linkages in the target's unit, driven and measured; and what those that fail were rejected for."""
     designs, rejected = [], Counter[str]()
-    for n, candidate in enumerate(candidates):
-        progress(0.8 + 0.2 * n / len(candidates), f"{n} of {len(candidates)} linkages verified, with cognates")
-        for joints in with_cognates(_joints(candidate)):
-            links = (
-                abs(joints.a - joints.o2),
-                abs(joints.b - joints.a),
-                abs(joints.b - joints.o4),
-                abs(joints.o4 - joints.o2),
-            )
-            if min(links) < SHORTEST:
-                rejected["degenerate"] += 1
-                continue
-            if not limits.lengths_kept(links):
-                rejected["link_length"] += 1
-                continue
-            if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
-                rejected["full_rotation"] += 1
-                continue
-            drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
-            alpha, beta = placement_of(problem, drawn)
-            there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
-            at = stated(alpha, beta)
-            design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
-            if design is None:
-                rejected["cannot_be_driven"] += 1
-                continue
-            designs.append(design if at is None else design.model_copy(update={"placement": at}))
-            if not design.verification.passed:
-                rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    for n, joints in enumerate(linkages):
+        progress(0.8 + 0.2 * n / len(linkages), f"{n} of {len(linkages)} linkages verified")
+        links = (
+            abs(joints.a - joints.o2),
+            abs(joints.b - joints.a),
+            abs(joints.b - joints.o4),
+            abs(joints.o4 - joints.o2),
+        )
+        if min(links) < SHORTEST:
+            rejected["degenerate"] += 1
+            continue
+        if not limits.lengths_kept(links):
+            rejected["link_length"] += 1
+            continue
+        if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
+            rejected["full_rotation"] += 1
+            continue
+        drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
+        alpha, beta = placement_of(problem, drawn)
+        there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
+        at = stated(alpha, beta)
+        design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+            continue
+        designs.append(design if at is None else design.model_copy(update={"placement": at}))
+        if not design.verification.passed:
+            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
     return designs, rejected
 
 
-def _result(problem: PathProblem, designs: list[PathDesign], rejected: Counter[str], sweep: CurveSweep) -> PathResult:
+def _result(
+    problem: PathProblem, designs: list[PathDesign], rejected: Counter[str], sweep: CurveSweep | None
+) -> PathResult:
     passed = ranked_by_nearness([design for design in designs if design.verification.passed], problem)
     shown = list(passed)
     if problem.include_failed:
@@ -374,17 +424,27 @@ def _result(problem: PathProblem, designs: list[PathDesign], rejected: Counter[s
         names = ("O2", "A", "B", "O4")
         joints = np.array([[complex(*d.mechanism.skeleton.joints[name]) for name in names] for d in shown])
         shown = [shown[k] for k in distinct(joints, problem.max_designs, SAME_DESIGN * problem.task_size)]
-    text = (
-        f"{sweep.curves} curves of {sweep.linkages} linkages were compared with the target, {sweep.refined} refined; "
-        f"{len(passed)} of {len(passed) + rejected.total()} designs, cognates included, satisfy all demands."
-    )
+    if sweep is None:
+        text = (
+            "Linkages on the given pivots were fitted to points along the curve from many starts; "
+            f"{len(passed)} of {len(passed) + rejected.total()} satisfy all demands."
+        )
+    else:
+        text = (
+            f"{sweep.curves} curves of {sweep.linkages} linkages were compared with the target, {sweep.refined} "
+            f"refined; {len(passed)} of {len(passed) + rejected.total()} designs, cognates included, satisfy all "
+            "demands."
+        )
     if passed:
         best = passed[0].metrics
-        text += (
-            f" The best draws it with an rms distance of {best.rms_distance:.3g} {problem.length_unit}, "
-            f"at most {best.max_distance:.3g}; cognates draw the same curve, and quality chose among them: "
-            "pivots near the curve, force transmission, even links."
-        )
+        unit = problem.length_unit
+        text += f" The best draws it with an rms distance of {best.rms_distance:.3g} {unit}, "
+        text += f"at most {best.max_distance:.3g}."
+        if sweep is not None:
+            text += (
+                " Cognates draw the same curve, and quality chose among them: pivots near the curve, force "
+                "transmission, even links."
+            )
     if rejected:
         listed = (f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
         text += f" Rejected: {', '.join(listed)}."

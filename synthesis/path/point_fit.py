@@ -386,12 +386,18 @@ def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidat
     return candidate._replace(x=x, state=state, cost=float(ended[0]))
 
 
-def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | None:
-    """A candidate's dimensions in the problem's coordinates, as it stands at the first point."""
+def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfiguration | None:
+    """A candidate in the problem's coordinates, as it stands at the first point."""
     joints = _joints(candidate)
     if not np.all(np.isfinite(joints)):
         return None
-    return fourbar_mechanism(FourbarConfiguration(*(complex(z) for z in task.origin + task.size * joints)))
+    return FourbarConfiguration(*(complex(z) for z in task.origin + task.size * joints))
+
+
+def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | None:
+    """A candidate's dimensions in the problem's coordinates."""
+    configuration = configuration_of(candidate, task)
+    return None if configuration is None else fourbar_mechanism(configuration)
 
 
 class _Fits(Harvest):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -13,6 +14,9 @@ from kinematics.linkage.mechanism import Mechanism
 Real = NDArray[np.float64]
 
 Quantity = Callable[[MechanismMotion], Real]
+
+GRID = 1441
+"""Inputs at which transmission angles are looked at first."""
 
 CLOSER, LOOKS = 17, 6
 """Inputs in each closer look, and the number of looks: 8⁶ times finer than the grid."""
@@ -37,6 +41,30 @@ def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) 
     """The least and the greatest of a quantity."""
     least = least_of(mechanism, inputs, values, of)
     return least, -least_of(mechanism, inputs, -values, lambda found: -of(found))
+
+
+def least_angles(at: Callable[[Real], MechanismMotion], low: float, high: float) -> dict[str, float]:
+    """The least transmission angle at each closure between two inputs, radians; 0 where nothing closes.
+
+    ``at`` drives the mechanism to inputs (n,). Rounding may leave no position at the ends of the motion.
+    """
+    grid = np.linspace(low, high, GRID)
+    found = {}
+    for link, sines in at(grid).sines.items():
+        values = np.abs(sines)
+        if not np.isfinite(values).any():
+            found[link] = 0.0
+            continue
+        place, step, least = grid[int(np.nanargmin(values))], (high - low) / (GRID - 1), float(np.nanmin(values))
+        for _ in range(LOOKS):
+            near = np.clip(np.linspace(place - step, place + step, CLOSER), low, high)
+            closer = np.abs(at(near).sines[link])
+            if not np.isfinite(closer).any():
+                break
+            place, least = near[int(np.nanargmin(closer))], min(least, float(np.nanmin(closer)))
+            step *= 2.0 / (CLOSER - 1)
+        found[link] = math.asin(min(least, 1.0))
+    return found
 
 
 def sine_at(link: str) -> Quantity:

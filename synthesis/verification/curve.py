@@ -6,6 +6,9 @@ to the target: P's distance from the polygon through the points, over all of the
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,21 +48,10 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
     if problem.closed and design.metrics.full_rotation:
         low, high = float(inputs[0]), float(inputs[0]) + 2.0 * np.pi
 
-    missed = design.metrics.max_distance
+    def place(at: Real) -> Complex:
+        return np.asarray(positions(fourbar.linkage, at, fourbar.assembly).p)
 
-    def distance(at: Real) -> tuple[Real, Real]:
-        return distances(positions(fourbar.linkage, at, fourbar.assembly).p, points, problem.closed, missed)
-
-    grid = np.linspace(low, high, CURVE_STEPS + 1)
-    off, beyond = distance(grid)
-    excursion = float(np.nanmax(beyond))
-    farthest = float(np.nanmax(off))
-    at, step = float(grid[int(np.nanargmax(off))]), (high - low) / CURVE_STEPS
-    for _ in range(LOOKS):
-        near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
-        off, beyond = distance(near)
-        farthest = max(farthest, float(np.nanmax(off)))
-        at, step = float(near[int(np.nanargmax(off))]), step * 2.0 / (LOOK - 1)
+    gone = astray(place, (low, high), points, problem.closed, design.metrics.max_distance)
     checks = list(design.verification.checks)
     limit = problem.constraints.link_length
     if limit is None or limit.max is None:
@@ -68,10 +60,42 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
         checks.append(at_most("longest_link", longest, problem.longest_link))
     return design.model_copy(
         update={
-            "metrics": design.metrics.model_copy(update={"curve_distance": farthest, "excursion": excursion}),
+            "metrics": design.metrics.model_copy(update=gone._asdict()),
             "verification": Verification(passed=all(check.passed for check in checks), checks=checks),
         }
     )
+
+
+class Astray(NamedTuple):
+    """How far a traced curve goes from what it is to draw: at most, and beyond what the points allow."""
+
+    curve_distance: float
+    excursion: float
+
+
+def astray(
+    place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, missed: float
+) -> Astray:
+    """The farthest that a point goes from the polygon through the points, between two inputs.
+
+    ``place`` gives the point at inputs, NaN where there is none; ``missed`` is by how much the points are missed, which
+    is all that is known where the range is one input at the end of the motion.
+    """
+    low, high = used
+    grid = np.linspace(low, high, CURVE_STEPS + 1)
+    off, beyond = distances(place(grid), points, closed, missed)
+    if not np.isfinite(off).any():
+        return Astray(missed, 0.0)
+    excursion, farthest = float(np.nanmax(beyond)), float(np.nanmax(off))
+    at, step = float(grid[int(np.nanargmax(off))]), (high - low) / CURVE_STEPS
+    for _ in range(LOOKS):
+        near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
+        off, _ = distances(place(near), points, closed, missed)
+        if not np.isfinite(off).any():
+            break
+        farthest = max(farthest, float(np.nanmax(off)))
+        at, step = float(near[int(np.nanargmax(off))]), step * 2.0 / (LOOK - 1)
+    return Astray(farthest, excursion)
 
 
 def distances(places: Complex, points: Complex, closed: bool, missed: float) -> tuple[Real, Real]:

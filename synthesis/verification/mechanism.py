@@ -38,6 +38,7 @@ from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.problems import MotionProblem
 from synthesis.ranking import quality
 from synthesis.verification.checks import Driven, Side, choice_checks, constraint_checks, motion_checks, targets
+from synthesis.verification.closer import least_angles
 from synthesis.verification.closest import closest_inputs
 from synthesis.verification.demanded import Complex, Demanded, Real
 
@@ -52,10 +53,7 @@ AT_LIMIT = 1e-7
 the square of the crank's, so this is far above what rounding leaves and far below what can be seen."""
 
 RANGE_GRID = 721
-"""Inputs at which transmission angles are looked at first."""
-
-CLOSER, LOOKS = 17, 8
-"""Inputs in each closer look at a least transmission angle, and the number of looks: 8⁸ times finer than the grid."""
+"""Inputs at which the driven link's way is looked at."""
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
@@ -96,7 +94,9 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     joints, turns = _at_targets(body, found, met)
     fixed = list(mechanism.links[GROUND])
     driven = _driven(design, mechanism, joints, turns, target)
-    least = _transmission(body, here, way, whole=isinstance(design, SixbarMechanism)) if same_branch else {}
+    whole = isinstance(design, SixbarMechanism)
+    used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
+    least = least_angles(lambda inputs: body.drive(inputs, here), *used) if same_branch else {}
     angle = min(least.values(), default=0.0)
     lengths = _lengths(design)
     arms = [float(abs(joints["P"][0] - joints[pin][0])) for pin in ("A", "B") if pin in joints]
@@ -242,27 +242,6 @@ def _barker(design: LinkageMechanism) -> tuple[str, str] | None:
     links = design.links
     row = barker_class(Fourbar(0.0, links["ground"], links["input"], links["coupler"], links["output"]))
     return row.motion, row.code
-
-
-def _transmission(body: _Body, here: Branch, way: _Way, *, whole: bool) -> dict[str, float]:
-    """The least transmission angle at each closure over the used range, or over the whole cycle; radians."""
-    low, high = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
-
-    def sines(inputs: Real) -> dict[str, Real]:
-        return {link: np.abs(sine) for link, sine in body.drive(inputs, here).sines.items()}
-
-    grid = np.linspace(low, high, RANGE_GRID)
-    found = {}
-    for link, values in sines(grid).items():
-        at, step = grid[int(np.nanargmin(values))], (high - low) / (RANGE_GRID - 1)
-        least = float(np.nanmin(values))
-        for _ in range(LOOKS):
-            inputs = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
-            closer = sines(inputs)[link]
-            at, least = inputs[int(np.nanargmin(closer))], min(least, float(np.nanmin(closer)))
-            step *= 2.0 / (CLOSER - 1)
-        found[link] = math.asin(min(least, 1.0))
-    return found
 
 
 def _driver_checks(

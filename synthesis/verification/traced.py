@@ -31,17 +31,12 @@ from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.problems import PathProblem
 from synthesis.ranking import quality
 from synthesis.verification.checks import CHOICE_KEPT, TARGET_REACHED, at_most, constraint_checks
-from synthesis.verification.curve import distances
+from synthesis.verification.closer import least_angles
+from synthesis.verification.curve import astray
 from synthesis.verification.passages import ordered_run
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-STEPS = 1440
-"""Inputs a cycle at which the curve and the transmission angles are looked at."""
-
-LOOK, LOOKS = 33, 6
-"""Inputs in each closer look at the worst place, and the number of looks."""
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
@@ -110,7 +105,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     start, end = float(inputs.min()), float(inputs.max())
     whole = here.full and problem.closed
     used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism)) if whole else (start, end)
-    least = _transmission(driven, *used)
+    least = least_angles(driven.at, *used)
     angle = min(least.values(), default=0.0)
     lengths = [value for value in design.links.model_dump().values() if value > 0.0]
     pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
@@ -122,6 +117,8 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     in_order = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0)
     ratio = max(lengths) / min(lengths)
     residuals = misses / size
+    worst = float(misses.max())
+    gone = astray(driven.place, used, points, problem.closed, worst)._asdict() if problem.matched else {}
     metrics = PathMetrics(
         grashof=None,
         barker=None,
@@ -137,8 +134,8 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         quality=quality(math.sin(angle), max([*lengths, *arms]) / size, ratio),
         sum_of_squares=float(np.sum(misses**2)),
         rms_distance=math.sqrt(float(np.mean(misses**2))),
-        max_distance=float(misses.max()),
-        **_both_ways(problem, driven, points, used, float(misses.max())),
+        max_distance=worst,
+        **gone,
     )
     checks = []
     if not problem.fitted:
@@ -181,37 +178,3 @@ def _path_checks(
     if problem.matched and (limit is None or limit.max is None):
         checks.append(at_most("longest_link", longest, problem.longest_link))
     return checks
-
-
-def _both_ways(
-    problem: PathProblem, driven: _Drive, points: Complex, used: tuple[float, float], missed: float
-) -> dict[str, float]:
-    """For a curve that is matched as a whole: how far the traced curve goes from it."""
-    if not problem.matched:
-        return {}
-    low, high = used
-    grid = np.linspace(low, high, STEPS + 1)
-    off, beyond = distances(driven.place(grid), points, problem.closed, missed)
-    farthest, at, step = float(np.nanmax(off)), float(grid[int(np.nanargmax(off))]), (high - low) / STEPS
-    for _ in range(LOOKS):
-        near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
-        closer, _ = distances(driven.place(near), points, problem.closed, missed)
-        farthest = max(farthest, float(np.nanmax(closer)))
-        at, step = float(near[int(np.nanargmax(closer))]), step * 2.0 / (LOOK - 1)
-    return {"curve_distance": farthest, "excursion": float(np.nanmax(beyond))}
-
-
-def _transmission(driven: _Drive, low: float, high: float) -> dict[str, float]:
-    """The least transmission angle at each closure between two inputs; radians."""
-    grid = np.linspace(low, high, STEPS + 1)
-    found = {}
-    for link, sines in driven.at(grid).sines.items():
-        values = np.abs(sines)
-        at, step, least = grid[int(np.nanargmin(values))], (high - low) / STEPS, float(np.nanmin(values))
-        for _ in range(LOOKS):
-            near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
-            closer = np.abs(driven.at(near).sines[link])
-            at, least = near[int(np.nanargmin(closer))], min(least, float(np.nanmin(closer)))
-            step *= 2.0 / (LOOK - 1)
-        found[link] = math.asin(min(least, 1.0))
-    return found

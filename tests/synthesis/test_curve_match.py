@@ -245,15 +245,48 @@ def test_demands_are_kept_and_cost_accuracy():
     assert free.metrics.rms_distance < held.designs[0].metrics.rms_distance < 3.0 * free.metrics.rms_distance
 
 
-@pytest.mark.campaign
+def test_a_linkage_that_comes_nearest_at_a_toggle_is_measured():
+    """All points are nearest at one input then; whether the linkage closes there is a matter of rounding."""
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        d, a, b, c = rng.uniform(100.0, 100.1, 4)
+        stands = positions(Fourbar(0j, d + 0j, a, b, c, 30.0 + 20.0j), 1.0, OPEN)
+        far = 1000.0 * np.exp(1j * rng.uniform(0.0, math.tau)) + 5.0 * np.exp(1j * np.linspace(0.0, 6.0, 14))
+        joints = FourbarConfiguration(0j, complex(stands.a), complex(stands.b), complex(d), complex(stands.p))
+        design = verify_curve(statement(far), fourbar_mechanism(joints))
+        if design is not None:
+            assert math.isfinite(design.metrics.curve_distance)
+            assert math.isfinite(design.metrics.excursion)
+
+
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}
     result = matched(case["curve"], True, fixed_pivots=pivots)
-    assert result.designs
+    best = result.designs[0].metrics
+    assert math.hypot(best.rms_distance, best.excursion) < 7.5, "between the points too"
     for design in result.designs:
+        assert design.verification.passed
         assert np.allclose(design.mechanism.fixed_pivots.input, pivots["input"], atol=1e-6)
         assert np.allclose(design.mechanism.fixed_pivots.output, pivots["output"], atol=1e-6)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("given", [("input", "output"), ("input",), ("output",)])
+def test_curves_are_recovered_on_their_own_pivots(given):
+    rng = np.random.default_rng(90)
+    for _ in range(4):
+        while True:
+            a, b, c, d = np.sort(rng.uniform(1.0, 5.0, 4))[[0, 2, 1, 3]]
+            if a + d < 0.95 * (b + c) and a < 0.8 * c:
+                break
+        o2 = complex(*rng.normal(size=2))
+        o4 = o2 + d * np.exp(1j * rng.uniform(0.0, math.tau))
+        curve = curve_of(Fourbar(o2, o4, a, b, c, complex(*rng.normal(size=2)) * 2.0), 40)
+        pivots = {"input": [o2.real, o2.imag], "output": [o4.real, o4.imag]}
+        result = matched(curve, True, fixed_pivots={side: pivots[side] for side in given}, rank_by="accuracy")
+        size = math.hypot(float(np.ptp(curve.real)), float(np.ptp(curve.imag)))
+        assert result.designs[0].metrics.rms_distance < 1e-6 * size
 
 
 @pytest.mark.campaign
