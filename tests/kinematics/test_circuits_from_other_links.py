@@ -15,6 +15,7 @@ from kinematics.linkage.branches import Branch
 from kinematics.linkage.limits import branches
 from kinematics.linkage.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE, EVERY, take
+from tests.oracles.constraints import Constraints
 from tests.oracles.elimination import Elimination
 from tests.oracles.turning import Between, Turning, in_line, three_legs
 
@@ -115,6 +116,17 @@ def same_circuits(name: str, mechanism: Mechanism) -> int:
 def test_circuits_are_those_by_elimination_from_another_link(name: str) -> None:
     mechanism = EVERY[name](np.random.default_rng([52, TURNED.index(name)]), 6)
     assert sum(same_circuits(name, take(mechanism, k)) for k in range(6)) > 12
+
+
+def test_toggles_that_lie_close_together() -> None:
+    """The input goes back by 1.2e-4 rad. Newton from random starts finds four configurations there, and two beside."""
+    name = "stephenson_2 driven by its input"
+    mechanism = take(EVERY[name](np.random.default_rng([71, list(EVERY).index(name)]), 10_000), 491)
+    assert same_circuits(name, mechanism) == 5
+    constraints = Constraints.of(mechanism)
+    for at, count in ((3.5008, 2), (3.5009, 4), (3.5010, 2)):
+        way = at - float(mechanism.reference_input)
+        assert len(constraints.all_configurations(0, way, np.random.default_rng(1), 400)) == count
 
 
 @pytest.mark.parametrize("name", CLASS_THREE)

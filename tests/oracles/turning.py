@@ -32,6 +32,9 @@ CLEARING = 3
 SPREADS = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 """Distances from a candidate, radians, at which signs are looked at."""
 
+GRID = 4001
+"""Places on a piece at which signs are looked at as well."""
+
 SAMPLES = 48
 """Places on a part of a circuit between two stops, at first, at which the true input is unwrapped."""
 
@@ -147,7 +150,9 @@ class Turning:
         shifted = np.concatenate([near, near + turn]) if len(near) else near
         inside = shifted[(shifted > piece.low) & (shifted < piece.high)]
         points = np.concatenate([[piece.low], inside, [piece.high]])
-        points = np.concatenate([0.5 * (points[:-1] + points[1:]), inside])
+        # Where several roots lie close together the polynomials' are far off; signs on a grid show those near them.
+        grid = np.linspace(piece.low, piece.high, GRID)
+        points = np.concatenate([0.5 * (points[:-1] + points[1:]), inside, grid])
         for spread in SPREADS:
             points = np.concatenate(
                 [points, inside - spread, inside + spread, [piece.low + spread, piece.high - spread]]
