@@ -35,6 +35,9 @@ SPREADS = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 GRID = 4001
 """Places on a piece at which signs are looked at as well."""
 
+UPON = 1e-12
+"""Radians within which changes of sign are of one root."""
+
 SAMPLES = 48
 """Places on a part of a circuit between two stops, at first, at which the true input is unwrapped."""
 
@@ -168,7 +171,10 @@ class Turning:
             middle = 0.5 * (low + high)
             same = (self._known(middle, piece.choice) > 0.0) == start
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        return [float(x) for x in 0.5 * (low + high)]
+        stops = np.sort(0.5 * (low + high))
+        # At a root the sign is a matter of rounding: changes upon one another are one, or none where they are even.
+        groups = np.split(stops, np.flatnonzero(np.diff(stops) > UPON) + 1)
+        return [float(group[0]) for group in groups if len(group) % 2]
 
     # -- circuits ------------------------------------------------------------------------------------------------------
 
