@@ -383,7 +383,7 @@ class JobStore:
         """
         waiting = (
             select(jobs.c.id)
-            .where(jobs.c.status == Status.QUEUED, jobs.c.due_at < StoreClock())
+            .where(jobs.c.status == Status.QUEUED, jobs.c.due_at <= StoreClock())
             .order_by(jobs.c.id)
             .limit(at_most)
             .with_for_update(skip_locked=True)

@@ -408,8 +408,9 @@ def test_jobs_whose_messages_may_be_lost_are_due_once_and_later_again(engine, st
     assert store.due(2) == ids[:2]
     assert store.due(10) == [ids[2]]
     assert store.due(10) == []
-    store.not_sent(ids[1:])
-    assert store.due(10) == ids[1:3]
+    for _ in range(50):
+        store.not_sent(ids[1:])
+        assert store.due(10) == ids[1:3], "due at once, in the same tick of the clock too"
     store.claim(ids[0], "claim")
     store.requeue(ids[0], "claim")
     assert store.due(10) == [ids[0]], "nobody has a message for a job that has come back"
