@@ -32,6 +32,7 @@ class Teller:
         self._news = threading.Condition()
         self._report: tuple[str, int, float, str] | None = None
         self._due = 0.0
+        self._idle = False
         threading.Thread(target=self._tell, name="progress", daemon=True).start()
 
     @contextmanager
@@ -40,9 +41,8 @@ class Teller:
 
         def progress(fraction: float, message: str) -> None:
             with self._news:
-                waiting = self._report is None
                 self._report = (job_id, attempt, fraction, message)
-                if waiting:
+                if self._idle:
                     self._news.notify()
 
         with self._news:
@@ -58,7 +58,9 @@ class Teller:
             while True:
                 left = self._due - time.monotonic()
                 if self._report is None:
+                    self._idle = True
                     self._news.wait()
+                    self._idle = False
                 elif left > 0.0:
                     self._news.wait(left)
                 else:
