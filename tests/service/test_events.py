@@ -12,7 +12,7 @@ import pytest
 from service.api import events
 from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
-from service.jobs.feed import Feed
+from service.jobs.feed import PERIOD_S, Feed
 from service.jobs.store import JobStore
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
@@ -131,7 +131,7 @@ def test_head_does_not_wait_for_the_end(scripted, gate):
     job = scripted.post(GATED)
     began = time.monotonic()
     answer = scripted.client.head(f"/v1/jobs/{job['id']}/events")
-    assert time.monotonic() - began < 5.0
+    assert time.monotonic() - began < SOON_S
     assert (answer.status_code, answer.content) == (200, b"")
     assert answer.headers["content-type"].startswith("text/event-stream")
 
@@ -259,14 +259,15 @@ def test_the_store_is_read_once_for_all_listeners(store):
 
     async def listen(feed):
         streams = [asyncio.create_task(stream(feed, job)) for _ in range(300)]
+        began = time.monotonic()
         await asyncio.sleep(1.0)  # the reads of a time are counted
-        reads = store.reads
+        reads, most = store.reads, 2 + (time.monotonic() - began) / PERIOD_S
         claim = store.claim(job.id, "claim")
         store.succeed(job.id, claim.attempt, "{}")
-        return reads, await asyncio.gather(*streams)
+        return reads, most, await asyncio.gather(*streams)
 
-    reads, seen = with_feed(store, listen)
-    assert 1 <= reads <= 6
+    reads, most, seen = with_feed(store, listen)
+    assert 1 <= reads <= most
     assert {tuple(states(of_one)) for of_one in seen} == {("queued", "succeeded")}
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from service.jobs.changes import Changes
+from service.jobs.telling import PERIOD_S
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, alive, environment, stored, until, workers_of
 from tests.service.scripted_server import (
     BROKEN,
@@ -180,10 +181,11 @@ def test_progress_is_seen_while_the_job_runs(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
     job = server.post(STEPS)
-    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, 5.0)
-    writes, seconds = stored(server.folder, job["id"], "revision"), 1.0
-    time.sleep(seconds)  # a rate is measured over a time
-    assert stored(server.folder, job["id"], "revision") - writes <= 6
+    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, SOON_S)
+    began, writes = time.monotonic(), stored(server.folder, job["id"], "revision")
+    time.sleep(1.0)  # a rate is measured over a time
+    writes = stored(server.folder, job["id"], "revision") - writes
+    assert writes <= 1 + (time.monotonic() - began) / PERIOD_S
     gate.touch()
     assert server.reaches(job["id"], "succeeded")["progress"]["fraction"] == 1.0
 
@@ -220,7 +222,7 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
     (worker,) = server.workers()
     os.kill(worker, signal.SIGSTOP)  # not even a suspended worker may stay behind
     server.kill()
-    until(lambda: not alive(worker), 2.0, "the end of the worker")
+    until(lambda: not alive(worker), SOON_S, "the end of the worker")
     assert stored(tmp_path, running["id"], "status") == "running"
 
     (tmp_path / "open").touch()
