@@ -18,7 +18,7 @@ from service.telemetry import Telemetry
 
 IDLE_HERE_S = 1
 REQUEST = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"
-has_sent = threading.Event()
+is_blocked, has_sent = threading.Event(), threading.Event()
 
 
 async def app(scope, receive, send):
@@ -38,6 +38,7 @@ async def app(scope, receive, send):
             # Among the readers, like a callback that waits for an interpreter that another thread holds: the loop
             # looks at its timers after this, and only then for what has arrived.
             loop.remove_reader(ours)
+            is_blocked.set()
             has_sent.wait(10)
             time.sleep(IDLE_HERE_S + 0.1)  # the block itself, past the moment
             ours.close()
@@ -84,9 +85,11 @@ def url(metrics):
 def test_a_request_that_has_arrived_is_answered_before_the_connection_is_closed(url):
     for _ in range(3):
         with socket.create_connection(url, timeout=10) as connection:
+            is_blocked.clear()
             has_sent.clear()
             connection.sendall(REQUEST)
             assert is_answered(connection)
+            assert is_blocked.wait(10)
             connection.sendall(REQUEST.replace(b"/ ", b"/again "))
             has_sent.set()
             assert is_answered(connection)
