@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import signal
 import threading
+import time
 from concurrent.futures import CancelledError
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
@@ -33,7 +34,8 @@ from service.jobs.store import JobStore
 from service.metrics import WorkerMetrics
 
 CHECK_PERIOD_S = 1.0
-"""An idle lane looks this often whether its worker is alive, so that a job never meets a dead one."""
+"""A lane looks this often whether its worker is alive: one that is idle, so that a job seldom meets a dead one, and
+one that waits for an answer, because pebble forgets a call that comes while it finds the worker dead."""
 
 START_TIMEOUT_S = 300.0
 """A worker may compile all kernels when it starts for the first time; that takes a minute, not five."""
@@ -258,13 +260,8 @@ class Lane(threading.Thread):
                 raise WorkerLost(str(error), killed=True) from None
             self._job_id = job_id
         try:
-            # Not pebble's own timeout, which goes by the wall clock and so by whoever sets it.
-            return self._future.result(timeout_s)
-        except TimeoutError:
-            if self._future.done():  # raised in the worker by the function itself
-                raise WorkerLost("unexpected TimeoutError in the worker") from None
-            raise
-        except CancelledError:
+            return self._answer(timeout_s)
+        except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
             killed = error.exitcode == -signal.SIGKILL
@@ -278,6 +275,24 @@ class Lane(threading.Thread):
             with self._lock:
                 self._job_id = None
                 self._future = None
+
+    def _answer(self, timeout_s: float) -> Any:
+        # Not pebble's own timeout, which goes by the wall clock and so by whoever sets it.
+        end = time.monotonic() + timeout_s
+        while True:
+            done = self._future.done()
+            left = end - time.monotonic()
+            try:
+                return self._future.result(max(0.0, min(left, CHECK_PERIOD_S)))
+            except TimeoutError:
+                if done:
+                    raise WorkerLost("unexpected TimeoutError in the worker") from None
+            if self._future.done():
+                continue
+            if left <= 0.0:
+                raise TimeoutError
+            if not self._pool.active:
+                raise WorkerLost("the worker had died before", killed=True)
 
     def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
         """Write to the store, and keep trying while it is out of reach: else the job would be lost until a restart."""

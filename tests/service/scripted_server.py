@@ -150,9 +150,12 @@ if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
 
 def break_lanes():
     """Let the server's own part fail once, where nothing foresees it, when a file says so."""
-    from service.jobs import lane
+    from pebble import ProcessPool
+    from pebble.pool.base_pool import PoolStatus
 
-    call, get_context = lane.Lane._call, lane.get_context
+    from service.jobs import lane, worker
+
+    call, get_context, schedule = lane.Lane._call, lane.get_context, ProcessPool.schedule
 
     def told(name):
         (FOLDER / name).unlink()
@@ -168,7 +171,25 @@ def break_lanes():
             raise OSError("no process is to be had")
         return get_context(method)
 
+    def late_schedule(pool, function, args=()):
+        """The worker dies, and pebble finds it dead, between pebble's look whether it lives and the taking of a call."""
+        if function is worker.run and (FOLDER / "late-call").exists() and told("late-call"):
+            (pid,) = pool._pool_manager.worker_manager.workers
+            calls = pool._context.task_queue
+            take = calls.put
+
+            def take_late(call):
+                calls.put = take
+                os.kill(pid, signal.SIGKILL)
+                while pool._context.status != PoolStatus.ERROR:
+                    time.sleep(0.01)
+                take(call)
+
+            calls.put = take_late
+        return schedule(pool, function, args)
+
     lane.Lane._call, lane.get_context = broken_call, broken_context
+    ProcessPool.schedule = late_schedule
 
 
 if __name__ == "__main__":

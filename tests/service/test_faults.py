@@ -170,6 +170,13 @@ def test_a_lane_survives_that_no_process_can_be_had(server):
     assert not (server.folder / "no-process").exists()
 
 
+def test_a_job_that_comes_while_an_idle_worker_dies_runs_in_the_next_one(server):
+    (server.folder / "late-call").touch()
+    job = server.post(INSTANT, wait=20)
+    assert (job["status"], job["error"]) == ("succeeded", None)
+    assert not (server.folder / "late-call").exists()
+
+
 def test_news_for_a_loop_that_is_closed_are_dropped():
     loop = asyncio.new_event_loop()
     changes = Changes(loop)
