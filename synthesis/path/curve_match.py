@@ -155,16 +155,14 @@ def _alike(
 def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) -> list[FourbarConfiguration]:
     """Linkages with fixed pivots where they are demanded, fitted to points along the target; in the target's unit.
 
-    They are fitted to the target's own points, unless these are few, and where they are not many to equal steps too:
-    between points that lie far apart the nearest linkages may go far astray.
+    They are fitted to the target's own points, and where these are not many to equal steps too: between points that lie
+    far apart the nearest linkages may go far astray.
     """
     lengths = problem.constraints.link_length or LengthLimits()
     demands = problem.constraints.model_copy(
         update={"link_length": lengths.model_copy(update={"max": problem.longest_link})}
     )
-    fits = [target.points] if len(target.points) >= FEW_POINTS else []
-    if len(target.points) < SHAPE_POINTS:
-        fits.append(target.steps)
+    fits = [target.points, target.steps] if len(target.points) < SHAPE_POINTS else [target.points]
     found = []
     for n, along in enumerate(fits):
 
@@ -416,7 +414,10 @@ def _verified(
 def _result(
     problem: PathProblem, designs: list[PathDesign], rejected: Counter[str], sweep: CurveSweep | None
 ) -> PathResult:
-    passed = ranked_by_nearness([design for design in designs if design.verification.passed], problem)
+    kept = [design for design in designs if design.verification.passed]
+    passed = ranked_by_nearness(near_the_nearest(kept, problem), problem)
+    if len(passed) < len(kept):
+        rejected = rejected + Counter(far_from_the_curve=len(kept) - len(passed))
     shown = list(passed)
     if problem.include_failed:
         shown += ranked_by_nearness([design for design in designs if not design.verification.passed], problem)
@@ -463,24 +464,31 @@ def _result(
     )
 
 
+def error_of(design: PathDesign, problem: PathProblem) -> float:
+    """How far a design is from the curve: its rms distance from the points, and how far it goes astray between them."""
+    return max(NOTHING * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0))
+
+
+def near_the_nearest(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Designs whose error is not beyond the least one over :data:`HALVES`."""
+    least = min((error_of(design, problem) for design in designs), default=0.0)
+    return [design for design in designs if error_of(design, problem) <= least / HALVES]
+
+
 def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
     """Designs in the order asked for: the nearest first, among those equally near by quality, unless size or
     transmission angle are asked for: then these decide among designs whose error is less than twice the least."""
     if not designs:
         return []
-    nothing = NOTHING * problem.task_size
     factor = math.log(NEARER if problem.rank_by == "accuracy" else EQUALLY_NEAR)
-
-    def error(design: PathDesign) -> float:
-        return max(nothing, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0))
-
-    least = min(map(error, designs))
+    least = min(error_of(design, problem) for design in designs)
 
     def key(design: PathDesign) -> tuple[float, float, float]:
         metrics = design.metrics
         asked = {"size": metrics.size, "transmission_angle": -metrics.min_transmission_angle}.get(problem.rank_by)
         if asked is not None:
-            return float(error(design) > 2.0 * least), asked, -metrics.quality
-        return math.floor(math.log(error(design) / least) / factor + 1e-6), -metrics.quality, error(design)
+            return float(error_of(design, problem) > 2.0 * least), asked, -metrics.quality
+        error = error_of(design, problem)
+        return math.floor(math.log(error / least) / factor + 1e-6), -metrics.quality, error
 
     return sorted(designs, key=key)

@@ -22,19 +22,43 @@ CLOSER, LOOKS = 17, 6
 """Inputs in each closer look, and the number of looks: 8⁶ times finer than the grid."""
 
 
-def least_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
-    """The least of a quantity between the first input and the last, of which the values on a grid are known."""
-    n = int(values.argmin())
-    at, step, least = inputs[n], abs(inputs[1] - inputs[0]), float(values[n])
+def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
+    """The least of a quantity, looked for ever closer about its least value on a grid.
+
+    Parameters
+    ----------
+    of : callable
+        The quantity at inputs (n,), shape (n,); NaN where there is no position, as rounding may have it at a toggle.
+    inputs, values : ndarray, shape (m,), m >= 2
+        The grid, rising or falling, not looked beyond; and the quantity there.
+
+    Returns
+    -------
+    tuple of float
+        The input and the least; both NaN where the grid has no position.
+    """
+    if np.isnan(values).all():
+        return math.nan, math.nan
+    n = int(np.nanargmin(values))
+    at, least, place = float(inputs[n]), float(values[n]), float(inputs[n])
+    step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
     low, high = sorted((inputs[0], inputs[-1]))
     for _ in range(LOOKS):
         closer = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
-        found = of(drive(mechanism, closer, order=1))
-        if not np.isfinite(found).all():
-            return least
-        at, least = closer[int(found.argmin())], min(least, float(found.min()))
+        found = of(closer)
+        if np.isnan(found).all():
+            break
+        n = int(np.nanargmin(found))
+        at = float(closer[n])
+        if found[n] < least:
+            place, least = at, float(found[n])
         step *= 2.0 / (CLOSER - 1)
-    return least
+    return place, least
+
+
+def least_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
+    """The least of a quantity between the first input and the last, of which the values on a grid are known."""
+    return least_near(lambda closer: of(drive(mechanism, closer, order=1)), inputs, values)[1]
 
 
 def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
@@ -46,24 +70,17 @@ def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) 
 def least_angles(at: Callable[[Real], MechanismMotion], low: float, high: float) -> dict[str, float]:
     """The least transmission angle at each closure between two inputs, radians; 0 where nothing closes.
 
-    ``at`` drives the mechanism to inputs (n,). Rounding may leave no position at the ends of the motion.
+    ``at`` drives the mechanism to inputs (n,), of which ``low`` and ``high`` are the first and the last.
     """
     grid = np.linspace(low, high, GRID)
     found = {}
     for link, sines in at(grid).sines.items():
-        values = np.abs(sines)
-        if not np.isfinite(values).any():
-            found[link] = 0.0
-            continue
-        place, step, least = grid[int(np.nanargmin(values))], (high - low) / (GRID - 1), float(np.nanmin(values))
-        for _ in range(LOOKS):
-            near = np.clip(np.linspace(place - step, place + step, CLOSER), low, high)
-            closer = np.abs(at(near).sines[link])
-            if not np.isfinite(closer).any():
-                break
-            place, least = near[int(np.nanargmin(closer))], min(least, float(np.nanmin(closer)))
-            step *= 2.0 / (CLOSER - 1)
-        found[link] = math.asin(min(least, 1.0))
+
+        def sine(closer: Real, link: str = link) -> Real:
+            return np.abs(at(closer).sines[link])
+
+        _, least = least_near(sine, grid, np.abs(sines))
+        found[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))
     return found
 
 

@@ -6,6 +6,7 @@ to the target: P's distance from the polygon through the points, over all of the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -17,6 +18,7 @@ from synthesis.designs import FourbarMechanism, PathDesign, Verification
 from synthesis.linkages import driven_fourbar
 from synthesis.problems import PathProblem
 from synthesis.verification.checks import at_most
+from synthesis.verification.closer import least_near
 from synthesis.verification.path import verify_path
 
 Real = NDArray[np.float64]
@@ -29,8 +31,9 @@ BULGE = 0.25
 """A curve may bulge between two points by this share of their distance, as an arc of a hundred degrees does; what goes
 beyond is an excursion that the points do not show."""
 
-LOOK, LOOKS = 33, 6
-"""Inputs in each closer look at the farthest place, and the number of looks."""
+STEP, HALVINGS = 0.01, 40
+"""Inputs are put between two whose places are farther apart than this share of the curve's size, so many times at most:
+near a change point a linkage runs over much of its curve in next to no time."""
 
 ROWS = 256
 """Places that are compared with all sides of the polygon at a time: some megabytes."""
@@ -78,24 +81,50 @@ def astray(
 ) -> Astray:
     """The farthest that a point goes from the polygon through the points, between two inputs.
 
-    ``place`` gives the point at inputs, NaN where there is none; ``missed`` is by how much the points are missed, which
-    is all that is known where the range is one input at the end of the motion.
+    Parameters
+    ----------
+    place : callable
+        Where the point is at inputs (n,), shape (n,); NaN where there is no position.
+    used : tuple of float
+        The first and the last input that is used.
+    points : ndarray, shape (n,)
+        The points to be drawn, in order, and whether the polygon through them is ``closed``.
+    missed : float
+        By how much the points are missed at most, which is all that is known where nothing else can be reached.
     """
-    low, high = used
-    grid = np.linspace(low, high, CURVE_STEPS + 1)
-    off, beyond = distances(place(grid), points, closed, missed)
-    if not np.isfinite(off).any():
+    inputs, places = followed(place, *used)
+    off, beyond = distances(places, points, closed, missed)
+    if np.isnan(off).all():
         return Astray(missed, 0.0)
-    excursion, farthest = float(np.nanmax(beyond)), float(np.nanmax(off))
-    at, step = float(grid[int(np.nanargmax(off))]), (high - low) / CURVE_STEPS
-    for _ in range(LOOKS):
-        near = np.clip(np.linspace(at - step, at + step, LOOK), low, high)
-        off, _ = distances(place(near), points, closed, missed)
-        if not np.isfinite(off).any():
+
+    def near(which: int, values: Real) -> tuple[float, float]:
+        at, least = least_near(lambda closer: -distances(place(closer), points, closed, missed)[which], inputs, -values)
+        return at, -least
+
+    at, farthest = near(0, off)
+    _, excursion = near(1, beyond)
+    _, there = distances(place(np.array([at])), points, closed, missed)
+    return Astray(farthest, max(excursion, float(there[0])))
+
+
+def followed(place: Callable[[Real], Complex], low: float, high: float) -> tuple[Real, Complex]:
+    """Inputs, rising, and the places there, none farther from the next than :data:`STEP` where there is a way between.
+
+    NaN where there is no position.
+    """
+    inputs = np.linspace(low, high, CURVE_STEPS + 1)
+    places = place(inputs)
+    known = places[~np.isnan(places)]
+    longest = STEP * math.hypot(np.ptp(known.real), np.ptp(known.imag)) if len(known) else 0.0
+    for _ in range(HALVINGS):
+        wide = np.flatnonzero(np.abs(np.diff(places)) > longest)
+        between = 0.5 * (inputs[wide] + inputs[wide + 1])
+        new = (inputs[wide] < between) & (between < inputs[wide + 1])  # not next to one another already
+        if not new.any():
             break
-        farthest = max(farthest, float(np.nanmax(off)))
-        at, step = float(near[int(np.nanargmax(off))]), step * 2.0 / (LOOK - 1)
-    return Astray(farthest, excursion)
+        wide, between = wide[new], between[new]
+        inputs, places = np.insert(inputs, wide + 1, between), np.insert(places, wide + 1, place(between))
+    return inputs, places
 
 
 def distances(places: Complex, points: Complex, closed: bool, missed: float) -> tuple[Real, Real]:

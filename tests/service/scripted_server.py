@@ -172,7 +172,7 @@ def break_lanes():
         return get_context(method)
 
     def late_schedule(pool, function, args=()):
-        """The worker dies, and pebble finds it dead, between pebble's look whether it lives and the taking of a call."""
+        """The worker dies, and pebble finds it dead, between pebble's look at it and the taking of a call."""
         if function is worker.run and (FOLDER / "late-call").exists() and told("late-call"):
             (pid,) = pool._pool_manager.worker_manager.workers
             calls = pool._context.task_queue
