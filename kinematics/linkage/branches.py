@@ -55,13 +55,17 @@ class Branch(NamedTuple):
     high_closure: str
 
 
+def turns_until_repeated(*ratios: float) -> int:
+    """Turns of the input after which all gears of these ratios stand as before; :data:`TURNS_AT_MOST` at most."""
+    turns = 1
+    for ratio in ratios:
+        turns = int(np.lcm(turns, Fraction(ratio).limit_denominator(TURNS_AT_MOST).denominator))
+    return min(turns, TURNS_AT_MOST)
+
+
 def cycle(mechanism: Mechanism) -> float:
     """Input rotation after which the mechanism repeats, radians: a full turn, or as many as its gears need."""
-    turns = 1
-    for gear in mechanism.gears:
-        ratio = Fraction(gear.ratio).limit_denominator(TURNS_AT_MOST)
-        turns = int(np.lcm(turns, ratio.denominator))
-    return FULL_TURN * min(turns, TURNS_AT_MOST)
+    return FULL_TURN * turns_until_repeated(*(gear.ratio for gear in mechanism.gears))
 
 
 def most_turns(mechanism: Mechanism) -> float:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import structlog
-from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.database import unreachable
 from service.jobs.store import JobStore
@@ -22,14 +21,14 @@ log = structlog.get_logger(__name__)
 class Teller:
     """Stores what a job last reported, every :data:`PERIOD_S`, from a thread of its own.
 
-    A report that comes soon after another is thus told late and not lost: it may be the last for minutes. The solver
-    never waits for the store. What was not told when a job ends is dropped, and so is what the store cannot take
-    while it is out of reach.
+    A report that comes soon after another, or while the store is out of reach, is thus told late and not lost: it may
+    be the last for minutes. The solver never waits for the store. What was not told when a job ends is dropped.
     """
 
     def __init__(self, store: JobStore) -> None:
         self._store = store
         self._news = threading.Condition()
+        self._attempt: tuple[str, int] | None = None
         self._report: tuple[str, int, float, str] | None = None
         self._due = 0.0
         self._idle = False
@@ -46,12 +45,13 @@ class Teller:
                     self._news.notify()
 
         with self._news:
+            self._attempt = job_id, attempt
             self._due = time.monotonic() + PERIOD_S
         try:
             yield progress
         finally:
             with self._news:
-                self._report = None
+                self._attempt = self._report = None
 
     def _next(self) -> tuple[str, int, float, str]:
         with self._news:
@@ -68,11 +68,18 @@ class Teller:
                     self._due = time.monotonic() + PERIOD_S
                     return report
 
+    def _again(self, report: tuple[str, int, float, str]) -> None:
+        with self._news:
+            if self._report is None and self._attempt == report[:2]:
+                self._report = report
+
     def _tell(self) -> None:
         while True:
             report = self._next()
             try:
                 self._store.progress(*report)  # changes nothing once the attempt is over
-            except SQLAlchemyError as error:
-                if not unreachable(error):
+            except Exception as error:  # whatever it is, the jobs that come must be told of
+                if unreachable(error):
+                    self._again(report)
+                else:
                     log.exception("progress could not be stored", job=report[0], attempt=report[1])

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from kinematics.linkage import catalogue
+from kinematics.linkage.branches import turns_until_repeated
 from kinematics.linkage.catalogue import ASSEMBLY
 from kinematics.linkage.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
@@ -75,8 +76,8 @@ class GivenGearedFivebar(GivenByDimensions):
     def _between(self, o2: complex, o5: complex) -> Iterator[float]:
         """Input angles at which the pins A and B are farthest inside the distances that the couplers let them have.
 
-        The distance goes up and down a few times for each turn of either pin. Between samples that show that, the best
-        place is drawn in: the golden section would do no better.
+        They may lie in any turn until the gears repeat. The distance goes up and down a few times for each turn of
+        either pin. Between samples that show that, the best place is drawn in: the golden section would do no better.
         """
         ground, radius = cmath.phase(o5 - o2), max(self.links.input, self.links.output)
         low, high = abs(self.links.coupler_1 - self.links.coupler_2), self.links.coupler_1 + self.links.coupler_2
@@ -90,8 +91,9 @@ class GivenGearedFivebar(GivenByDimensions):
             )
             return np.asarray(np.minimum(high - np.abs(pins), np.abs(pins) - low) / radius)
 
-        samples = min(round(SAMPLES * max(1.0, abs(self.gear_ratio))), MOST_SAMPLES)
-        step = 2.0 * math.pi / samples
+        turns = turns_until_repeated(self.gear_ratio)
+        samples = min(round(SAMPLES * max(1.0, abs(self.gear_ratio)) * turns), MOST_SAMPLES)
+        step = 2.0 * math.pi * turns / samples
         at = np.arange(samples) * step
         found = inside(at)
         best = at[

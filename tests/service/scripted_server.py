@@ -7,6 +7,7 @@ import ctypes
 import os
 import signal
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from synthesis.designs import Result, Search
 
 INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS, PYTHON, NUMBA, LAPACK, CONVEX = range(100, 111)
 BRIEF, TOLD = 10_000, 20_000
-"""From these seeds on a job takes 20 ms; or 250 ms, and tells of its progress."""
+"""From these seeds on a job takes 20 ms; or until the store has its progress."""
+
+progress_is_stored = threading.Event()
 
 FOLDER = Path(os.environ.get("SCRIPTED_FOLDER", "."))
 
@@ -65,10 +68,11 @@ def solve(problem, progress):
             begin()
             programme.solve(solver="CLARABEL")
         case seed if seed >= TOLD:
+            progress_is_stored.clear()
             progress(0.5, "half")
-            time.sleep(0.25)  # so long does the computation take, and the ones below; progress is told meanwhile
+            progress_is_stored.wait()
         case seed if seed >= BRIEF:
-            time.sleep(0.02)
+            time.sleep(0.02)  # so long does the computation take
     search = Search(method="scripted", complete=True, candidates=0, accepted=0, rejected={}, seed=problem.seed)
     return Result(designs=[], search=search, summary="scripted")
 
@@ -119,6 +123,8 @@ def crash_points():
             die_if_told(f"crash-before-{name}")
             written = write(self, *args, **kwargs)
             die_if_told(f"crash-after-{name}")
+            if name == "progress":
+                progress_is_stored.set()
             return written
 
         setattr(JobStore, name, wrapped)

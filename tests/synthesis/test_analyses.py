@@ -304,6 +304,28 @@ def test_gears_that_hold_the_output_still_make_a_fourbar():
     assert [len(circuit["branches"]) for circuit in found["circuits"]] == [1, 1]
 
 
+@pytest.mark.parametrize("ratio", [0.5, -1.5, 2.0 / 3.0])
+def test_a_geared_fivebar_that_closes_in_a_later_turn_alone_is_found_there(ratio):
+    """The coupler pins are held apart by 8 at least, which they are only where both are turned away from each other."""
+    statement = {
+        "type": "geared_fivebar",
+        "fixed_pivots": {"input": [0.0, 0.0], "output": [4.0, 0.0]},
+        "links": {"input": 2.0, "coupler_1": 10.0, "coupler_2": 2.0, "output": 3.0},
+        "gear_ratio": ratio,
+        "phase": 90.0,
+    }
+    turn = np.radians(np.arange(0.0, 360.0, 0.1))
+    apart = 4.0 + 3.0 * np.exp(1j * (ratio * turn + math.radians(90.0))) - 2.0 * np.exp(1j * turn)
+    assert np.abs(apart).max() < 8.0, "not in the first turn"
+    found = answer(statement, **{"from": 0.0, "to": 1080.0, "steps": 1080})
+    valid = np.array(found["valid"])
+    assert 0 < valid.sum() < 360
+    assert not valid[:360].any()
+    joints = {name: np.array(at["x"])[valid] + 1j * np.array(at["y"])[valid] for name, at in found["joints"].items()}
+    assert abs(joints["C"] - joints["A"]) == pytest.approx(10.0, rel=1e-12)
+    assert abs(joints["C"] - joints["B"]) == pytest.approx(2.0, rel=1e-12)
+
+
 def test_gears_of_many_turns_are_searched_by_their_turns_alone():
     """A hundred turns of the input are one of the output; what is to be looked at grows with the turns, no faster."""
     begun = time.process_time()
