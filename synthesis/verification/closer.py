@@ -28,27 +28,29 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
     Parameters
     ----------
     of : callable
-        The quantity at inputs (n,), shape (n,); NaN where there is no position, as rounding may have it at a toggle.
+        The quantity at inputs (n,), shape (n,); not finite where there is no position, as rounding may have it at a
+        toggle, or where it has no value.
     inputs, values : ndarray, shape (m,), m >= 2
-        The grid, rising or falling, not looked beyond; and the quantity there.
+        The grid, rising or falling, in the unit of the input (radians or a length), not looked beyond; and the quantity
+        there.
 
     Returns
     -------
     tuple of float
-        The input and the least; both NaN where the grid has no position.
+        The input and the least, of what is finite; both NaN where the grid has nothing finite.
     """
-    if np.isnan(values).all():
+    if not np.isfinite(values).any():
         return math.nan, math.nan
-    n = int(np.nanargmin(values))
+    n = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
     at, least, place = float(inputs[n]), float(values[n]), float(inputs[n])
     step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
     low, high = sorted((inputs[0], inputs[-1]))
     for _ in range(LOOKS):
         closer = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
         found = of(closer)
-        if np.isnan(found).all():
+        if not np.isfinite(found).any():
             break
-        n = int(np.nanargmin(found))
+        n = int(np.argmin(np.where(np.isfinite(found), found, np.inf)))
         at = float(closer[n])
         if found[n] < least:
             place, least = at, float(found[n])

@@ -88,9 +88,16 @@ def astray(
     used : tuple of float
         The first and the last input that is used.
     points : ndarray, shape (n,)
-        The points to be drawn, in order, and whether the polygon through them is ``closed``.
+        The points to be drawn, in order.
+    closed : bool
+        Whether the last point is joined to the first.
     missed : float
         By how much the points are missed at most, which is all that is known where nothing else can be reached.
+
+    Returns
+    -------
+    Astray
+        Both in the unit of the points.
     """
     inputs, places = followed(place, *used)
     off, beyond = distances(places, points, closed, missed)

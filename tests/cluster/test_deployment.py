@@ -11,7 +11,7 @@ import pytest
 
 from tests.cluster.backend import CHOSEN
 from tests.cluster.deployment import Deployment, alive_now
-from tests.service.running import PROBLEM, SOON_S, STOP_S, until
+from tests.service.running import PROBLEM, STOP_S, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE
 
 pytestmark = [pytest.mark.cluster, pytest.mark.timeout(600)]
@@ -76,8 +76,8 @@ def test_who_waits_at_one_server_hears_of_a_cancel_at_another(deployed):
     children = [pid for host in deployed.hosts for pid in host.children()]
     began = time.monotonic()
     assert there.delete(f"/v1/jobs/{job['id']}").json()["status"] == "cancelled"
-    until(lambda: len(alive_now(children)) < len(children), SOON_S, "the end of the computation")
-    waiting.join(SOON_S)
+    until(lambda: len(alive_now(children)) < len(children), 2.0, "the end of the computation")
+    waiting.join(5.0)
     print(f"cancelled in {time.monotonic() - began:.2f} s")
     assert [answered["status"] for answered in answers] == ["cancelled"]
     assert post(here, INSTANT, wait=30)["status"] == "succeeded"
@@ -128,7 +128,7 @@ def test_a_host_that_is_killed_leaves_no_worker_and_its_job_runs_elsewhere(deplo
     host = deployed.hosts[0]
     children = host.children()
     host.kill()
-    until(lambda: not alive_now(children), SOON_S, "the end of its workers")
+    until(lambda: not alive_now(children), 5.0, "the end of its workers")
     (deployed.folder / "open").touch()
     for job in jobs:
         reaches(client, job["id"], "succeeded")
@@ -150,11 +150,11 @@ def test_each_host_shows_what_its_workers_do(deployed):
     running = gated(deployed, len(deployed.hosts))
     assert all(host.metrics()["mechsynth_host_jobs", "running"] == 1 for host in deployed.hosts)
     assert here.delete(f"/v1/jobs/{running[0]['id']}").status_code == 202
-    until(lambda: seen()["mechsynth_host_jobs", "running"] < len(running), SOON_S, "the end of the cancelled job")
+    until(lambda: seen()["mechsynth_host_jobs", "running"] < len(running), 10.0, "the end of the cancelled job")
     (deployed.folder / "open").touch()
     for job in running[1:]:
         reaches(here, job["id"], "succeeded")
-    until(lambda: seen()["mechsynth_host_jobs", "running"] == 0, SOON_S, "the end of all jobs")
+    until(lambda: seen()["mechsynth_host_jobs", "running"] == 0, 10.0, "the end of all jobs")
     growth = {key: value - before[key] for key, value in seen().items() if value != before[key]}
     assert growth["mechsynth_job_seconds_count", "motion"] == len(running)
     assert growth["mechsynth_job_attempts_total", "succeeded"] == len(running)

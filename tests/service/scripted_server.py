@@ -188,7 +188,7 @@ def break_lanes():
                 calls.put = take
                 os.kill(pid, signal.SIGKILL)
                 while pool._context.status != PoolStatus.ERROR:
-                    time.sleep(0.01)
+                    time.sleep(0.01)  # pebble looks ten times a second, and tells nobody
                 take(call)
 
             calls.put = take_late

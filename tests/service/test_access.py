@@ -12,7 +12,7 @@ import pytest
 from service.access.gate import Gate, NoKey
 from service.access.keys import KeyStore, TenantExists, digest
 from service.jobs.database import connect, upgrade
-from tests.service.running import PROBLEM, REAL, SCRIPTED, SOON_S, RunningServer, environment, until
+from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import GATED, INSTANT
 
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
@@ -189,13 +189,13 @@ def test_a_further_key_is_of_the_same_tenant_and_a_revoked_one_is_refused(shared
     further = made(shared.folder, "acme", "--further")
     job = post(shared.clients["acme"]).json()
     with client_with(shared, further) as client:
-        until(lambda: client.get("/v1/jobs").status_code == 200, SOON_S, "the new key")
+        until(lambda: client.get("/v1/jobs").status_code == 200, 3.0, "the new key")
         assert client.get(f"/v1/jobs/{job['id']}").status_code == 200
         listed = keys(shared.folder, "list").stdout
         assert further not in listed
         key_id = [line.split()[0] for line in listed.splitlines() if line.endswith("  acme")][-1]
         assert keys(shared.folder, "revoke", key_id).returncode == 0
-        until(lambda: client.get("/v1/jobs").status_code == 401, SOON_S, "the end of the key")
+        until(lambda: client.get("/v1/jobs").status_code == 401, 3.0, "the end of the key")
     assert f"{key_id}  revoked" in keys(shared.folder, "list").stdout
     assert keys(shared.folder, "revoke", key_id).returncode == 1
     assert shared.clients["acme"].get("/v1/jobs").status_code == 200
@@ -264,7 +264,7 @@ def test_without_keys_it_listens_on_this_machine_only(tmp_path):
         # The first key closes what was open, without a restart.
         assert server.client.get("/v1/jobs").status_code == 200
         key = made(tmp_path, "acme")
-        until(lambda: server.client.get("/v1/jobs").status_code == 401, SOON_S, "the closing")
+        until(lambda: server.client.get("/v1/jobs").status_code == 401, 3.0, "the closing")
         with client_with(server, key) as client:
             assert client.get("/v1/jobs").json() == {"jobs": [], "next_cursor": None}
     finally:

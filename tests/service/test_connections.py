@@ -101,7 +101,7 @@ def test_an_idle_connection_is_closed(url):
         connection.sendall(REQUEST.replace(b"/ ", b"/again "))
         assert is_answered(connection)
         assert connection.recv(65536) == b""
-        assert IDLE_HERE_S - 0.1 < time.monotonic() - began < IDLE_HERE_S + 5.0
+        assert IDLE_HERE_S - 0.1 < time.monotonic() - began < IDLE_HERE_S + 3.0
 
 
 def test_clients_let_go_of_idle_connections_before_the_server_does():

@@ -131,7 +131,7 @@ def test_head_does_not_wait_for_the_end(scripted, gate):
     job = scripted.post(GATED)
     began = time.monotonic()
     answer = scripted.client.head(f"/v1/jobs/{job['id']}/events")
-    assert time.monotonic() - began < SOON_S
+    assert time.monotonic() - began < 5.0
     assert (answer.status_code, answer.content) == (200, b"")
     assert answer.headers["content-type"].startswith("text/event-stream")
 

@@ -188,7 +188,7 @@ def test_progress_is_seen_while_the_job_runs(server):
     gate = server.folder / "open"
     gate.unlink(missing_ok=True)
     job = server.post(STEPS)
-    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, SOON_S)
+    until(lambda: server.job(job["id"])["progress"] == {"fraction": 0.25, "message": "a quarter"}, 5.0)
     began, writes = time.monotonic(), stored(server.folder, job["id"], "revision")
     time.sleep(1.0)  # a rate is measured over a time
     writes = stored(server.folder, job["id"], "revision") - writes
@@ -229,7 +229,7 @@ def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path)
     (worker,) = server.workers()
     os.kill(worker, signal.SIGSTOP)  # not even a suspended worker may stay behind
     server.kill()
-    until(lambda: not alive(worker), SOON_S, "the end of the worker")
+    until(lambda: not alive(worker), 2.0, "the end of the worker")
     assert stored(tmp_path, running["id"], "status") == "running"
 
     (tmp_path / "open").touch()

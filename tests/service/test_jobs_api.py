@@ -52,7 +52,7 @@ def test_a_wait_ends_with_the_job(server):
     began = time.perf_counter()
     for _ in range(10):
         assert server.post(problem=SOLVED, wait=30)["status"] == "succeeded"
-    assert time.perf_counter() - began < 30.0, "answered when the time was up, not when the job was done"
+    assert time.perf_counter() - began < 5.0, "answered when the time was up, not when the job was done"
 
 
 def test_the_finished_job_is_what_the_schema_says(client, solved):

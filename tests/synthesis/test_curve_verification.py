@@ -91,5 +91,6 @@ def test_the_least_is_looked_for_where_there_is_a_position():
 
     grid = np.linspace(0.0, 1.0, 12)
     assert least_near(of, grid, of(grid)) == pytest.approx((0.4, 0.4), abs=1e-6)
+    assert least_near(lambda x: np.where(x < 0.4, -np.inf, x), grid, np.where(grid < 0.4, -np.inf, grid))[1] >= 0.4
     nowhere = least_near(lambda x: np.full(len(x), np.nan), grid, np.full(12, np.nan))
     assert np.isnan(nowhere).all()
