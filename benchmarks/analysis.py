@@ -22,12 +22,13 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from benchmarks.mechanisms import STATED
-from kinematics.linkage import fourbar, slider_crank
-from kinematics.linkage import fourbar_kernels as fourbar_sweeps
-from kinematics.linkage import slider_crank_kernels as slider_sweeps
+from kinematics.linkage import slider_crank
 from kinematics.linkage.batch import sweep
-from kinematics.linkage.fourbar import Fourbar
-from kinematics.linkage.slider_crank import SliderCrank
+from kinematics.linkage.fourbar import closed_form as fourbar
+from kinematics.linkage.fourbar import kernels as fourbar_sweeps
+from kinematics.linkage.fourbar.closed_form import Fourbar
+from kinematics.linkage.slider_crank import kernels as slider_sweeps
+from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from synthesis.analyses import parse_request
 from tests.kinematics import twins
 

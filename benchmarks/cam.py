@@ -18,11 +18,26 @@ from typing import Any
 import numpy as np
 
 from kinematics.cam.motion_laws import LAWS
-from synthesis.cam.convex import Condition, Limit, modeling
-from synthesis.cam.optimal import Best, NoMotion, Run, best_derivative, best_roller_size, best_torque
-from synthesis.cam.sizing import RollerLimits, oscillating_roller, translating_roller
 from synthesis.dispatch import solve
-from synthesis.kinds import KINDS, parse_problem
+from synthesis.kinds.cam.optimal import (
+    Best,
+    NoMotion,
+    Run,
+    best_derivative,
+    best_roller_size,
+    best_torque,
+)
+from synthesis.kinds.cam.sizing import (
+    RollerLimits,
+    oscillating_roller,
+    translating_roller,
+)
+from synthesis.numerics.convex import (
+    Condition,
+    Limit,
+    modeling,
+)
+from synthesis.registry import KINDS, parse_problem
 from tests.synthesis.cam_sampling import first_sound, oscillating, random_program, translating
 
 ENDS = ((0.0, 0.0), (1.0, 1.0))

@@ -22,7 +22,7 @@ from functools import partial
 
 import numpy as np
 
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
 from tests.kinematics.test_branches import ELIMINATED, same_branches

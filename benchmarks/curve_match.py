@@ -22,11 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage import positions
-from synthesis.designs import FourbarMechanism, PathResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import driven_fourbar
-from synthesis.path.solver import warm_up
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.solver import warm_up
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import driven_fourbar
+from synthesis.registry import parse_problem
 from tests.cases import HERE
 
 Complex = NDArray[np.complex128]

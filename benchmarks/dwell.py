@@ -11,8 +11,8 @@ import time
 from typing import Any
 
 from synthesis.dispatch import solve
-from synthesis.dwell.solver import warm_up
-from synthesis.kinds import parse_problem
+from synthesis.kinds.dwell.solver import warm_up
+from synthesis.registry import parse_problem
 
 TASKS: list[dict[str, Any]] = [
     {"mechanism": kind, "count": count, "dwell_angle": dwell, "output": output}

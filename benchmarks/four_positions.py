@@ -15,12 +15,12 @@ import math
 
 import numpy as np
 
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.motion.dyads import Dyads
-from synthesis.motion.screening import demands, screen
-from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import MotionProblem
-from synthesis.verification import verify
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.screening import demands, screen
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 
 GRID_DEGREES = 0.25
 TRIED = 50

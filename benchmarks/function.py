@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from synthesis.designs import FunctionResult
 from synthesis.dispatch import solve
-from synthesis.function.solver import warm_up
-from synthesis.kinds import parse_problem
+from synthesis.kinds.function.design import FunctionResult
+from synthesis.kinds.function.solver import warm_up
+from synthesis.registry import parse_problem
 from tests.synthesis.test_function import CASES, holds, measured, pairs_of, planted_fourbar, scaled_pairs, task_of
 from tests.synthesis.test_function_optimality import CLASSICAL, RANGES
 

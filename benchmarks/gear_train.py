@@ -14,9 +14,9 @@ import statistics
 import time
 from typing import Any
 
-from synthesis.designs import GearTrainResult
 from synthesis.dispatch import solve, warm_up_kind
-from synthesis.kinds import parse_problem
+from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.registry import parse_problem
 
 WIDE, NARROW = {"min": 12, "max": 100}, {"min": 12, "max": 60}
 

@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from synthesis.kinds import KINDS, examples
+from synthesis.registry import KINDS, examples
 
 ANGLES = frozenset(
     {

@@ -27,7 +27,7 @@ from pebble import ProcessExpired, ProcessPool
 from pydantic import ValidationError
 
 from benchmarks.geometry_cases import case
-from synthesis.kinds import KINDS, parse_problem
+from synthesis.registry import KINDS, parse_problem
 
 CPU_S = 30
 """What a case may take; nothing that is asked here is a long search."""

@@ -13,9 +13,9 @@ import time
 import numpy as np
 
 from synthesis.dispatch import solve, warm_up_kind
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.verification import verify
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 from tests.synthesis.planted import Planted, plant_many
 
 

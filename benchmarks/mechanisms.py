@@ -7,9 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.catalogue import fourbar, hart, pantograph, peaucellier, sixbar
-from kinematics.linkage.fourbar import Fourbar
-from kinematics.linkage.mechanism import Mechanism, Slide
+from kinematics.linkage.fourbar.closed_form import Fourbar
+from kinematics.linkage.planar.catalogue import (
+    fourbar,
+    hart,
+    pantograph,
+    peaucellier,
+    sixbar,
+)
+from kinematics.linkage.planar.mechanism import Mechanism, Slide
 
 
 def by_skeleton(mechanism: Mechanism) -> dict[str, Any]:

@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks.four_positions import brute_force
-from synthesis.designs import MotionResult
 from synthesis.dispatch import solve, warm_up_kind
-from synthesis.kinds import parse_problem
-from synthesis.problems import MotionProblem
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.registry import parse_problem
 from tests.cases import search_tasks
 
 REPEATS = 400

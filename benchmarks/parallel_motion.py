@@ -18,8 +18,8 @@ import numpy as np
 
 from kinematics.linkage import Fourbar, barker_class
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.parallel_motion.solver import warm_up
+from synthesis.kinds.parallel_motion.solver import warm_up
+from synthesis.registry import parse_problem
 
 FOURBARS = 40
 """Random fourbars, half of them crossed."""

@@ -19,12 +19,17 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage import OPEN, Fourbar, cognates, positions
-from synthesis.designs import PathResult
+from kinematics.linkage import (
+    OPEN,
+    Fourbar,
+    cognates,
+    positions,
+)
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.path.nine_point_system import ORBITS
-from synthesis.path.solver import warm_up
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.nine_point_system import ORBITS
+from synthesis.kinds.path.solver import warm_up
+from synthesis.registry import parse_problem
 
 LIMIT_S = 3.0
 

@@ -17,10 +17,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-from synthesis.designs import PathResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.path.solver import warm_up
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.solver import warm_up
+from synthesis.registry import parse_problem
 
 CASES = Path(__file__).resolve().parent.parent / "tests" / "cases" / "path_benchmarks.json"
 

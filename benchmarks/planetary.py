@@ -6,7 +6,7 @@ import time
 from typing import Any
 
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 
 WIDE = {"min": 17, "max": 100, "ring_max": 200}
 

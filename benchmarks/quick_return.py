@@ -10,7 +10,7 @@ import time
 from typing import Any
 
 from synthesis.dispatch import solve
-from synthesis.kinds import examples, parse_problem
+from synthesis.registry import examples, parse_problem
 
 SWINGS = (20.0, 40.0, 60.0, 80.0, 100.0, 120.0)
 TYPES = (

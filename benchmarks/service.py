@@ -38,7 +38,7 @@ from benchmarks import http_load
 from benchmarks.http_load import Load
 from benchmarks.mechanisms import STATED
 from synthesis.analyses import families
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.service import hostile, test_hostile_bodies
 from tests.service.running import RunningServer, alive, until
 from tests.service.test_limits import HALVES

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 
-from synthesis.designs import SteeringResult
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.kinds.steering.design import SteeringResult
+from synthesis.registry import example, parse_problem
 
 VEHICLES = (
     ("Rao, Solved Problem 4.6", 2.745, 1.22, 33.0),

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.problems.straight_line import LINE_MECHANISMS
+from synthesis.kinds.straight_line.problem import LINE_MECHANISMS
+from synthesis.registry import parse_problem
 from tests.cases import load
 from tests.synthesis.test_straight_line import norton_path
 

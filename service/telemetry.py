@@ -18,7 +18,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from ulid import ULID
 
-from service.api.head import asked_for_head
+from service.head import asked_for_head
 from service.metrics import Metrics
 
 CUT_SHORT = "mechsynth.cut_short"

@@ -9,7 +9,11 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from synthesis.problems import CamProblem, DwellProblem, FunctionProblem, QuickReturnProblem, StatedProblem
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.model.statement import StatedProblem
 
 Dimension = Literal[
     "length",

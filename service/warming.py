@@ -18,7 +18,7 @@ def warm() -> None:
     from kinematics import linkage
     from service import analyst
     from synthesis import dispatch
-    from synthesis.kinds import KINDS
+    from synthesis.registry import KINDS
 
     linkage.warm_up()
     dispatch.warm_up()

@@ -12,9 +12,9 @@ import uvicorn
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api.head import HeadAsGet
 from service.app import create_app
 from service.connections import IDLE_S, ImpatientProtocol, raise_file_limit
+from service.head import HeadAsGet
 from service.jobs.executor import Executor
 from service.metrics import Metrics
 from service.settings import Settings

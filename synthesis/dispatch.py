@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 from kinematics import linkage
-from synthesis.designs import Result
-from synthesis.kinds import KINDS, Progress, example, examples, parse_problem
-from synthesis.problems import StatedProblem
+from synthesis.model.answer import Result
+from synthesis.model.kind import Progress
+from synthesis.model.statement import StatedProblem
+from synthesis.registry import KINDS, parse_problem
 
 __all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
 
 
-def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
+def _silent(_fraction: float, _message: str) -> None:
+    pass
+
+
+def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[Any]:
     """Solve a problem and verify every design.
 
     Parameters
     ----------
     problem : StatedProblem
         A statement without contradictions.
-    progress : callable
+    progress : callable, optional
         Told from time to time how far the work is.
 
     Raises
@@ -29,15 +33,14 @@ def solve(problem: StatedProblem, progress: Progress) -> Result[Any]:
         Where ``problem.contradictions()`` is not empty.
     """
     problem.require_consistent()
-    module, function = KINDS[problem.kind].solver.split(":")
-    result = getattr(import_module(module), function)(problem, progress)
+    result = KINDS[problem.kind].solve(problem, _silent if progress is None else progress)
     assert isinstance(result, Result)
     return result
 
 
 def warm_up() -> None:
     """Compile the kernels of the most usual jobs, or load them from their cache; the rest is :func:`warm_up_rest`."""
-    solve(parse_problem(example("motion")), _silent)
+    solve(parse_problem(KINDS["motion"].examples[0]))
 
 
 def warm_up_rest() -> None:
@@ -48,17 +51,10 @@ def warm_up_rest() -> None:
 
 
 def warm_up_kind(name: str) -> None:
-    """Compile or load what the solver of one kind needs.
-
-    A solver's module that has a ``warm_up`` of its own is warmed by that, any other by the examples of its kind.
-    """
-    module = import_module(KINDS[name].solver.split(":")[0])
-    if hasattr(module, "warm_up"):
-        module.warm_up()
+    """Compile or load what the solver of one kind needs: by its own ``warm_up``, or by solving its examples."""
+    kind = KINDS[name]
+    if kind.warm_up is not None:
+        kind.warm_up()
         return
-    for one in examples(name):
-        solve(parse_problem(one), _silent)
-
-
-def _silent(_fraction: float, _message: str) -> None:
-    pass
+    for statement in kind.examples:
+        solve(parse_problem(statement))

@@ -1,7 +1,7 @@
 """Planar linkages: the fourbar's motion, classification, transmission angle, circuits, cognates, coupler curve and
 instantaneous geometry, and mobility by counting."""
 
-from kinematics.linkage.circuits import (
+from kinematics.linkage.fourbar.circuits import (
     Circuits,
     InputLimits,
     Traversal,
@@ -13,7 +13,7 @@ from kinematics.linkage.circuits import (
     toggle_angles,
     traverse,
 )
-from kinematics.linkage.classification import (
+from kinematics.linkage.fourbar.classification import (
     BARKER,
     BarkerClass,
     barker_class,
@@ -22,7 +22,21 @@ from kinematics.linkage.classification import (
     grashof_class,
     grashof_excess,
 )
-from kinematics.linkage.cognates import (
+from kinematics.linkage.fourbar.closed_form import (
+    CROSSED,
+    OPEN,
+    CouplerMotion,
+    CouplerPoints,
+    Derivatives,
+    Fourbar,
+    Motion,
+    Positions,
+    coupler_motion,
+    coupler_points,
+    motion,
+    positions,
+)
+from kinematics.linkage.fourbar.cognates import (
     Cognate,
     Cognates,
     Configuration,
@@ -33,7 +47,7 @@ from kinematics.linkage.cognates import (
     geared_fivebar_cognate,
     parallel_motion,
 )
-from kinematics.linkage.coupler_curve import (
+from kinematics.linkage.fourbar.coupler_curve import (
     ACNODE,
     CRUNODE,
     CUSP,
@@ -47,7 +61,7 @@ from kinematics.linkage.coupler_curve import (
     sextic,
     sextic_coefficients,
 )
-from kinematics.linkage.curvature import (
+from kinematics.linkage.fourbar.curvature import (
     PAIRS,
     BresseCircles,
     InstantCenters,
@@ -63,23 +77,9 @@ from kinematics.linkage.curvature import (
     torque_ratio,
     velocity_ratio,
 )
-from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
-    CouplerMotion,
-    CouplerPoints,
-    Derivatives,
-    Fourbar,
-    Motion,
-    Positions,
-    coupler_motion,
-    coupler_points,
-    motion,
-    positions,
-)
+from kinematics.linkage.fourbar.transmission import transmission_angle, transmission_extremes
 from kinematics.linkage.mobility import mobility
-from kinematics.linkage.slider_crank import SliderCrank
-from kinematics.linkage.transmission import transmission_angle, transmission_extremes
+from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from kinematics.linkage.warm import warm_up
 
 __all__ = [

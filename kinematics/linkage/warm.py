@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage import catalogue, fourbar, slider_crank
-from kinematics.linkage.circuits import input_limits, stays_on_branch
-from kinematics.linkage.classification import barker_type
-from kinematics.linkage.drive import drive
-from kinematics.linkage.transmission import transmission_extremes
+from kinematics.linkage import slider_crank
+from kinematics.linkage.fourbar import closed_form as fourbar
+from kinematics.linkage.fourbar.circuits import input_limits, stays_on_branch
+from kinematics.linkage.fourbar.classification import barker_type
+from kinematics.linkage.fourbar.transmission import transmission_extremes
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
 
 
 def warm_up() -> None:

@@ -17,9 +17,9 @@ from pydantic_core import to_json
 from service.api import errors
 from service.api.errors import Refusal, not_found, store_unavailable
 from service.api.guard import GuardedRoute, Tenant
-from service.api.head import asked_for_head
 from service.api.jobs import NO_JOB, TAG, ULID
 from service.api.schemas import list_item, progress
+from service.head import asked_for_head
 from service.jobs.feed import Feed, Follower
 from service.jobs.schema import JobSummary
 from service.jobs.states import Status

@@ -28,7 +28,7 @@ from service.jobs.store import KeyReused, QueueFull
 from service.loading import IMPORTS
 from service.render import Form
 from service.telemetry import span
-from synthesis.kinds import KINDS, example
+from synthesis.registry import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
 

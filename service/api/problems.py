@@ -13,7 +13,8 @@ from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
 from service.render import forms
 from service.units import annotated
-from synthesis.kinds import KINDS, Kind, example
+from synthesis.model.kind import Kind
+from synthesis.registry import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
 
@@ -43,7 +44,7 @@ def _kinds() -> ProblemKinds:
     )
 
 
-def _mechanisms(kind: Kind) -> list[str]:
+def _mechanisms(kind: Kind[Any, Any]) -> list[str]:
     """The types of mechanisms that designs of a kind can have."""
     designs = _models(kind.result.model_fields["designs"].annotation)
     mechanisms = [one for design in designs for one in _models(design.model_fields["mechanism"].annotation)]

@@ -10,8 +10,12 @@ from pydantic_core import to_json
 from service.api.errors import ProblemDetails
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
-from synthesis.designs import Result
-from synthesis.kinds import KINDS, Problem, example
+from synthesis.model.answer import Result
+from synthesis.registry import (
+    KINDS,
+    Problem,
+    example,
+)
 
 if TYPE_CHECKING:
     AnyResult = Result[Any]

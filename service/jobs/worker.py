@@ -152,7 +152,7 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
 
 def _solve(teller: Teller, job_id: str, claim: Claim) -> str:
     from synthesis import dispatch
-    from synthesis.kinds import KINDS
+    from synthesis.registry import KINDS
 
     problem = KINDS[claim.kind].problem.model_validate_json(claim.problem)
     with teller.of(job_id, claim.attempt) as progress:

@@ -12,10 +12,10 @@ __all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms"]
 Form = Literal["svg", "gif", "dxf", "csv"]
 
 _LINKAGE: dict[Form, str] = {
-    "svg": "service.render.linkage_sheet:linkage_sheet",
-    "gif": "service.render.linkage_animation:linkage_animation",
-    "dxf": "service.render.linkage_dxf:linkage_drawing",
-    "csv": "service.render.linkage_csv:linkage_table",
+    "svg": "service.render.linkage.sheet:linkage_sheet",
+    "gif": "service.render.linkage.animation:linkage_animation",
+    "dxf": "service.render.linkage.dxf:linkage_drawing",
+    "csv": "service.render.linkage.csv:linkage_table",
 }
 
 _UNDRAWN: dict[Form, str] = {form: maker for form, maker in _LINKAGE.items() if form != "svg"}
@@ -23,18 +23,18 @@ _UNDRAWN: dict[Form, str] = {form: maker for form, maker in _LINKAGE.items() if 
 
 EXPORTS: dict[str, dict[Form, str]] = {
     "cam": {
-        "svg": "service.render.cam_sheet:cam_sheet",
-        "gif": "service.render.cam_animation:cam_animation",
-        "dxf": "service.render.cam_dxf:cam_drawing",
-        "csv": "service.render.cam_csv:cam_table",
+        "svg": "service.render.cam.sheet:cam_sheet",
+        "gif": "service.render.cam.animation:cam_animation",
+        "dxf": "service.render.cam.dxf:cam_drawing",
+        "csv": "service.render.cam.csv:cam_table",
     },
     "barrel_cam": {
-        "svg": "service.render.barrel_sheet:barrel_sheet",
-        "gif": "service.render.cam_animation:barrel_animation",
-        "dxf": "service.render.barrel_exports:barrel_drawing",
-        "csv": "service.render.barrel_exports:barrel_table",
+        "svg": "service.render.cam.barrel_sheet:barrel_sheet",
+        "gif": "service.render.cam.animation:barrel_animation",
+        "dxf": "service.render.cam.barrel_exports:barrel_drawing",
+        "csv": "service.render.cam.barrel_exports:barrel_table",
     },
-    "fourbar": {**_LINKAGE, "svg": "service.render.sheet:fourbar_sheet"},
+    "fourbar": {**_LINKAGE, "svg": "service.render.linkage.fourbar_sheet:fourbar_sheet"},
     "slider_crank": _LINKAGE,
     "geared_fivebar": _LINKAGE,
     "inverted_slider_crank": _LINKAGE,
@@ -53,25 +53,25 @@ EXPORTS: dict[str, dict[Form, str]] = {
     "dwell_slot": _UNDRAWN,
     "watt_1": _UNDRAWN,
     "gear_train": {
-        "svg": "service.render.gear_sheet:gear_train_sheet",
-        "gif": "service.render.gear_animation:gear_train_animation",
-        "dxf": "service.render.gear_dxf:gear_train_drawing",
-        "csv": "service.render.gear_csv:gear_train_table",
+        "svg": "service.render.gears.train_sheet:gear_train_sheet",
+        "gif": "service.render.gears.train_animation:gear_train_animation",
+        "dxf": "service.render.gears.train_dxf:gear_train_drawing",
+        "csv": "service.render.gears.train_csv:gear_train_table",
     },
     "planetary_train": {
-        "svg": "service.render.planetary_sheet:planetary_sheet",
-        "dxf": "service.render.planetary_dxf:planetary_drawing",
-        "csv": "service.render.planetary_csv:planetary_table",
+        "svg": "service.render.gears.planetary_sheet:planetary_sheet",
+        "dxf": "service.render.gears.planetary_dxf:planetary_drawing",
+        "csv": "service.render.gears.planetary_csv:planetary_table",
     },
     "gearbox": {
-        "svg": "service.render.gearbox_exports:gearbox_sheet",
-        "dxf": "service.render.gearbox_dxf:gearbox_drawing",
-        "csv": "service.render.gearbox_exports:gearbox_table",
+        "svg": "service.render.gears.gearbox_exports:gearbox_sheet",
+        "dxf": "service.render.gears.gearbox_dxf:gearbox_drawing",
+        "csv": "service.render.gears.gearbox_exports:gearbox_table",
     },
     "layshaft_gearbox": {
-        "svg": "service.render.gearbox_exports:layshaft_sheet",
-        "dxf": "service.render.gearbox_dxf:layshaft_drawing",
-        "csv": "service.render.gearbox_exports:layshaft_table",
+        "svg": "service.render.gears.gearbox_exports:layshaft_sheet",
+        "dxf": "service.render.gears.gearbox_dxf:layshaft_drawing",
+        "csv": "service.render.gears.gearbox_exports:layshaft_table",
     },
 }
 """For each type of mechanism what makes a file of each form of a design, its problem and a title: ``module:function``,
@@ -80,14 +80,14 @@ imported when it is needed, so that a server that starts does not wait for a dra
 
 EXPORTS_OF_KIND: dict[str, dict[Form, str]] = {
     "function": {
-        "svg": "service.render.function_sheet:function_sheet",
-        "csv": "service.render.function_csv:function_table",
+        "svg": "service.render.linkage.function_sheet:function_sheet",
+        "csv": "service.render.linkage.function_csv:function_table",
     },
-    "quick_return": {"svg": "service.render.stroke_sheet:stroke_sheet"},
-    "steering": {"svg": "service.render.steering_sheet:steering_sheet"},
-    "straight_line": {"svg": "service.render.line_sheet:line_sheet"},
-    "dwell": {"svg": "service.render.dwell_sheet:dwell_sheet"},
-    "parallel_motion": {"svg": "service.render.parallel_sheet:parallel_sheet"},
+    "quick_return": {"svg": "service.render.linkage.stroke_sheet:stroke_sheet"},
+    "steering": {"svg": "service.render.linkage.steering_sheet:steering_sheet"},
+    "straight_line": {"svg": "service.render.linkage.line_sheet:line_sheet"},
+    "dwell": {"svg": "service.render.linkage.dwell_sheet:dwell_sheet"},
+    "parallel_motion": {"svg": "service.render.linkage.parallel_sheet:parallel_sheet"},
 }
 """The same by the kind of problem, where that and not the type of mechanism decides what is shown; looked at first."""
 

@@ -16,8 +16,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.render.numbers import length
-from service.render.svg import clean
+from service.render.page.numbers import length
+from service.render.page.svg import clean
 from service.units import Dimension, dimension
 
 MOST_ROWS = 40

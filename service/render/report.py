@@ -16,12 +16,16 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from service.render import NoSuchExport, NotBuilt, exported
-from service.render.numbers import length
 from service.render.outline import Outline, outline, words, written
-from service.render.svg import clean
+from service.render.page.numbers import length
+from service.render.page.svg import clean
 from service.units import Dimension, dimension, symbols
-from synthesis.designs import Check, Result, Search
-from synthesis.problems import StatedProblem
+from synthesis.model.answer import (
+    Check,
+    Result,
+    Search,
+)
+from synthesis.model.statement import StatedProblem
 
 UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
 

@@ -16,9 +16,9 @@ from kinematics.errors import DimensionError
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cam import MOST_EFFORT, FollowerSeries, ForceSeries, Load, force_series
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
+from synthesis.model.answer import Answer
 
 
 def _wall(mean: float, sign: float) -> dict[str, Any]:

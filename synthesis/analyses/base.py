@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any, NamedTuple, Self
 
-from synthesis.designs import Answer
-from synthesis.problems import Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import Statement
 
 
 class AnalysisRequest(Statement, ABC):

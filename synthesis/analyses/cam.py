@@ -22,10 +22,14 @@ from kinematics.cam.response import FollowerTrain, Response
 from kinematics.errors import DimensionError
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam
-from synthesis.problems import NonNegative, PositiveNumber, Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import (
+    NonNegative,
+    PositiveNumber,
+    Statement,
+)
 
 Real = NDArray[np.float64]
 

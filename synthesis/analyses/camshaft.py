@@ -13,10 +13,10 @@ from kinematics.cam.measured import measured_program
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cam import EXAMPLE, Load
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
 from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.cam import GivenCam
-from synthesis.problems import Number, Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import Number, Statement
 
 MEASURED = 360
 """Cam angles at which each cam's program is measured."""

@@ -11,8 +11,8 @@ from kinematics.cam.extremes import extremes
 from kinematics.cam.follower import TranslatingRoller
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
 from synthesis.mechanisms.cam import GivenContourCam
+from synthesis.model.answer import Answer
 
 
 class ContourCamAnalysisRequest(AnalysisRequest):

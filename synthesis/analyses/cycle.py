@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.branches import Branch, cycle, most_turns
-from kinematics.linkage.limits import branches, holding_reference
-from kinematics.linkage.mechanism import Mechanism, TopologyError
+from kinematics.linkage.planar.branches import (
+    Branch,
+    cycle,
+    most_turns,
+)
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 
 MOST_EFFORT = 200
 """The most that is done in an answer that a client waits for; some seconds."""

@@ -34,10 +34,10 @@ from kinematics.linkage import (
     positions,
     sextic_coefficients,
 )
-from kinematics.linkage.mechanism import GROUND, Mechanism
-from synthesis.designs import Answer
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from synthesis.mechanisms import GivenFourbar, GivenGearedFivebar, GivenSkeleton, MechanismError
-from synthesis.problems import Point
+from synthesis.model.answer import Answer
+from synthesis.model.statement import Point
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -16,10 +16,14 @@ from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.designs import Answer
+from synthesis.kinds.gear_train.problem import ToothNumber
 from synthesis.mechanisms.base import MechanismError
-from synthesis.problems import Number, PositiveNumber, Statement
-from synthesis.problems.gear_train import ToothNumber
+from synthesis.model.answer import Answer
+from synthesis.model.statement import (
+    Number,
+    PositiveNumber,
+    Statement,
+)
 
 RPM = 2.0 * math.pi / 60.0
 

@@ -18,11 +18,15 @@ from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer, Ratio
-from synthesis.designs.gear_train import MeshGeometry
-from synthesis.gear_train.verification import mesh_geometries
-from synthesis.problems import Number, PositiveNumber, Statement
-from synthesis.problems.gear_train import ToothNumber
+from synthesis.kinds.gear_train.design import MeshGeometry, Ratio
+from synthesis.kinds.gear_train.problem import ToothNumber
+from synthesis.kinds.gear_train.verification import mesh_geometries
+from synthesis.model.answer import Answer
+from synthesis.model.statement import (
+    Number,
+    PositiveNumber,
+    Statement,
+)
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 

@@ -12,8 +12,8 @@ from pydantic import ConfigDict, Field
 from kinematics.gear.gearbox import layshaft_ratios, spindle_speeds
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
-from synthesis.problems import Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import Statement
 
 Real = NDArray[np.float64]
 ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]

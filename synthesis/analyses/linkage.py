@@ -12,16 +12,16 @@ import numpy as np
 from pydantic import ConfigDict, Field, TypeAdapter
 
 from kinematics.errors import MechanismError as KinematicsError
-from kinematics.linkage.closures import decompose
-from kinematics.linkage.mechanism import GROUND
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
-from synthesis.designs import Answer
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.mechanisms.base import StatedCouplerPoint
+from synthesis.model.answer import Answer
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 

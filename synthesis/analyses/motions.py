@@ -9,7 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from synthesis.problems import Count, Number, Sizable, Statement
+from synthesis.model.statement import (
+    Count,
+    Number,
+    Sizable,
+    Statement,
+)
 
 MOST_POSITIONS = 10_000
 """Positions of one analysis at most; a finer run is asked for in parts."""

@@ -18,8 +18,12 @@ from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, 
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
-from synthesis.problems import Flag, Number, Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import (
+    Flag,
+    Number,
+    Statement,
+)
 
 MOST_MESHES = 8
 """The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""

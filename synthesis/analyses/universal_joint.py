@@ -17,8 +17,13 @@ from kinematics.linkage.universal_joint import (
 )
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.designs import Answer
-from synthesis.problems import ABSURD, NonNegative, Number, Statement
+from synthesis.model.answer import Answer
+from synthesis.model.statement import (
+    ABSURD,
+    NonNegative,
+    Number,
+    Statement,
+)
 
 EVEN = 1e-12
 """Fluctuation of the speed that is rounding."""

@@ -1,7 +1,7 @@
 """Statements of a given mechanism: its dimensions as its users know them, or its skeleton; degrees and lengths.
 
-Each model gives the analysis core's :class:`kinematics.linkage.mechanism.Mechanism`. Dimensions say it all for the
-types that have them; every other type is stated by its skeleton.
+Each model gives the analysis core's :class:`kinematics.linkage.planar.mechanism.Mechanism`. Dimensions say it all for
+the types that have them; every other type is stated by its skeleton.
 """
 
 from __future__ import annotations

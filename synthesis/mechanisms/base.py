@@ -9,8 +9,13 @@ from itertools import chain
 from typing import Literal
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.mechanism import Mechanism
-from synthesis.problems import NonNegative, Number, Point, Statement
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.model.statement import (
+    NonNegative,
+    Number,
+    Point,
+    Statement,
+)
 
 AGREES = 1e-6
 """A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""

@@ -14,7 +14,12 @@ from kinematics.cam import follower as core
 from kinematics.cam.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
-from synthesis.problems import NonNegative, Number, PositiveNumber, Statement
+from synthesis.model.statement import (
+    NonNegative,
+    Number,
+    PositiveNumber,
+    Statement,
+)
 
 MOST_POINTS = 20_000
 """Points of a given profile at most."""

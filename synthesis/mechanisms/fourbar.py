@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Literal
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import catalogue
-from kinematics.linkage.catalogue import ASSEMBLY
-from kinematics.linkage.fourbar import Fourbar
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.fourbar.closed_form import Fourbar
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.catalogue import ASSEMBLY
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms.base import (
     Assembly,
     MechanismError,
@@ -19,7 +19,7 @@ from synthesis.mechanisms.base import (
     reaching,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.problems import PositiveNumber, Statement
+from synthesis.model.statement import PositiveNumber, Statement
 
 
 class FourbarLengths(Statement):

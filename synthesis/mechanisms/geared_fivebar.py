@@ -11,13 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from kinematics.linkage import catalogue
-from kinematics.linkage.branches import turns_until_repeated
-from kinematics.linkage.catalogue import ASSEMBLY
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.branches import turns_until_repeated
+from kinematics.linkage.planar.catalogue import ASSEMBLY
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.problems import Number, PositiveNumber, Statement
+from synthesis.model.statement import (
+    Number,
+    PositiveNumber,
+    Statement,
+)
 
 Real = NDArray[np.float64]
 

@@ -10,9 +10,19 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    GearPair,
+    Mechanism,
+    Slide,
+)
 from synthesis.mechanisms.base import AGREES, BODY, ROUNDING, MechanismError, StatedCouplerPoint, StatedLine
-from synthesis.problems import Number, Point, PositiveNumber, Statement
+from synthesis.model.statement import (
+    Number,
+    Point,
+    PositiveNumber,
+    Statement,
+)
 
 MOST_SHOWN = 6
 """Distances that a message lists."""

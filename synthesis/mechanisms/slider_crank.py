@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from kinematics.linkage import catalogue
-from kinematics.linkage.catalogue import ASSEMBLY
-from kinematics.linkage.mechanism import Mechanism, Slide
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.catalogue import ASSEMBLY
+from kinematics.linkage.planar.mechanism import Mechanism, Slide
 from synthesis.mechanisms.base import (
     Assembly,
     MechanismError,
@@ -24,7 +24,13 @@ from synthesis.mechanisms.base import (
     reaching,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.problems import NonNegative, Number, Point, PositiveNumber, Statement
+from synthesis.model.statement import (
+    NonNegative,
+    Number,
+    Point,
+    PositiveNumber,
+    Statement,
+)
 
 
 class SliderCrankLengths(Statement):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 from tests.browser.test_form import OPEN_ALL
 from tests.browser.test_studio import PLAIN, drawn, state
 from tests.service.running import ROOT, until

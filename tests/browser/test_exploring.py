@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 from tests.browser.test_motion_view import number, solved
 from tests.browser.test_studio import drag, stated
 from tests.service.running import until

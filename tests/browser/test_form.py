@@ -4,7 +4,11 @@ import re
 
 import pytest
 
-from synthesis.kinds import KINDS, example, examples
+from synthesis.registry import (
+    KINDS,
+    example,
+    examples,
+)
 from tests.browser.test_studio import PLAIN, state, stated
 
 pytestmark = pytest.mark.browser

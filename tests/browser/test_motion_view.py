@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 from tests.browser import test_studio
 from tests.browser.test_studio import PLAIN
 from tests.service.running import until

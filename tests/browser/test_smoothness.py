@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from synthesis.kinds import example
+from synthesis.registry import example
 from tests.browser.test_studio import state
 from tests.service.running import until
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from synthesis.kinds import KINDS, examples
+from synthesis.registry import KINDS, examples
 from tests.browser.test_studio import drag, state, stated
 
 pytestmark = pytest.mark.browser

@@ -6,7 +6,7 @@ import statistics
 
 import pytest
 
-from synthesis.kinds import KINDS, examples
+from synthesis.registry import KINDS, examples
 from tests.service.running import until
 
 pytestmark = pytest.mark.browser

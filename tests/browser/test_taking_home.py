@@ -14,7 +14,7 @@ from PIL import Image, ImageChops
 from playwright.sync_api import TimeoutError
 
 from service.render import forms
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.browser.test_studio import drawn, state, stated
 from tests.service.running import until
 

@@ -8,11 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import MechanismMotion
-from kinematics.linkage.drive_kernels import AT_LIMIT, COINCIDENT, SINGULAR
-from kinematics.linkage.mechanism import GROUND
-from kinematics.linkage.program import assembly_signs, unit_frame
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import MechanismMotion
+from kinematics.linkage.planar.drive_kernels import (
+    AT_LIMIT,
+    COINCIDENT,
+    SINGULAR,
+)
+from kinematics.linkage.planar.mechanism import GROUND
+from kinematics.linkage.planar.program import assembly_signs, unit_frame
 
 
 def product(a, b):
@@ -98,7 +102,7 @@ class Pose(NamedTuple):
 
 
 def drive(mechanism, input, rates, signs=None):
-    """As :func:`kinematics.linkage.drive.drive` for a mechanism that closes by dyads."""
+    """As :func:`kinematics.linkage.planar.drive.drive` for a mechanism that closes by dyads."""
     return _Drive(mechanism, input, rates, signs).run()
 
 

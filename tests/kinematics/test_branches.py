@@ -14,12 +14,28 @@ import numpy as np
 import pytest
 
 from kinematics.errors import MechanismError
-from kinematics.linkage import CROSSED, OPEN, Fourbar, catalogue, count_circuits, positions, toggle_angles
-from kinematics.linkage.branches import Branch, cycle
-from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import drive
-from kinematics.linkage.limits import branches, holding_reference, toggles
-from kinematics.linkage.mechanism import Mechanism, Slide, TopologyError
+from kinematics.linkage import (
+    CROSSED,
+    OPEN,
+    Fourbar,
+    count_circuits,
+    positions,
+    toggle_angles,
+)
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.limits import (
+    branches,
+    holding_reference,
+    toggles,
+)
+from kinematics.linkage.planar.mechanism import (
+    Mechanism,
+    Slide,
+    TopologyError,
+)
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import DYADIC, EVERY, RATIOS, take
 from tests.kinematics.sampling import random_fourbars

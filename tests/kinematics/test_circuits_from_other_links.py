@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kinematics.linkage.branches import Branch
-from kinematics.linkage.limits import branches
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.planar.branches import Branch
+from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE, EVERY, take
 from tests.oracles.constraints import Constraints
 from tests.oracles.elimination import Elimination

@@ -21,7 +21,7 @@ from kinematics.linkage import (
     transmission_angle,
     transmission_extremes,
 )
-from kinematics.linkage.cognates import (
+from kinematics.linkage.fourbar.cognates import (
     Cognate,
     cognates,
     driven_at_output,

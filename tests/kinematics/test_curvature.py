@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
 from kinematics.linkage import CROSSED, OPEN, Fourbar, motion, positions, toggle_angles, transmission_angle
-from kinematics.linkage.curvature import (
+from kinematics.linkage.fourbar.curvature import (
     PAIRS,
     bresse_circles,
     instant_center_count,

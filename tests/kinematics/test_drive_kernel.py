@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from kinematics.linkage.closures import decompose
-from kinematics.linkage.drive import assembly_signs, drive
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import assembly_signs, drive
 from tests.kinematics import drive_twin
 from tests.kinematics.mechanism_sampling import DYADIC
 

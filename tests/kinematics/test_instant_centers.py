@@ -7,12 +7,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from kinematics.linkage.catalogue import fourbar, sixbar
-from kinematics.linkage.curvature import PAIRS
-from kinematics.linkage.curvature import instant_centers as fourbar_centers
-from kinematics.linkage.drive import drive
-from kinematics.linkage.fourbar import Fourbar
-from kinematics.linkage.instant_centers import instant_centers
+from kinematics.linkage.fourbar.closed_form import Fourbar
+from kinematics.linkage.fourbar.curvature import PAIRS
+from kinematics.linkage.fourbar.curvature import instant_centers as fourbar_centers
+from kinematics.linkage.planar.catalogue import fourbar, sixbar
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.instant_centers import instant_centers
 
 SIXBAR = sixbar(
     "stephenson_2",

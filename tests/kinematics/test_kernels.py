@@ -18,10 +18,10 @@ from kinematics.linkage import (
     stays_on_branch,
     transmission_extremes,
 )
-from kinematics.linkage import fourbar as fourbar_module
-from kinematics.linkage import slider_crank as slider_module
+from kinematics.linkage.fourbar import closed_form as fourbar_module
 from kinematics.linkage.kernels import TILE, direction
-from kinematics.linkage.slider_crank import SliderCrank
+from kinematics.linkage.slider_crank import closed_form as slider_module
+from kinematics.linkage.slider_crank.closed_form import SliderCrank
 from tests.kinematics import twins
 from tests.kinematics.sampling import random_fourbars, signs
 

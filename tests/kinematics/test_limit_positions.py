@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.limits import branches, holding_reference, limit_positions
-from kinematics.linkage.roots import find_roots
+from kinematics.linkage.planar.limits import (
+    branches,
+    holding_reference,
+    limit_positions,
+)
+from kinematics.linkage.planar.roots import find_roots
 from tests.kinematics.mechanism_sampling import fourbar, take
 
 

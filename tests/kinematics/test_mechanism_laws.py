@@ -9,9 +9,21 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage import Fourbar, catalogue, motion
-from kinematics.linkage.drive import MechanismMotion, decompose, drive, followed_to
-from kinematics.linkage.mechanism import GROUND, GearPair, Mechanism, Slide, TopologyError
+from kinematics.linkage import Fourbar, motion
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import (
+    MechanismMotion,
+    decompose,
+    drive,
+    followed_to,
+)
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    GearPair,
+    Mechanism,
+    Slide,
+    TopologyError,
+)
 from tests.kinematics.mechanism_sampling import CLASS_THREE, DYADIC, EVERY, geared_fivebar, points, take
 from tests.oracles.constraints import Constraints
 from tests.oracles.differences import derivative

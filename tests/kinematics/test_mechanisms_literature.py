@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage import CROSSED, OPEN, Fourbar, catalogue
-from kinematics.linkage.drive import MechanismMotion, drive
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage import (
+    CROSSED,
+    OPEN,
+    Fourbar,
+)
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import Mechanism
 from tests.cases import Case, cases
 
 ASSEMBLY = {"open": OPEN, "crossed": CROSSED}

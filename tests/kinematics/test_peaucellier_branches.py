@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.catalogue import peaucellier
-from kinematics.linkage.limits import branches
-from kinematics.linkage.mechanism import Mechanism
+from kinematics.linkage.planar.catalogue import peaucellier
+from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.mechanism import Mechanism
 from tests.kinematics.mechanism_sampling import EVERY, take
 
 TURN = 2.0 * np.pi

@@ -9,7 +9,7 @@ import pytest
 
 from kinematics.errors import DimensionError, ShapeError
 from kinematics.linkage.batch import CROSSED, OPEN
-from kinematics.linkage.slider_crank import (
+from kinematics.linkage.slider_crank.closed_form import (
     SliderCrank,
     coupler_points,
     crank_limits,

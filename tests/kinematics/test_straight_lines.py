@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import catalogue
-from kinematics.linkage.drive import drive
-from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar
+from kinematics.linkage.fourbar.closed_form import (
+    CROSSED,
+    OPEN,
+    Fourbar,
+)
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
 from tests.cases import cases
 
 

@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import CROSSED, OPEN, Fourbar, barker_type, catalogue
-from kinematics.linkage.strokes import reversals, strokes
+from kinematics.linkage import (
+    CROSSED,
+    OPEN,
+    Fourbar,
+    barker_type,
+)
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.strokes import reversals, strokes
 from tests.cases import cases
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from kinematics.linkage.drive import drive, followed_to
-from kinematics.linkage.limits import branches, holding_reference
-from kinematics.linkage.mechanism import Mechanism
-from kinematics.linkage.triad_transmission import Leg, triad_of
+from kinematics.linkage.planar.drive import drive, followed_to
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.triad_transmission import Leg, triad_of
 from tests.kinematics.mechanism_sampling import CLASS_THREE, fourbar, take
 
 NAMES = ["stephenson_2 driven by its input", "stephenson_3 driven by its output"]

@@ -7,10 +7,18 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from kinematics.linkage import catalogue
-from kinematics.linkage.drive import decompose, drive, given_up
-from kinematics.linkage.limits import branches, holding_reference
-from kinematics.linkage.mechanism import Mechanism, Slide, TopologyError
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import (
+    decompose,
+    drive,
+    given_up,
+)
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import (
+    Mechanism,
+    Slide,
+    TopologyError,
+)
 from tests.kinematics.mechanism_sampling import CLASS_THREE, take
 from tests.oracles.constraints import Constraints, Trace
 

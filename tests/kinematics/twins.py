@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.linkage import Fourbar, can_assemble, grashof_class
-from kinematics.linkage.circuit_kernels import AT_TOGGLE, CHANGE_POINT
+from kinematics.linkage.fourbar.circuit_kernels import AT_TOGGLE, CHANGE_POINT
 from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
-from kinematics.linkage.slider_crank import SliderCrank
+from kinematics.linkage.slider_crank.closed_form import SliderCrank
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

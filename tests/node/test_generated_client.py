@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from synthesis.kinds import KINDS, examples
+from synthesis.registry import KINDS, examples
 from tests.service.running import ROOT, RunningServer
 
 HERE = Path(__file__).parent

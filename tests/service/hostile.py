@@ -4,7 +4,7 @@ import copy
 import json
 from collections.abc import Iterator
 
-from synthesis.kinds import example
+from synthesis.registry import example
 
 SPOILT = {
     "nan": "NaN",

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from service.cli import main
 from synthesis import dispatch
-from synthesis.designs import Result, Search
+from synthesis.model.answer import Result, Search
 
 INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS, PYTHON, NUMBA, LAPACK, CONVEX = range(100, 111)
 BRIEF, TOLD = 10_000, 20_000

@@ -11,12 +11,18 @@ from PIL import Image
 
 from kinematics.cam.profile import even_angles
 from service.render import exported
-from service.render.animation import FRAMES, PIXELS, Stroke, animated, ring
-from service.render.cam import CamScene
-from service.render.cam_animation import _spin
-from service.render.svg import Box
+from service.render.cam.animation import _spin
+from service.render.cam.scene import CamScene
+from service.render.page.animation import (
+    FRAMES,
+    PIXELS,
+    Stroke,
+    animated,
+    ring,
+)
+from service.render.page.svg import Box
 from synthesis.dispatch import solve
-from synthesis.kinds import examples, parse_problem
+from synthesis.registry import examples, parse_problem
 
 CAM = examples("cam")[0]
 ARM = {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 120.0, "pivot_distance": 150.0}

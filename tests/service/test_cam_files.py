@@ -15,11 +15,11 @@ import pytest
 from ezdxf.path import make_path
 
 from service.render import exported
-from service.render.cam import CamScene
-from service.render.diagrams import ticks
-from synthesis.cam.solver import solve_cam
-from synthesis.designs.cam import CamDesign
-from synthesis.problems.cam import CamProblem
+from service.render.cam.scene import CamScene
+from service.render.page.diagrams import ticks
+from synthesis.kinds.cam.design import CamDesign
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.solver import solve_cam
 
 FOLLOWERS: dict[str, dict[str, Any]] = {
     "translating_roller": {"roller_radius": 8.0, "offset": 5.0},

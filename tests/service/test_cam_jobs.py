@@ -6,7 +6,7 @@ import copy
 
 import pytest
 
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.service.running import REACHED_S, SOON_S, until
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]

@@ -11,7 +11,7 @@ import time
 import pytest
 
 from service.client import Client, JobFailed, JobSummary, Progress, Refused, Unreachable
-from synthesis.kinds import KINDS, example
+from synthesis.registry import KINDS, example
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
 

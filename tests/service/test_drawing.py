@@ -11,12 +11,24 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar, positions
-from service.render.fourbar import MARKED, OTHERS
-from service.render.sheet import fourbar_sheet as drawing
-from service.render.svg import Box, clipped, clipped_polygon, number, shortened, text_width
-from synthesis.designs import Check, LinkageDesign, LinkageMetrics, Target, Verification
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.problems import MotionProblem
+from service.render.linkage.fourbar import MARKED, OTHERS
+from service.render.linkage.fourbar_sheet import fourbar_sheet as drawing
+from service.render.page.svg import (
+    Box,
+    clipped,
+    clipped_polygon,
+    number,
+    shortened,
+    text_width,
+)
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import (
+    LinkageDesign,
+    LinkageMetrics,
+    Target,
+)
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -13,7 +13,7 @@ from service import drawings
 from service.api import jobs
 from service.api.errors import Refusal
 from service.drawings import AT_ONCE, Busy, Drawings
-from synthesis.kinds import example
+from synthesis.registry import example
 
 MANY = 60
 """More than the threads that the server has for everything."""

@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from synthesis.analyses import families
-from synthesis.kinds import KINDS, examples
+from synthesis.registry import KINDS, examples
 from tests.service.running import SCRIPTED, RunningServer
 
 STRANGE = ("odd", -7.5, {"odd": 1}, [[]], None)

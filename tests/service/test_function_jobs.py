@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 
 EXAMPLES = examples("function")
 

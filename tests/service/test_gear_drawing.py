@@ -16,11 +16,11 @@ import pytest
 
 from kinematics.gear.teeth import Gear
 from service.render import exported
-from service.render.gear_layout import PlacedGear, placed_gears
-from synthesis.designs import GearTrainDesign, GearTrainResult
+from service.render.gears.train_layout import PlacedGear, placed_gears
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.problems import GearTrainProblem
+from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.registry import parse_problem
 
 SVG = "{http://www.w3.org/2000/svg}"
 

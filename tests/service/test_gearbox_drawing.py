@@ -12,9 +12,14 @@ import numpy as np
 import pytest
 
 from service.render import exported
-from service.render.gearbox_layout import BoxGear, BoxLayout, gearbox_layout, layshaft_layout
+from service.render.gears.gearbox_layout import (
+    BoxGear,
+    BoxLayout,
+    gearbox_layout,
+    layshaft_layout,
+)
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 from tests.service.test_gear_drawing import assert_involute
 
 TASKS: dict[str, dict[str, Any]] = {

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.service import hostile
 from tests.service.running import PROBLEM
 

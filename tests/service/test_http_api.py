@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from service.api.prefer import wait_seconds
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.service.answers import finished
 
 

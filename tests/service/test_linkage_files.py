@@ -15,7 +15,7 @@ import pytest
 
 from service.render import exported
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.registry import parse_problem
 
 THREE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},
          {"x": 75.0, "y": 5.0, "angle": -60.0}]  # fmt: skip

@@ -9,7 +9,7 @@ import pytest
 
 from service.render import exported
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.registry import parse_problem
 
 SVG = "{http://www.w3.org/2000/svg}"
 POSITIONS = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},

@@ -9,7 +9,7 @@ import pytest
 from service import analyst, render
 from service.loading import IMPORTS
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 
 
 def drawn() -> None:

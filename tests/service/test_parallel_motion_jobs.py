@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from synthesis.kinds import example
+from synthesis.registry import example
 from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented, joint
 

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 
 SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = next(example for example in examples("path") if example.get("method") == "curve_match")

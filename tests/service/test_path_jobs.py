@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from synthesis.kinds import examples
+from synthesis.registry import examples
 from tests.service.running import SOON_S, until
 
 TIMED = [example for example in examples("path") if example.get("timing") == "prescribed"]

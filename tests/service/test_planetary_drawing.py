@@ -14,9 +14,9 @@ import pytest
 
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render import exported
-from service.render.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
+from service.render.gears.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 
 TRAINS: list[dict[str, Any]] = [
     {"ratio": 5.0, "arrangement": "simple", "input": "sun", "output": "carrier", "planets": 4},

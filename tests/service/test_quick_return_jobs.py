@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds import KINDS
+from synthesis.registry import KINDS
 from tests.service.answers import drawn, finished
 
 EXAMPLES = KINDS["quick_return"].problem.model_config["json_schema_extra"]["examples"]

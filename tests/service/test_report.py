@@ -2,18 +2,22 @@
 
 import base64
 import hashlib
-import importlib
 import json
 import re
 from html.parser import HTMLParser
 
 import pytest
 
-from service.render.numbers import length
 from service.render.outline import MOST_ROWS, outline
+from service.render.page.numbers import length
 from service.render.report import POLICY, Occasion, report
 from service.units import symbols
-from synthesis.kinds import KINDS, examples, parse_problem
+from synthesis.dispatch import solve
+from synthesis.registry import (
+    KINDS,
+    examples,
+    parse_problem,
+)
 
 VOID = {"meta", "link", "br", "img", "input", "hr"}
 OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
@@ -64,8 +68,7 @@ class Page(HTMLParser):
 
 def solved(kind, n):
     problem = parse_problem(examples(kind)[n])
-    module, function = KINDS[kind].solver.split(":")
-    return problem, getattr(importlib.import_module(module), function)(problem, lambda *_: None)
+    return problem, solve(problem)
 
 
 def check_self_contained(text):
@@ -111,8 +114,7 @@ def test_the_report_of_each_kind_has_problem_answer_drawings_checks_and_dimensio
 
 def test_lengths_have_their_unit_and_angles_theirs():
     problem = parse_problem({**examples("motion")[3], "length_unit": "in"})
-    module, function = KINDS["motion"].solver.split(":")
-    result = getattr(importlib.import_module(module), function)(problem, lambda *_: None)
+    result = solve(problem)
     page = Page(report(problem, result, OCCASION, 1))
     mechanism = result.designs[0].mechanism
     assert any(row[:3] == ["Links: coupler", length(mechanism.links.coupler), "in"] for row in page.rows)
@@ -124,8 +126,7 @@ def test_lengths_have_their_unit_and_angles_theirs():
 
 def test_long_lists_are_thinned_with_both_ends_and_say_so():
     problem = parse_problem(examples("cam")[0])
-    module, function = KINDS["cam"].solver.split(":")
-    result = getattr(importlib.import_module(module), function)(problem, lambda *_: None)
+    result = solve(problem)
     (program,) = [one for one in outline(result.designs[0].mechanism, symbols(problem)).lists if one.title == "Program"]
     table = result.designs[0].mechanism.program
     assert [head for head, _ in program.heads] == ["Angle", "S", "V", "A", "J"]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from service.app import api_document
-from synthesis.kinds import example
+from synthesis.registry import example
 from tests.service.running import RunningServer
 from tests.service.test_access import client_with, made
 

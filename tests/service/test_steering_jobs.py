@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synthesis.kinds import example
+from synthesis.registry import example
 from tests.service.answers import drawn, finished
 
 

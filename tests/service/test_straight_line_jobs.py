@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from synthesis.problems.straight_line import LINE_MECHANISMS
+from synthesis.kinds.straight_line.problem import LINE_MECHANISMS
 from tests.service.answers import finished
 from tests.service.test_analyses import assert_as_documented, joint
 

@@ -3,7 +3,12 @@
 import pytest
 
 from service.units import annotated, dimension, symbols
-from synthesis.kinds import KINDS, example, examples, parse_problem
+from synthesis.registry import (
+    KINDS,
+    example,
+    examples,
+    parse_problem,
+)
 
 # They speak of degrees and are none, or are not in the same unit for all mechanisms of their kind.
 MIXED = {"SteeringPosition.input_angle", "Scales.input", "Scales.output", "Target.residual"}

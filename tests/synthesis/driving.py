@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from synthesis.designs import LinkageDesign
-from synthesis.problems import MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.model.linkage_answer import LinkageDesign
 from tests.oracles.constraints import Constraints, Line
 
 

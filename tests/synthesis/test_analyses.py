@@ -9,8 +9,8 @@ import pytest
 
 from synthesis.analyses import family, parse_request
 from synthesis.dispatch import solve
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.mechanisms import MechanismError
-from synthesis.problems.motion import MotionProblem
 from tests.kinematics.mechanism_sampling import EVERY, geared_fivebar, take
 
 KINDS = {

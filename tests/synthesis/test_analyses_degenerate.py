@@ -16,8 +16,8 @@ from pydantic import ValidationError
 from pydantic_core import to_json
 
 from kinematics.errors import MechanismError as KinematicsError
-from kinematics.linkage.limits import branches
-from kinematics.linkage.mechanism import GROUND
+from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses import parse_request
 from synthesis.analyses.linkage import LinkageAnalysis
 from synthesis.mechanisms import MechanismError

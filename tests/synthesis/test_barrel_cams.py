@@ -10,10 +10,10 @@ import pytest
 
 from synthesis.analyses import parse_request
 from synthesis.analyses.barrel_cam import BarrelCamAnalysisRequest
-from synthesis.cam.barrel import smallest_barrel
-from synthesis.cam.barrel_verification import verify_barrel
 from synthesis.dispatch import solve
-from synthesis.kinds import examples, parse_problem
+from synthesis.kinds.cam.barrel import smallest_barrel
+from synthesis.kinds.cam.barrel_verification import verify_barrel
+from synthesis.registry import examples, parse_problem
 from tests.synthesis.cam_sampling import dense_motion, random_program
 
 BARREL = next(e for e in examples("cam") if e["follower"]["type"] == "barrel_roller")

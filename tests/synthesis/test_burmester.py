@@ -7,11 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds import parse_problem
-from synthesis.motion.burmester import BurmesterCurve, Window, branches, burmester_curve, cloud
-from synthesis.motion.dyads import DyadConditions
-from synthesis.motion.sections import section
-from synthesis.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.burmester import (
+    BurmesterCurve,
+    Window,
+    branches,
+    burmester_curve,
+    cloud,
+)
+from synthesis.kinds.motion.dyads import DyadConditions
+from synthesis.kinds.motion.sections import section
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.registry import parse_problem
 from tests.synthesis.planted import plant
 
 

@@ -14,8 +14,18 @@ import pytest
 from scipy.optimize import linprog
 from scipy.sparse import lil_matrix
 
-from synthesis.cam.convex import Condition, Demand, Limit
-from synthesis.cam.optimal import Best, NoMotion, Run, best_derivative, best_flat_size
+from synthesis.kinds.cam.optimal import (
+    Best,
+    NoMotion,
+    Run,
+    best_derivative,
+    best_flat_size,
+)
+from synthesis.numerics.convex import (
+    Condition,
+    Demand,
+    Limit,
+)
 
 HONEST = 0.02
 """Share by which the motions of HiGHS, on a coarse grid, may exceed the bound: else it proves little."""

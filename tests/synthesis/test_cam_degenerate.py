@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from synthesis.cam.critical import smallest_allowed
 from synthesis.dispatch import solve
-from synthesis.kinds import examples, parse_problem
+from synthesis.kinds.cam.critical import smallest_allowed
+from synthesis.registry import examples, parse_problem
 from tests.synthesis.cam_sampling import random_program
 
 BASE = examples("cam")[0]
@@ -147,7 +147,7 @@ def test_a_face_that_is_too_narrow_is_not_proven_to_be():
 
 
 def test_exchanges_that_do_not_end_prove_nothing(monkeypatch):
-    monkeypatch.setattr("synthesis.cam.critical.EXCHANGES", 1)
+    monkeypatch.setattr("synthesis.kinds.cam.critical.EXCHANGES", 1)
     program = random_program(np.random.default_rng(1), 1.0)
     found = smallest_allowed(program, lambda motion, p: np.abs(motion.a) / p - 1.0 + 0.0 * motion.s, 1e-3, 1e6)
     assert found is not None

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.cam.verification import verify
 from synthesis.dispatch import solve
-from synthesis.kinds import examples, parse_problem
+from synthesis.kinds.cam.verification import verify
+from synthesis.registry import examples, parse_problem
 
 GROOVE = copy.deepcopy(examples("cam")[0]) | {"closure": "form", "dynamics": {"mass": 1.0}}
 FOLLOWERS = [

@@ -8,13 +8,13 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.cam.composition import compose
-from synthesis.cam.measured_rates import PEAK_SLACK
-from synthesis.cam.mechanism import cam_mechanism, profile_angles
-from synthesis.cam.solver import _sized
-from synthesis.cam.verification import verify
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.kinds.cam.composition import compose
+from synthesis.kinds.cam.measured_rates import PEAK_SLACK
+from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles
+from synthesis.kinds.cam.solver import _sized
+from synthesis.kinds.cam.verification import verify
+from synthesis.registry import parse_problem
 
 BASE = {
     "kind": "cam",

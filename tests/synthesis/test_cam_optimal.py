@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from kinematics.cam.motion_laws import LAWS
-from synthesis.cam.convex import Condition, Demand, Limit
-from synthesis.cam.knots import KnotMotion
-from synthesis.cam.optimal import (
+from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.optimal import (
     Best,
     NoMotion,
     Run,
@@ -20,8 +19,13 @@ from synthesis.cam.optimal import (
     best_roller_size,
     best_torque,
 )
-from synthesis.cam.piecewise import Piecewise
-from synthesis.cam.torque import torque
+from synthesis.kinds.cam.piecewise import Piecewise
+from synthesis.kinds.cam.torque import torque
+from synthesis.numerics.convex import (
+    Condition,
+    Demand,
+    Limit,
+)
 
 MODIFIED_SINE = tuple(factor.largest for factor in LAWS["modified_sine"].factors)
 CLOSE = 2e-3

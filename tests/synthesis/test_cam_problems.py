@@ -10,9 +10,9 @@ from pydantic import ValidationError
 
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.segments import Condition, polynomial_segment
-from synthesis.kinds import KINDS, parse_problem
-from synthesis.problems.cam import Law
-from synthesis.problems.cam_joints import END_RATES, polynomial_ends
+from synthesis.kinds.cam.joints import END_RATES, polynomial_ends
+from synthesis.kinds.cam.problem import Law
+from synthesis.registry import KINDS, parse_problem
 
 DOUBLE_DWELL = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"][0]
 

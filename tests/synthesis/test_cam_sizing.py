@@ -11,8 +11,8 @@ from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.pieces import Motion
 from kinematics.cam.program import Program
 from kinematics.cam.segments import dwell, law_segment
-from synthesis.cam.critical import critical_motion
-from synthesis.cam.sizing import (
+from synthesis.kinds.cam.critical import critical_motion
+from synthesis.kinds.cam.sizing import (
     RollerLimits,
     face_sweep,
     free_offset,

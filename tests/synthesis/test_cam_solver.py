@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from kinematics.cam.motion_laws import LAWS
-from synthesis.cam.verification import verify
 from synthesis.dispatch import solve
-from synthesis.kinds import KINDS, parse_problem
+from synthesis.kinds.cam.verification import verify
+from synthesis.registry import KINDS, parse_problem
 
 EXAMPLES = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"]
 DOUBLE_DWELL, RISE_FALL_DWELL, CRITICAL_PATH, VALVE = EXAMPLES[:4]

@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import minimize
 
 from kinematics.cam.motion_laws import LAWS
-from synthesis.cam.composition import Composition, compose
-from synthesis.kinds import examples, parse_problem
+from synthesis.kinds.cam.composition import Composition, compose
+from synthesis.registry import examples, parse_problem
 
 BASE = examples("cam")[0]
 BETA, LIFT = 0.5 * math.pi, 10.0

@@ -8,15 +8,18 @@ from pydantic import ValidationError
 
 from benchmarks.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
 from kinematics.linkage import OPEN, Fourbar, SliderCrank, positions
-from kinematics.linkage import slider_crank as sliders
-from kinematics.linkage.catalogue import geared_fivebar
-from kinematics.linkage.drive import drive
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.path.curve_descent import descend
-from synthesis.path.curve_match import with_cognates
-from synthesis.path.curve_shapes import SHAPE_POINTS, alike, draw, equal_steps
-from synthesis.path.traced_curves import (
+from kinematics.linkage.planar.catalogue import geared_fivebar
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.slider_crank import closed_form as sliders
+from synthesis.kinds.path.curve_descent import descend
+from synthesis.kinds.path.curve_match import with_cognates
+from synthesis.kinds.path.curve_shapes import (
+    SHAPE_POINTS,
+    alike,
+    draw,
+    equal_steps,
+)
+from synthesis.kinds.path.traced_curves import (
     CRANK_ROCKER,
     DOUBLE_CRANK,
     FOURBAR,
@@ -29,7 +32,9 @@ from synthesis.path.traced_curves import (
     place_with_slopes,
     sweep,
 )
-from synthesis.verification.curve import verify_curve
+from synthesis.kinds.path.verify_curve import verify_curve
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 
 CASES = {case["id"]: case for case in curve_cases()}
 EGG = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.5j)

@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.verification.closer import least_near
-from synthesis.verification.curve import BULGE, astray, followed, verify_curve
+from synthesis.kinds.path.verify_curve import (
+    BULGE,
+    astray,
+    followed,
+    verify_curve,
+)
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.proof.closer import least_near
+from synthesis.registry import parse_problem
 
 CORNERS = np.array([0.0, 4.0, 4.0 + 3.0j])
 

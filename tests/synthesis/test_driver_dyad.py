@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from synthesis.analyses import parse_request
-from synthesis.designs import LinkageDesign, MotionResult, SixbarMechanism
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.motion.driver_dyad import _stages
-from synthesis.problems import MotionProblem
-from synthesis.verification import verify
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.driver_dyad import _stages
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
+from synthesis.registry import parse_problem
 from tests.synthesis.driving import assert_drives_through, constraints_of, turns_through
 
 TWO = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 30.0, "y": 20.0, "angle": 45.0}]

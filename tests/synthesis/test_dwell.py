@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from synthesis.designs import DwellDesign, DwellResult
 from synthesis.dispatch import solve
-from synthesis.dwell.arcs import arcs, lines
-from synthesis.kinds import parse_problem
-from synthesis.problems import DwellProblem
-from synthesis.problems.base import ContradictionError
-from synthesis.verification.dwell import _means, _ranges, verify_dwell
+from synthesis.kinds.dwell.arcs import arcs, lines
+from synthesis.kinds.dwell.design import DwellDesign, DwellResult
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.dwell.verification import (
+    _means,
+    _ranges,
+    verify_dwell,
+)
+from synthesis.model.statement import ContradictionError
+from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
 from tests.synthesis.driving import constraints_of

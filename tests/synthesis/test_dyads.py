@@ -7,11 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds import parse_problem
-from synthesis.motion.choices import side_dyads, stated_conditions
-from synthesis.motion.dyads import DyadConditions, Dyads, solve_dyads
-from synthesis.motion.task import MotionTask, motion_task
-from synthesis.problems import DyadChoices
+from synthesis.kinds.motion.choices import side_dyads, stated_conditions
+from synthesis.kinds.motion.dyads import (
+    DyadConditions,
+    Dyads,
+    solve_dyads,
+)
+from synthesis.kinds.motion.problem import DyadChoices
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.synthesis.planted import plant
 from tests.synthesis.test_motion_literature import vector
@@ -180,7 +184,7 @@ def test_directions_are_met_forwards_only() -> None:
 
 def test_jacobian_against_differences() -> None:
     """Newton's rows are differentiated right: a step of 1e-6 changes each residual as the Jacobian says."""
-    from synthesis.motion.dyads import _rows
+    from synthesis.kinds.motion.dyads import _rows
 
     rng = np.random.default_rng(6)
     task = random_task(rng, 3)

@@ -5,9 +5,9 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.path.curve_descent import ANYWHERE, descend
-from synthesis.path.traced_curves import CRANK_ROCKER, natural
+from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.traced_curves import CRANK_ROCKER, natural
+from synthesis.registry import parse_problem
 
 
 def planted(n, seed):

@@ -8,10 +8,14 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.path.five_point_start import random_problem, solve_by_monodromy, start
-from synthesis.path.five_point_system import SOLUTIONS, residuals
-from synthesis.path.five_points import five_points
+from synthesis.kinds.path.five_point_start import (
+    random_problem,
+    solve_by_monodromy,
+    start,
+)
+from synthesis.kinds.path.five_point_system import SOLUTIONS, residuals
+from synthesis.kinds.path.five_points import five_points
+from synthesis.registry import parse_problem
 from tests.cases import HERE
 
 ROCKER = Fourbar(0.0, 8.0 + 1.0j, 2.5, 7.0, 6.0, 4.0 + 3.0j)

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synthesis.designs import LinkageDesign
-from synthesis.kinds import KINDS, parse_problem
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.registry import KINDS, parse_problem
 from tests.cases import search_tasks
 from tests.synthesis.planted import Planted, PlantedDyad, plant
 from tests.synthesis.test_motion_search import confirm, run

@@ -9,14 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematics.linkage import Fourbar, SliderCrank, positions, slider_crank
-from synthesis.function.approximation import _Descent
-from synthesis.function.closure import FOURBAR
-from synthesis.function.levelling import levelled
-from synthesis.function.precision import many_exact
-from synthesis.function.solver import solve_function
-from synthesis.function.task import function_task
-from synthesis.problems import FunctionProblem
+from kinematics.linkage import (
+    Fourbar,
+    SliderCrank,
+    positions,
+    slider_crank,
+)
+from synthesis.kinds.function.approximation import _Descent
+from synthesis.kinds.function.closure import FOURBAR
+from synthesis.kinds.function.levelling import levelled
+from synthesis.kinds.function.precision import many_exact
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.solver import solve_function
+from synthesis.kinds.function.task import function_task
 
 CASES = json.loads((Path(__file__).parents[1] / "cases" / "function_generation.json").read_text())
 NAMES = {

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from synthesis.analyses import parse_request
 from synthesis.analyses.gear_train import GearTrainAnalysis, GearTrainAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.registry import parse_problem
 
 
 def analysed(

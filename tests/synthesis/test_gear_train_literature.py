@@ -8,11 +8,11 @@ from fractions import Fraction
 import pytest
 
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from synthesis.gear_train.search import Outcome, search
-from synthesis.gear_train.solver import solve_gear_train
-from synthesis.gear_train.targets import parse_target
-from synthesis.gear_train.task import gear_train_task
-from synthesis.problems.gear_train import GearTrainProblem
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.search import Outcome, search
+from synthesis.kinds.gear_train.solver import solve_gear_train
+from synthesis.kinds.gear_train.task import gear_train_task
+from synthesis.model.ratio_target import parse_target
 from tests.cases import Case, cases
 
 

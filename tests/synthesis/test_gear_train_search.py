@@ -9,11 +9,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from synthesis.gear_train import candidates
-from synthesis.gear_train.search import Outcome, search
-from synthesis.gear_train.targets import parse_target
-from synthesis.gear_train.task import gear_train_task
-from synthesis.problems.gear_train import GearTrainProblem
+from synthesis.kinds.gear_train import candidates
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gear_train.search import Outcome, search
+from synthesis.kinds.gear_train.task import gear_train_task
+from synthesis.model.ratio_target import parse_target
 
 
 def problem(**fields: object) -> GearTrainProblem:

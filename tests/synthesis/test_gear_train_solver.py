@@ -11,13 +11,18 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from synthesis.designs import GearTrainMechanism, GearTrainResult, Idler, Ratio, Stage
 from synthesis.dispatch import solve
-from synthesis.gear_train.targets import parse_target
-from synthesis.gear_train.verification import verify
-from synthesis.kinds import parse_problem
-from synthesis.problems import GearTrainProblem
-from synthesis.problems.gear_train import TeethRange
+from synthesis.kinds.gear_train.design import (
+    GearTrainMechanism,
+    GearTrainResult,
+    Idler,
+    Ratio,
+    Stage,
+)
+from synthesis.kinds.gear_train.problem import GearTrainProblem, TeethRange
+from synthesis.kinds.gear_train.verification import verify
+from synthesis.model.ratio_target import parse_target
+from synthesis.registry import parse_problem
 
 
 def solved(**fields: Any) -> GearTrainResult:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synthesis.gear_train.targets import TargetSyntaxError, parse_target
+from synthesis.model.ratio_target import TargetSyntaxError, parse_target
 
 
 @pytest.mark.parametrize(

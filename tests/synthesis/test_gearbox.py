@@ -12,14 +12,18 @@ import pytest
 
 from kinematics.gear.gearbox import spindle_speeds
 from kinematics.gear.teeth import Gear, Mesh
-from synthesis.designs import GearboxResult, LayshaftResult
 from synthesis.dispatch import solve
-from synthesis.gearbox.stages import worth_having
-from synthesis.gearbox.structures import Group, formula, structures
-from synthesis.gearbox.verification import verify
-from synthesis.kinds import parse_problem
-from synthesis.layshaft_gearbox.verification import verify as verify_layshaft
-from synthesis.problems import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.design import GearboxResult, LayshaftResult
+from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.stages import worth_having
+from synthesis.kinds.gearbox.structures import (
+    Group,
+    formula,
+    structures,
+)
+from synthesis.kinds.gearbox.verification import verify
+from synthesis.kinds.layshaft_gearbox.verification import verify as verify_layshaft
+from synthesis.registry import parse_problem
 
 
 def gearbox_problem(**stated: Any) -> GearboxProblem:

@@ -11,7 +11,7 @@ from kinematics.gear.planetary import GROUND, Mesh, Train, speeds
 from synthesis.analyses import family, parse_request
 from synthesis.analyses.gearbox import GearboxAnalysis, GearboxAnalysisRequest, LayshaftAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 
 
 def stated_example(request: Any) -> dict[str, Any]:

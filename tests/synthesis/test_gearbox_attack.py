@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.problems import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.registry import parse_problem
 
 EVEN = 1e-12
 """Logarithms of speeds that differ by less are equal."""

@@ -6,8 +6,8 @@ import pytest
 
 from benchmarks.geometry_cases import case
 from benchmarks.geometry_fuzz import run, tally
-from synthesis.kinds import KINDS, parse_problem
-from synthesis.problems.base import TINY
+from synthesis.model.statement import TINY
+from synthesis.registry import KINDS, parse_problem
 
 
 @pytest.mark.fuzz

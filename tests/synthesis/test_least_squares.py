@@ -11,18 +11,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synthesis.designs import LinkageDesign, MotionResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.motion.constraint_manifold import of_pivots, pivots_of
-from synthesis.motion.fit_starts import starts
-from synthesis.motion.least_squares import fit_demands
-from synthesis.motion.linear_fit import dyads_of_poses
-from synthesis.motion.pose_fit import Demands, PoseFit
-from synthesis.motion.task import motion_task
-from synthesis.problems import DyadChoices, MotionProblem
-from synthesis.verification import verify
+from synthesis.kinds.motion.constraint_manifold import of_pivots, pivots_of
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.fit_starts import starts
+from synthesis.kinds.motion.least_squares import fit_demands
+from synthesis.kinds.motion.linear_fit import dyads_of_poses
+from synthesis.kinds.motion.pose_fit import Demands, PoseFit
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.task import motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 from tests.oracles.continuation import Linkages, configurations, follow
 from tests.synthesis.planted import Planted, plant, plant_many
 

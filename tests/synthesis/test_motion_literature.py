@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from synthesis.designs import LinkageDesign
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 
 

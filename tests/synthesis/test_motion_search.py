@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.designs import LinkageDesign, MotionResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.registry import parse_problem
 from tests.cases import search_tasks
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import plant

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
-from synthesis.path.nine_point import all_triples, conjugate
-from synthesis.path.nine_point_start import is_linkage, start
-from synthesis.path.nine_point_system import (
+from synthesis.kinds.path.nine_point import all_triples, conjugate
+from synthesis.kinds.path.nine_point_start import is_linkage, start
+from synthesis.kinds.path.nine_point_system import (
     ORBITS,
     SCRATCH,
     cognate,

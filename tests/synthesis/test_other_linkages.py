@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import Fourbar, SliderCrank, positions
-from kinematics.linkage import slider_crank as sliders
-from kinematics.linkage.catalogue import geared_fivebar
-from kinematics.linkage.drive import drive
-from synthesis.designs import PathResult
+from kinematics.linkage.planar.catalogue import geared_fivebar
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.slider_crank import closed_form as sliders
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, slider_crank_mechanism
-from synthesis.path.other_linkages import cognate_fivebars, geared_fivebar_mechanism
-from synthesis.verification.traced import verify_traced
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.other_linkages import cognate_fivebars, geared_fivebar_mechanism
+from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.linkages import FourbarConfiguration, slider_crank_mechanism
+from synthesis.registry import parse_problem
 
 SLIDER = SliderCrank(1.0 + 2.0j, 1.0 + 2.3j, 0.3, 1.0, 3.2, 1.5 + 1.2j)
 TURN = np.linspace(0.0, math.tau, 40, endpoint=False)

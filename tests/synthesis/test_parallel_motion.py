@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from synthesis.designs import ParallelMotionDesign, ParallelMotionResult
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
-from synthesis.problems import ParallelMotionProblem
-from synthesis.problems.base import ContradictionError
-from synthesis.verification.parallel_motion import verify_parallel_motion
+from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionResult
+from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
+from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
+from synthesis.model.statement import ContradictionError
+from synthesis.registry import example, parse_problem
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
 from tests.synthesis.driving import constraints_of

@@ -9,9 +9,9 @@ from pydantic import ValidationError
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.verification.path import verify_path
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import example, parse_problem
 from tests.cases import HERE
 
 CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)

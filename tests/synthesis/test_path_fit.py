@@ -8,7 +8,7 @@ import pytest
 from benchmarks.path_fit import best_published, rows, statement
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.registry import parse_problem
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
 
 CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematics.linkage import OPEN, Fourbar, positions
-from synthesis.designs import PathResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.kinds.path.design import PathResult
+from synthesis.registry import parse_problem
 
 ROCKER = Fourbar(0.0, 8.0 + 1.0j, 2.5, 7.0, 6.0, 4.0 + 3.0j)
 ANGLES = np.array([10.0, 55.0, 120.0, 200.0, 290.0])

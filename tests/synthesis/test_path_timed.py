@@ -9,12 +9,12 @@ import pytest
 
 from kinematics.linkage import OPEN, cognates, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.motion.dyads import DyadConditions
-from synthesis.motion.sections import section
-from synthesis.motion.task import MotionTask
-from synthesis.verification.path import verify_path
+from synthesis.kinds.motion.dyads import DyadConditions
+from synthesis.kinds.motion.sections import section
+from synthesis.kinds.motion.task import MotionTask
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 from tests.cases import cases
 from tests.oracles.five_positions import real_dyads
 from tests.oracles.fourbar_sweep import coupler_points

@@ -9,7 +9,7 @@ import pytest
 from synthesis.analyses import parse_request
 from synthesis.analyses.planetary_train import PlanetaryAnalysis, PlanetaryAnalysisRequest
 from synthesis.dispatch import solve
-from synthesis.kinds import example, parse_problem
+from synthesis.registry import example, parse_problem
 
 SIMPLE: dict[str, Any] = {
     "type": "planetary_train",

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.problems import PlanetaryProblem
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.registry import parse_problem
 
 Speed = tuple[Fraction, Fraction]
 """Shares of c and u."""

@@ -8,8 +8,12 @@ import pytest
 from pydantic import ValidationError
 
 from synthesis.dispatch import solve
-from synthesis.kinds import KINDS, example, parse_problem
-from synthesis.problems import ContradictionError
+from synthesis.model.statement import ContradictionError
+from synthesis.registry import (
+    KINDS,
+    example,
+    parse_problem,
+)
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},

@@ -12,10 +12,11 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage import Fourbar, barker_type, transmission_extremes
-from synthesis.designs import FourbarMechanism, QuickReturnDesign, QuickReturnResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.quick_return.crank_rocker import families
+from synthesis.kinds.quick_return.crank_rocker import families
+from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnResult
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.registry import parse_problem
 from tests.cases import HERE
 
 OPTIMA, CENTRAL = json.loads((HERE / "crank_rocker_optimum.json").read_text(encoding="utf-8"))

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import Fourbar, barker_type, positions, transmission_extremes
-from synthesis.designs import DragLinkMechanism, QuickReturnMechanism, SliderCrankMechanism
-from synthesis.quick_return.drag_link import drag_link
+from synthesis.kinds.quick_return.design import DragLinkMechanism, QuickReturnMechanism
+from synthesis.kinds.quick_return.drag_link import drag_link
+from synthesis.model.linkage_answer import SliderCrankMechanism
 from tests.cases import cases
 from tests.synthesis.test_quick_return import answer
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import Fourbar, positions
-from synthesis.designs import FourbarMechanism, QuickReturnDesign
-from synthesis.kinds import parse_problem
+from synthesis.kinds.quick_return.design import QuickReturnDesign
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.registry import parse_problem
 from tests.synthesis.test_quick_return import answer, crank_rocker
 
 BODIES = [

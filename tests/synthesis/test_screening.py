@@ -7,13 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.motion.choices import side_dyads
-from synthesis.motion.screening import REASONS, demands, screen
-from synthesis.motion.task import motion_task
-from synthesis.ranking import distinct, quality
-from synthesis.verification import verify
+from synthesis.kinds.motion.choices import side_dyads
+from synthesis.kinds.motion.screening import (
+    REASONS,
+    demands,
+    screen,
+)
+from synthesis.kinds.motion.task import motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import distinct, quality
+from synthesis.registry import parse_problem
 from tests.synthesis.planted import plant
 
 BY_CHECK = {

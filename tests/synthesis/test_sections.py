@@ -8,10 +8,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from synthesis.kinds import parse_problem
-from synthesis.motion.dyads import DyadConditions
-from synthesis.motion.sections import section
-from synthesis.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.dyads import DyadConditions
+from synthesis.kinds.motion.sections import section
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.registry import parse_problem
 from tests.oracles.five_positions import real_dyads
 from tests.synthesis.planted import plant
 

@@ -12,13 +12,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synthesis.analyses import parse_request
-from synthesis.designs import InvertedSliderCrankMechanism, LinkageDesign, MotionResult, SliderCrankMechanism
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.motion.sliders import Sliders, sliders
-from synthesis.motion.task import motion_task
-from synthesis.problems import DyadChoices, MotionProblem
-from synthesis.verification import verify
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.sliders import Sliders, sliders
+from synthesis.kinds.motion.task import motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkage_answer import (
+    InvertedSliderCrankMechanism,
+    LinkageDesign,
+    SliderCrankMechanism,
+)
+from synthesis.registry import parse_problem
 from tests.synthesis.driving import assert_drives_through, turns_through
 
 ORDINARY = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 40.0, "y": 15.0, "angle": -25.0},

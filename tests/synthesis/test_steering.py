@@ -12,12 +12,13 @@ from pydantic import ValidationError
 
 from kinematics.linkage import Fourbar, positions
 from kinematics.linkage.steering import davis_angles, davis_arm_angle, outer_angle
-from synthesis.designs import FourbarMechanism, SteeringDesign, SteeringResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.problems import SteeringProblem
-from synthesis.steering.verification import verify_steering
+from synthesis.kinds.steering.design import SteeringDesign, SteeringResult
+from synthesis.kinds.steering.problem import SteeringProblem
+from synthesis.kinds.steering.verification import verify_steering
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 from tests.cases import cases
 
 

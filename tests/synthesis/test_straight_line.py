@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from synthesis.designs import FourbarMechanism, StraightLineDesign, StraightLineResult
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.problems import StraightLineProblem
-from synthesis.problems.base import ContradictionError
-from synthesis.problems.straight_line import DEFAULT_RANGE, LINE_MECHANISMS
-from synthesis.verification.straight_line import verify_straight_line
+from synthesis.kinds.straight_line.design import StraightLineDesign, StraightLineResult
+from synthesis.kinds.straight_line.problem import DEFAULT_RANGE, LINE_MECHANISMS, StraightLineProblem
+from synthesis.kinds.straight_line.verification import verify_straight_line
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.statement import ContradictionError
+from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 from tests.oracles.positions import meet
 from tests.synthesis.driving import constraints_of

@@ -12,7 +12,7 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
+from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 
 STEP = 1e-6

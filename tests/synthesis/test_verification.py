@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synthesis.designs import FourbarMechanism, LinkageDesign
 from synthesis.dispatch import solve
-from synthesis.kinds import parse_problem
-from synthesis.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.problems import MotionProblem
-from synthesis.verification import verify
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.registry import parse_problem
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import Planted, plant
 
@@ -113,8 +113,8 @@ def test_moved_pivot_is_found() -> None:
 
 def test_every_defect_by_independent_continuation() -> None:
     """Random pairs of dyads: circuit, branch, order and transmission are as the continuation finds them."""
-    from synthesis.motion.choices import side_dyads
-    from synthesis.motion.task import motion_task
+    from synthesis.kinds.motion.choices import side_dyads
+    from synthesis.kinds.motion.task import motion_task
 
     rng = np.random.default_rng(6)
     seen: dict[tuple[bool, bool, bool], int] = {}
@@ -200,8 +200,8 @@ def test_choices_that_are_not_kept_are_found() -> None:
 
 def test_demands_of_the_motion_can_be_dropped() -> None:
     """A linkage with a branch defect fails by default and is reported as a metric when the client drops the demand."""
-    from synthesis.motion.choices import side_dyads
-    from synthesis.motion.task import motion_task
+    from synthesis.kinds.motion.choices import side_dyads
+    from synthesis.kinds.motion.task import motion_task
 
     rng = np.random.default_rng(10)
     planted = plant(rng, 3)

@@ -1,0 +1,1 @@
+"""The fourbar in closed form: motion, classification, circuits, cognates, coupler curve."""

@@ -1,0 +1,381 @@
+"""The pin-jointed fourbar: position, velocity, acceleration and jerk in closed form.
+
+Joints: O2 and O4 are the fixed pivots of input and output, A and B the moving pivots, P the coupler point.
+Link lengths are Norton's a (input), b (coupler), c (output), d (ground).
+
+Position. With A = O2 + a e^{iθ2}, the pin B lies on a circle of radius b about A and one of radius c about O4. On the
+axis from A to O4 (length f) it stands at x = (f² + b² − c²) / 2f with height h = ±√(b² − x²):
+
+    B = A + (O4 − A)/f · (x + i σ h),        σ = +1 open, −1 crossed
+
+which is the half-angle solution of Norton 4.10 and 4.13 without its divisions by zero. The product under the root is
+kept in factors, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is exact near the toggles. The
+sweeps over designs × angles are compiled (:mod:`fourbar_kernels`).
+
+Derivatives. The loop A + b e^{iθ3} = O4 + c e^{iθ4} is differentiated with respect to time; each order is a real 2×2
+linear system with the same matrix (Norton 6.18, 7.12), solved by cross products. Its determinant is
+b c sin(θ4 − θ3): at a toggle the derivatives do not exist and are marked invalid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from types import EllipsisType
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinematics.linkage.batch import (
+    CROSSED,
+    OPEN,
+    Complex,
+    CouplerPoints,
+    Mask,
+    Real,
+    Sweep,
+    block,
+    fields,
+    one_shape,
+    rate_rows,
+    require,
+    sweep,
+)
+from kinematics.linkage.fourbar import kernels
+from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
+
+__all__ = [
+    "CROSSED",
+    "ON_TOGGLE",
+    "OPEN",
+    "TOGGLE_SINE",
+    "AngleAxis",
+    "Complex",
+    "CouplerMotion",
+    "CouplerPoints",
+    "Derivatives",
+    "Fourbar",
+    "Mask",
+    "Motion",
+    "Positions",
+    "Real",
+    "closes",
+    "coupler_motion",
+    "coupler_points",
+    "motion",
+    "one_shape",
+    "positions",
+    "require",
+    "with_angle_axis",
+]
+
+AngleAxis = tuple[EllipsisType] | tuple[EllipsisType, None]
+"""Index that gives an array over designs its trailing axis of input angles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fourbar:
+    """A batch of fourbars; all fields are kept with one shape, the *designs*. One design has shape ``()``.
+
+    A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
+
+    Parameters
+    ----------
+    input_pivot, output_pivot : complex
+        Fixed pivots O2 and O4.
+    input, coupler, output : float
+        Link lengths a, b, c; positive. The ground length d = |O4 − O2| must be positive too.
+    coupler_point : complex
+        P in the coupler's frame: origin at A, real axis towards B. Default: A itself.
+
+    Raises
+    ------
+    DimensionError
+        For a length that is not positive and finite.
+    ShapeError
+        For fields that do not broadcast.
+    """
+
+    input_pivot: Complex
+    output_pivot: Complex
+    input: Real
+    coupler: Real
+    output: Real
+    coupler_point: Complex
+
+    def __init__(
+        self,
+        input_pivot: ArrayLike,
+        output_pivot: ArrayLike,
+        input: ArrayLike,
+        coupler: ArrayLike,
+        output: ArrayLike,
+        coupler_point: ArrayLike = 0.0,
+    ) -> None:
+        o2, o4, point = (np.asarray(z, np.complex128) for z in (input_pivot, output_pivot, coupler_point))
+        a, b, c = (np.asarray(x, np.float64) for x in (input, coupler, output))
+        if o2.shape == o4.shape == point.shape == a.shape == b.shape == c.shape:
+            designs = a.shape
+        else:
+            named = {
+                "input_pivot": o2,
+                "output_pivot": o4,
+                "coupler_point": point,
+                "input": a,
+                "coupler": b,
+                "output": c,
+            }
+            designs = one_shape(**{name: field.shape for name, field in named.items()})
+        pivots, lengths = block((o2, o4, point), designs, np.complex128), block((a, b, c), designs, np.float64)
+        if not kernels.sound_dimensions(pivots.reshape(3, -1), lengths.reshape(3, -1)):
+            _refuse(o2, o4, point, a, b, c)
+        # Read-only views of the two blocks, which are what the kernels take.
+        self.__dict__.update(
+            input_pivot=pivots[0, ...],
+            output_pivot=pivots[1, ...],
+            coupler_point=pivots[2, ...],
+            input=lengths[0, ...],
+            coupler=lengths[1, ...],
+            output=lengths[2, ...],
+            _blocks=(pivots, lengths),
+        )
+
+    @property
+    def blocks(self) -> tuple[Complex, Real]:
+        """The fields as the kernels take them: O2, O4, P; a, b, c; shape (3,) + S each."""
+        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
+        return blocks
+
+    def __reduce__(self) -> tuple[type[Fourbar], tuple[Complex | Real, ...]]:
+        given = self.input_pivot, self.output_pivot, self.input, self.coupler, self.output, self.coupler_point
+        return Fourbar, given
+
+    @classmethod
+    def from_lengths(
+        cls,
+        input: ArrayLike,
+        coupler: ArrayLike,
+        output: ArrayLike,
+        ground: ArrayLike,
+        coupler_point: ArrayLike = 0.0,
+    ) -> Fourbar:
+        """Fourbar of Norton's a, b, c, d with O2 at the origin and the ground link along +x."""
+        length = np.asarray(ground, np.float64)
+        require("ground", "positive and finite", length, np.isfinite(length) & (length > 0.0))
+        return cls(np.zeros_like(length), length, input, coupler, output, coupler_point)
+
+    @cached_property
+    def ground(self) -> Real:
+        """Ground length d, shape designs."""
+        return np.asarray(np.abs(self.output_pivot - self.input_pivot))
+
+    @cached_property
+    def lengths(self) -> Real:
+        """Link lengths in Barker's order ground, input, coupler, output; shape designs + (4,)."""
+        return np.stack((self.ground, self.input, self.coupler, self.output), axis=-1)
+
+    @cached_property
+    def ground_angle(self) -> Real:
+        """Angle of the line O2 → O4, radians, shape designs."""
+        return np.asarray(np.angle(self.output_pivot - self.input_pivot))
+
+
+def _refuse(o2: Complex, o4: Complex, point: Complex, a: Real, b: Real, c: Real) -> None:
+    """Raise the error that names the first unsound field."""
+    for name, length in (("input", a), ("coupler", b), ("output", c)):
+        require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+    for name, pivot in (("input_pivot", o2), ("output_pivot", o4), ("coupler_point", point)):
+        require(name, "finite", pivot, np.isfinite(pivot))
+    with np.errstate(over="ignore"):
+        ground = np.abs(o4 - o2)
+    require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
+
+
+class Positions(NamedTuple):
+    """Configuration over designs × input angles. Where ``valid`` is False the numbers are NaN.
+
+    ``coupler_angle`` and ``output_angle`` (θ3 of A → B, θ4 of O4 → B) are absolute, radians in (−π, π].
+    """
+
+    valid: Mask
+    a: Complex
+    b: Complex
+    p: Complex
+    coupler_angle: Real
+    output_angle: Real
+
+
+class CouplerMotion(NamedTuple):
+    """Coupler points with velocity and acceleration over designs × input angles.
+
+    The position is NaN where not ``valid``, the derivatives are where not ``moves``: at toggles too.
+    """
+
+    valid: Mask
+    moves: Mask
+    p: Complex
+    velocity: Complex
+    acceleration: Complex
+
+
+class Derivatives(NamedTuple):
+    """One time derivative of the motion over designs × input angles; rates in rad/s^n, points in length/s^n."""
+
+    valid: Mask
+    a: Complex
+    b: Complex
+    p: Complex
+    coupler: Real
+    output: Real
+
+
+class Motion(NamedTuple):
+    """Positions with velocities, accelerations and jerks."""
+
+    position: Positions
+    velocity: Derivatives
+    acceleration: Derivatives
+    jerk: Derivatives
+
+
+def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Positions:
+    """Closed-form positions for every design at every input angle (Norton 4.10, 4.13).
+
+    Parameters
+    ----------
+    linkage : Fourbar
+        Designs of shape S.
+    input_angle : float
+        Absolute input angles θ2, radians; shape (N,) for the same angles in every design, or S + (N,), or any shape
+        that broadcasts with S + (1,). For a single design a scalar gives results without the last axis.
+    assembly : int
+        +1 open or −1 crossed, shape S or scalar.
+
+    Returns
+    -------
+    Positions
+        Arrays of shape S + (N,).
+
+    Raises
+    ------
+    DimensionError
+        For an assembly that is neither +1 nor −1.
+    ShapeError
+        For angles or assemblies that do not broadcast with the designs.
+    """
+    at = sweep(linkage.blocks, input_angle, assembly)
+    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
+    kernels.whole_positions(*at[:4], points, angles, valid)
+    points, angles = points.reshape(3, *at.shape), angles.reshape(2, *at.shape)
+    return Positions(*fields(valid.reshape(at.shape), points, angles))
+
+
+def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
+    """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
+    at = sweep(linkage.blocks, input_angle, assembly)
+    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
+    kernels.coupler_points(*at[:4], points, valid)
+    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+
+
+def coupler_motion(
+    linkage: Fourbar,
+    input_angle: ArrayLike,
+    assembly: ArrayLike = OPEN,
+    *,
+    speed: ArrayLike = 1.0,
+    acceleration: ArrayLike = 0.0,
+) -> CouplerMotion:
+    """Position, velocity and acceleration of the coupler point alone, for large sweeps.
+
+    Parameters, shapes and errors are those of :func:`motion`.
+    """
+    narrow = sweep(linkage.blocks, input_angle, assembly)
+    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, 0.0)
+    points, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat), np.bool_)
+    kernels.coupler_motion(*at[:4], rates, points, valid)
+    points, valid = points.reshape(3, *at.shape), valid.reshape(2, *at.shape)
+    return CouplerMotion(valid[0, ...], valid[1, ...], points[0, ...], points[1, ...], points[2, ...])
+
+
+def motion(
+    linkage: Fourbar,
+    input_angle: ArrayLike,
+    assembly: ArrayLike = OPEN,
+    *,
+    speed: ArrayLike = 1.0,
+    acceleration: ArrayLike = 0.0,
+    jerk: ArrayLike = 0.0,
+) -> Motion:
+    """Positions and their first three time derivatives (Norton 6.18, 7.12, and once more differentiated).
+
+    Parameters
+    ----------
+    linkage, input_angle, assembly
+        As for :func:`positions`.
+    speed, acceleration, jerk : float
+        Input θ2', θ2'', θ2''' in rad/s, rad/s², rad/s³, broadcasting with the positions, shape S + (N,). With the
+        defaults the results are derivatives with respect to the input angle.
+
+    Returns
+    -------
+    Motion
+        Derivatives are invalid (NaN) where the position is, and at toggles.
+
+    Raises
+    ------
+    DimensionError, ShapeError
+        As for :func:`positions`; ShapeError also for rates that do not broadcast with the positions.
+    """
+    narrow = sweep(linkage.blocks, input_angle, assembly)
+    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, jerk)
+    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
+    valid = np.empty((2, *at.flat), np.bool_)
+    kernels.whole_motion(*at[:4], rates, points, angles, valid)
+    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
+    valid = valid.reshape(2, *at.shape)
+    # Rates of more axes than the positions have do not multiply the positions.
+    if at.shape == narrow.shape:
+        position = Positions(*fields(valid[0, ...], points[0], angles[0]))
+    else:
+        position = positions(linkage, input_angle, assembly)
+    sound = valid[1, ...]
+    return Motion(position, *(Derivatives(*fields(sound, points[k], angles[k])) for k in (1, 2, 3)))
+
+
+def _rates(
+    linkage: Fourbar,
+    narrow: Sweep,
+    input_angle: ArrayLike,
+    assembly: ArrayLike,
+    speed: ArrayLike,
+    acceleration: ArrayLike,
+    jerk: ArrayLike,
+) -> tuple[Real, Sweep]:
+    """Input rates as rows, and the sweep of the shape that they and the positions make."""
+    given = np.asarray(speed, np.float64), np.asarray(acceleration, np.float64), np.asarray(jerk, np.float64)
+    if given[0].ndim == given[1].ndim == given[2].ndim == 0:
+        return rate_rows(*given, narrow.shape), narrow
+    named = dict(zip(("speed", "acceleration", "jerk"), (rate.shape for rate in given), strict=True))
+    shape = one_shape(positions=narrow.shape, **named)
+    at = narrow if shape == narrow.shape else sweep(linkage.blocks, input_angle, assembly, shape)
+    return rate_rows(*given, shape), at
+
+
+def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[int, ...] = ()) -> tuple[Real, AngleAxis]:
+    """Input angles, and the index that gives every field of the linkage its trailing angle axis."""
+    theta = np.asarray(input_angle, np.float64)
+    designs = linkage.input.shape
+    if theta.ndim == 0 and designs == assembly == ():
+        return theta, (...,)
+    one_shape(designs=(*designs, 1), assembly=(*assembly, 1), input_angle=theta.shape)
+    return theta, (..., None)
+
+
+def closes(product: Real, b: Real, c: Real, f: Real) -> Mask:
+    """Whether sides b and c meet over the base f, a triangle folded flat (to rounding) included.
+
+    ``product`` is 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c).
+    """
+    return np.asarray(product >= -4.0 * ON_TOGGLE * f * f * b * c)

@@ -1,0 +1,369 @@
+"""The coupler curve of a fourbar as an algebraic curve: a tricircular sextic with three double points.
+
+Equation (S. Roberts, Proc. London Math. Soc. 7 (1875) 14, doi:10.1112/plms/s1-7.1.14; A. Cayley, ibid. 136,
+doi:10.1112/plms/s1-7.1.136; Norton, Sec. 3.6). The point p = x + iy is held by the coupler's two bars, of lengths
+l = |z| to A and n = |z − b| to B, where z is the coupler point in the coupler's frame. With e = e^{iθ3}, q2 = p − O2
+and q4 = p − O4, A = p − z e lies on its circle about O2 and B = p − (z − b) e on its circle about O4:
+
+    Re(m1 e) = k1,   m1 = q̄2 z,          k1 = (|q2|² + l² − a²) / 2
+    Re(m2 e) = k2,   m2 = q̄4 (z − b),    k2 = (|q4|² + n² − c²) / 2
+
+Two linear equations for e; |e| = 1 leaves the curve
+
+    F = |N|² − D² = 0,   N = k1 m2 − k2 m1,   D = Im(m̄1 m2).
+
+F is used in this form, not expanded: its gradient follows from the factors, and no powers of p cancel. Its highest
+term is b²/4 · (x² + y²)³; divided by b²/4 and with lengths in units of :func:`curve_unit` it is the *monic* sextic of
+this module. In p and p̄ it has degree three in each (three times through the circular points).
+
+Double points. N = 0 and D = 0 together, where the two equations for e become one and have two solutions. D = 0 is
+the circle of the singular foci, through O2, O4 and the third fixed pivot of the cognates (the line O2 O4 if P is on
+the line A B). Written as
+
+    p = (σ0 ū O2 − σ1 v̄ O4) / Δ,    Δ = σ0 ū − σ1 v̄,    u = z / l,   v = (z − b) / n,
+
+it makes m1 and m2 real multiples σ1 l and σ0 n of M = −u v ḡ / Δ̄, g = O4 − O2, so that N = 0 becomes a cubic
+form in (σ0, σ1): three double points, one or three of them real. With K = k1 / (σ1 l) = k2 / (σ0 n) the two coupler
+directions are e = (K ± √(K² − |M|²)) / M. |K| < |M| is a crunode, which the linkage passes in two configurations;
+|K| > |M| an acnode, which it never reaches; |K| = |M| a cusp, where P is on the moving centrode and at the pole. A
+change-point linkage has further double points, off the circle, where its links fall into one line; they are not
+listed here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.fourbar.closed_form import (
+    CROSSED,
+    OPEN,
+    AngleAxis,
+    Complex,
+    Fourbar,
+    Mask,
+    Real,
+    one_shape,
+    require,
+)
+from kinematics.linkage.fourbar.cognates import AT_PIVOT
+
+CRUNODE, CUSP, ACNODE = 1, 0, -1
+"""Kinds of double points: the curve crosses itself, has a cusp, or is an isolated real point."""
+
+AT_CUSP = 1e-9
+"""1 − K²/|M|² within this is a cusp: the loop of the curve is then shorter than some 1e-4 rad of the coupler's turn,
+and its size goes with the cube of that, below 1e-12 of the linkage."""
+
+REAL_ROOT = 1e-7
+"""Imaginary part, relative to 1 + |root|, up to which a root is real: rounding splits a double root by √eps, and a
+pair split by so little meets the real equation to the square of this."""
+
+
+class Sextic(NamedTuple):
+    """Monic sextic in units of the linkage's size: its value, and its gradient ∂/∂x + i ∂/∂y per unit of length.
+
+    ``value / |gradient|`` is the distance from the curve to first order.
+    """
+
+    value: Real
+    gradient: Complex
+
+
+class DoublePoints(NamedTuple):
+    """The three double points on the circle of singular foci, shape designs + (3,), the real ones first.
+
+    ``valid`` marks the real ones; ``kind`` is :data:`CRUNODE`, :data:`CUSP` or :data:`ACNODE` (also where ``valid`` is
+    False). ``input_angle`` (radians) and ``assembly``, shape designs + (3, 2), are the two configurations that pass a
+    crunode, twice the same at a cusp; NaN and +1 where there is none.
+    """
+
+    valid: Mask
+    point: Complex
+    kind: NDArray[np.int64]
+    input_angle: Real
+    assembly: NDArray[np.int64]
+
+
+class LineCrossings(NamedTuple):
+    """Points of the curve on a line, shape designs + (6,), the real ones first, in the order of the line's direction.
+
+    ``distance`` is measured along the direction from the line's given point. A tangent point counts twice.
+    """
+
+    valid: Mask
+    point: Complex
+    distance: Real
+
+
+def coupler_curve_degree(links: int) -> int:
+    """Highest degree of a coupler curve of a linkage of n links, m = 2 · 3^(n/2 − 1) (Wunderlich; Norton 3.3).
+
+    Raises
+    ------
+    DimensionError
+        For a number of links that is odd or below 4.
+
+    Examples
+    --------
+    >>> coupler_curve_degree(4)
+    6
+    """
+    if links < 4 or links % 2:
+        raise DimensionError("links", "even and at least 4", links)
+    return int(2 * 3 ** (links // 2 - 1))
+
+
+def curve_unit(linkage: Fourbar) -> Real:
+    """Unit of length of the monic sextic: a + b + c + d + |AP|, which no part of the linkage exceeds; shape designs."""
+    return np.asarray(linkage.lengths.sum(axis=-1) + np.abs(linkage.coupler_point))
+
+
+def sextic(linkage: Fourbar, point: ArrayLike) -> Sextic:
+    """The sextic at any points of the plane, by its factors; zero on the curve.
+
+    Parameters
+    ----------
+    linkage : Fourbar
+        Designs of shape S. A coupler point at A or B makes the sextic a double circle with two isotropic lines.
+    point : complex
+        Shape (N,) for the same points in every design, or S + (N,). For a single design a scalar gives scalars.
+
+    Raises
+    ------
+    ShapeError
+        For points that do not broadcast with the designs.
+    """
+    p = np.asarray(point, np.complex128)
+    axis: AngleAxis = (...,) if p.ndim == 0 and linkage.input.shape == () else (..., None)
+    one_shape(designs=linkage.input[axis].shape, point=p.shape)
+    scaled = _scaled(linkage)
+    unit, a, b, c = scaled.unit[axis], scaled.a[axis], scaled.b[axis], scaled.c[axis]
+    z, rest = scaled.z[axis], scaled.rest[axis]
+    q2, q4 = (p - linkage.input_pivot[axis]) / unit, (p - linkage.output_pivot[axis]) / unit
+    k1, k2 = 0.5 * (_square(q2) + _square(z) - a * a), 0.5 * (_square(q4) + _square(rest) - c * c)
+    m1, m2 = q2.conj() * z, q4.conj() * rest
+    cubic, circle = k1 * m2 - k2 * m1, (m1.conj() * m2).imag
+    cubic_conj, cubic_p = 0.5 * (q2 * m2 - q4 * m1) + k1 * rest - k2 * z, 0.5 * (q2.conj() * m2 - q4.conj() * m1)
+    circle_conj = -0.5j * (q2 * z.conj() * rest - q4 * z * rest.conj())
+    slope = cubic_conj * cubic.conj() + cubic * cubic_p.conj() - 2.0 * circle * circle_conj
+    lead = 4.0 / (b * b)
+    return Sextic(lead * (_square(cubic) - circle * circle), lead * 2.0 * slope / unit)
+
+
+def sextic_coefficients(linkage: Fourbar) -> Complex:
+    """Coefficients of the monic sextic Σ C[j, k] ξ^j ξ̄^k with j, k = 0 … 3 and ξ = (p − O2) / unit.
+
+    Shape designs + (4, 4). C is Hermitian and C[3, 3] = 1: fifteen real numbers besides, the same for a
+    linkage and its cognates once these are brought to one origin and unit.
+    """
+    _, a, b, c, z, rest, ground = _scaled(linkage)
+    zero, half = np.zeros_like(z), np.full_like(z, 0.5)
+
+    def grid(*rows: tuple[Complex, ...]) -> Complex:
+        """Rows by powers of ξ, columns by powers of ξ̄."""
+        return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+    k1 = grid((0.5 * (_square(z) - a * a) + zero, zero), (zero, half))
+    k2 = grid(
+        (0.5 * (_square(ground) + _square(rest) - c * c) + zero, -0.5 * ground),
+        (-0.5 * ground.conj(), half),
+    )
+    m1, m2 = grid((zero, z)), grid((-ground.conj() * rest, rest))
+    cubic = _product(k1, m2) - _product(k2, m1)
+    turned = _product(_adjoint(m1), m2)
+    circle = -0.5j * (turned - _adjoint(turned))
+    found = _product(cubic, _adjoint(cubic))
+    found[..., :3, :3] -= _product(circle, circle)
+    return np.asarray(found * (4.0 / (b * b))[..., None, None])
+
+
+def line_crossings(linkage: Fourbar, point: ArrayLike, direction: ArrayLike) -> LineCrossings:
+    """All points that the coupler curve has on a line, by the roots of the sextic along it; at most six.
+
+    Parameters
+    ----------
+    linkage : Fourbar
+        Designs of shape S.
+    point, direction : complex
+        A point on each line and its direction (of any length but zero), shape S.
+
+    Raises
+    ------
+    DimensionError
+        For a direction of zero, or a coupler point at A or B.
+    ShapeError
+        For lines that do not broadcast with the designs.
+    """
+    _require_sextic(linkage)
+    start, way = np.asarray(point, np.complex128), np.asarray(direction, np.complex128)
+    shape = one_shape(designs=linkage.input.shape, point=start.shape, direction=way.shape)
+    require("point", "finite", start, np.isfinite(start))
+    require("direction", "finite and not zero", way, np.isfinite(way) & (way != 0.0))
+    way = way / np.abs(way)
+    unit, a, _, c, z, rest, _ = _scaled(linkage)
+    ahead = ((linkage.input_pivot - start) * way.conj()).real
+    foot = start + ahead * way
+
+    def along(pivot: Complex, arm: Complex, radius: Real) -> tuple[Complex, Complex]:
+        """Factors k and m of one side as polynomials of the distance from the foot, lowest power first."""
+        q = (foot - pivot) / unit
+        k = (0.5 * (_square(q) + _square(arm) - radius * radius), (q * way.conj()).real, 0.5)
+        m = (q.conj() * arm, way.conj() * arm)
+        return _row(k, shape), _row(m, shape)
+
+    (k1, m1), (k2, m2) = along(linkage.input_pivot, z, a), along(linkage.output_pivot, rest, c)
+    cubic, circle = _product(k1, m2) - _product(k2, m1), _product(m1.conj(), m2).imag.astype(np.complex128)
+    found = _product(cubic, cubic.conj()).real
+    found[..., :5] -= _product(circle, circle).real
+    roots = _roots(found[..., 0, :])
+    valid = np.abs(roots.imag) <= REAL_ROOT * (1.0 + np.abs(roots))
+    distance = np.where(valid, roots.real, np.inf)
+    order = np.argsort(distance, axis=-1)
+    valid = np.take_along_axis(valid, order, axis=-1)
+    distance = np.where(valid, np.take_along_axis(distance, order, axis=-1), np.nan) * unit[..., None]
+    return LineCrossings(valid, foot[..., None] + distance * way[..., None], distance + ahead[..., None])
+
+
+def double_points(linkage: Fourbar) -> DoublePoints:
+    """The real double points of the coupler curve with the configurations that pass them.
+
+    Raises
+    ------
+    DimensionError
+        For a coupler point at A or B, whose curve is a circle.
+    """
+    _require_sextic(linkage)
+    unit, a, _, c, z, rest, ground = _scaled(linkage)
+    near, far, d2 = np.abs(z), np.abs(rest), _square(ground)
+    u, v = z / near, rest / far
+    cosine = (u * v.conj()).real
+    one, other = near * near - a * a, far * far - c * c
+    form = np.stack(
+        [
+            far * one,
+            -2.0 * cosine * far * one - near * d2 - near * other,
+            far * d2 + far * one + 2.0 * cosine * near * other,
+            -near * other,
+        ],
+        axis=-1,
+    )
+    first, second, real = _form_roots(form)
+    unit, a, c, near, far = (x[..., None] for x in (unit, a, c, near, far))
+    z, rest, u, v, ground = (x[..., None] for x in (z, rest, u, v, ground))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        delta = first * u.conj() - second * v.conj()
+        q2, q4 = -second * v.conj() * ground / delta, -first * u.conj() * ground / delta
+        k1, k2 = 0.5 * (_square(q2) + near**2 - a * a), 0.5 * (_square(q4) + far**2 - c * c)
+        both = (k1 * second * near + k2 * first * far) / ((second * near) ** 2 + (first * far) ** 2)
+        turn = -u * v * ground.conj() / delta.conj()
+        gap = 1.0 - both**2 / _square(turn)
+        kind = np.where(np.abs(gap) <= AT_CUSP, CUSP, np.where(gap > 0.0, CRUNODE, ACNODE))
+        spread = np.sqrt(np.where(kind == CRUNODE, gap, 0.0)) * np.abs(turn)
+        e = (both[..., None] + 1j * spread[..., None] * np.array([1.0, -1.0])) / turn[..., None]
+        e = e / np.abs(e)
+    reached = (real & (kind != ACNODE))[..., None]
+    arm, output = q2[..., None] - z[..., None] * e, q4[..., None] - rest[..., None] * e
+    side = e.real * output.imag - e.imag * output.real
+    return DoublePoints(
+        real,
+        np.where(real, linkage.input_pivot[..., None] + q2 * unit, np.nan),
+        np.where(real, kind, ACNODE),
+        np.where(reached, np.angle(arm), np.nan),
+        np.where(reached & (side < 0.0), CROSSED, OPEN),
+    )
+
+
+class _Scaled(NamedTuple):
+    """The dimensions in units of ``unit``: link lengths, z, z − b and O4 − O2."""
+
+    unit: Real
+    a: Real
+    b: Real
+    c: Real
+    z: Complex
+    rest: Complex
+    ground: Complex
+
+
+def _scaled(linkage: Fourbar) -> _Scaled:
+    unit, z, b = curve_unit(linkage), linkage.coupler_point, linkage.coupler
+    ground = linkage.output_pivot - linkage.input_pivot
+    return _Scaled(unit, linkage.input / unit, b / unit, linkage.output / unit, z / unit, (z - b) / unit, ground / unit)
+
+
+def _require_sextic(linkage: Fourbar) -> None:
+    z, b = linkage.coupler_point, linkage.coupler
+    apart = np.minimum(np.abs(z), np.abs(z - b)) > AT_PIVOT * b
+    require("coupler_point", "apart from the moving pivots A and B", z, apart)
+
+
+def _form_roots(form: Real) -> tuple[Real, Real, Mask]:
+    """Zeros (σ0, σ1) of the binary cubics Σ form[k] σ0^(3−k) σ1^k on the unit circle, real ones first and marked.
+
+    The form is turned until its greatest value on six directions leads, so that no root is far away.
+    """
+    angle = np.arange(6) * (np.pi / 6.0)
+    directions = np.stack([np.cos(angle), np.sin(angle)])
+    best = angle[np.abs(_form(form[..., None, :], *directions)).argmax(axis=-1)]
+    x, y = np.cos(best), np.sin(best)
+    along = _form_slope(form, x, y)
+    across = _form_slope(form, -y, x)
+    turned = np.stack(
+        [_form(form, -y, x), x * across[0] + y * across[1], x * along[1] - y * along[0], _form(form, x, y)], axis=-1
+    )
+    roots = _roots(turned)
+    real = np.abs(roots.imag) <= REAL_ROOT * (1.0 + np.abs(roots))
+    order = np.argsort(np.where(real, roots.real, np.inf), axis=-1)
+    real, t = np.take_along_axis(real, order, axis=-1), np.take_along_axis(roots.real, order, axis=-1)
+    long, x, y = np.hypot(1.0, t), x[..., None], y[..., None]
+    return (t * x - y) / long, (t * y + x) / long, real
+
+
+def _form(form: Real, x: Real, y: Real) -> Real:
+    return np.asarray(((form[..., 0] * x + form[..., 1] * y) * x + form[..., 2] * y * y) * x + form[..., 3] * y * y * y)
+
+
+def _form_slope(form: Real, x: Real, y: Real) -> tuple[Real, Real]:
+    """Partial derivatives of the form."""
+    by_x = (3.0 * form[..., 0] * x + 2.0 * form[..., 1] * y) * x + form[..., 2] * y * y
+    by_y = (form[..., 1] * x + 2.0 * form[..., 2] * y) * x + 3.0 * form[..., 3] * y * y
+    return by_x, by_y
+
+
+def _roots(polynomial: Real) -> Complex:
+    """Roots of polynomials, lowest power first on the last axis, as eigenvalues of their companion matrices."""
+    degree = polynomial.shape[-1] - 1
+    companion = np.zeros((*polynomial.shape[:-1], degree, degree))
+    companion[..., 1:, :-1] = np.eye(degree - 1)
+    companion[..., -1] = -polynomial[..., :-1] / polynomial[..., -1:]
+    return np.asarray(np.linalg.eigvals(companion), np.complex128)
+
+
+def _row(coefficients: tuple[ArrayLike, ...], shape: tuple[int, ...]) -> Complex:
+    """Polynomial of one variable as a grid of one row, for :func:`_product`."""
+    return np.stack([np.broadcast_to(np.asarray(x, np.complex128), shape) for x in coefficients], axis=-1)[..., None, :]
+
+
+def _product(one: Complex, other: Complex) -> Complex:
+    """Product of polynomials in two variables, powers on the last two axes."""
+    (j, k), (m, n) = one.shape[-2:], other.shape[-2:]
+    batch = np.broadcast_shapes(one.shape[:-2], other.shape[:-2])
+    found = np.zeros((*batch, j + m - 1, k + n - 1), np.complex128)
+    for row in range(j):
+        for column in range(k):
+            found[..., row : row + m, column : column + n] += one[..., row : row + 1, column : column + 1] * other
+    return found
+
+
+def _adjoint(grid: Complex) -> Complex:
+    """The conjugate polynomial: powers of ξ and ξ̄ exchanged."""
+    return np.asarray(np.swapaxes(grid, -1, -2).conj())
+
+
+def _square(x: Complex | Real) -> Real:
+    """|x|²."""
+    return np.asarray(x.real**2 + x.imag**2, np.float64)

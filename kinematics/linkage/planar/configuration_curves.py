@@ -1,0 +1,341 @@
+"""All configurations of a mechanism that closes by dyads, as curves on which everything is smooth.
+
+Take the closures in their order. Before the first one, configurations are the input's circle. Each closure has a margin
+m on the curves found so far: a smooth function that is positive where the closure exists. Where m is positive all along
+a closed curve there are two closed curves of configurations, one for each assembly. An arc a < u < b at whose ends m
+vanishes gives one closed curve: there the two assemblies meet, and with
+
+    u = (a + b)/2 − (b − a)/2 · cos v,    assembly + for 0 < v < π, − for π < v < 2π
+
+everything is smooth in v, the square root of the margin too. So curve comes from curve, closure by closure; a fold can
+neither be met by one assembly only nor lost between two closures, because each margin is searched alone, on a curve
+where it has no corner.
+
+Where m only touches zero two motions cross, a *change point*. Arcs end there openly: a curve between two of them has
+two ends, and one between a change point and a fold, with u = a + (b − a) v² for −1 < v < 1, has two as well.
+
+The *turns* of a curve are the places where the input turns back: where its own closure is folded flat, and the turns of
+the curves that it comes from.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.closures import Decomposition, Step
+from kinematics.linkage.planar.drive import drive_one, margins_of_one
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
+from kinematics.linkage.planar.positive_arcs import (
+    TOUCHES,
+    Arc,
+    Domain,
+    positive_arcs,
+)
+
+Real = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+CELLS = 64
+"""Cells that a curve is divided into at first, and for each turn that a link makes along it."""
+
+INSIDE = 1e-7
+"""A turn nearer than this (as part of an arc) to the arc's folded end is that end: the input differs by rounding."""
+
+SWING = 0.1
+"""Directions of a link on the two assemblies at a change point that differ by this, radians, are not one."""
+
+
+SHAPES = ("straight", "round", "bend")
+STRAIGHT, ROUND, BEND = range(3)
+"""How the parameter of a curve gives that of the curve below, by number."""
+
+
+class Turn(NamedTuple):
+    """Where the input turns back on a curve: parameter, input, and number of the closure that folds flat."""
+
+    at: float
+    theta: float
+    level: int
+
+
+@dataclass(frozen=True, eq=False)
+class ChangePoint:
+    """Where curves of one closure cross: the closure's number. ``swings``: a link is free there, its pins coincide."""
+
+    level: int
+    swings: bool
+
+
+class End(NamedTuple):
+    """Open end of a curve: input, the change point, and the closures whose assemblies meet there."""
+
+    theta: float
+    point: ChangePoint
+    folded: frozenset[int]
+
+
+class Place(NamedTuple):
+    """Places on a curve: the input, its first two derivatives by the parameter, and signs (closures so far, n)."""
+
+    theta: Real
+    rate: Real
+    second: Real
+    signs: Rows
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Configurations by a parameter from ``low`` to ``high``, round a circle where ``closed``.
+
+    ``shape`` says how the parameter v gives that of the curve ``below``, u: both alike (``straight``), by a cosine
+    between two folds (``round``), or as v² from the fold ``a`` to the open end ``b`` (``bend``).
+    """
+
+    below: Curve | None
+    shape: Literal["straight", "round", "bend"]
+    a: float
+    b: float
+    sign: int
+    low: float
+    high: float
+    closed: bool
+    turns: tuple[Turn, ...]
+    ends: tuple[End, ...]
+
+    @cached_property
+    def chain(self) -> Real:
+        """This curve and those below it but for the input's circle, shape (closures, 4): shape, a, b − a and sign."""
+        if self.below is None:
+            return np.empty((0, 4))
+        own = np.array([[SHAPES.index(self.shape), self.a, self.b - self.a, self.sign]])
+        return np.concatenate([own, self.below.chain])
+
+    def place(self, v: Real) -> Place:
+        """Input and signs along the curve."""
+        return places(self.chain[None], np.zeros(len(v), np.int64), v)
+
+    def input_at(self, v: float) -> float:
+        """The input at one place."""
+        return float(self.place(np.array([v])).theta[0])
+
+
+class Closures:
+    """What the search needs of a mechanism: the margins of its closures with two assemblies, by their numbers."""
+
+    def __init__(self, mechanism: Mechanism, decomposition: Decomposition) -> None:
+        self.mechanism, self.steps = mechanism, decomposition.steps
+        self.position = [n for n, step in enumerate(self.steps) if step.has_two_solutions]
+        self.links = [self.steps[n].link for n in self.position]
+
+    def signs(self, chosen: Rows) -> Rows:
+        """Signs for every step from those of the first closures with two assemblies, shape (closures, n)."""
+        every = np.ones((len(self.steps), chosen.shape[1]), np.int64)
+        every[self.position[: len(chosen)]] = chosen
+        return every
+
+    def margin(self, level: int, place: Place) -> tuple[Real, Real]:
+        """Margin of a closure and its rate by the curve's parameter."""
+        margin = margins_of_one(self.mechanism, place.theta, self.signs(place.signs))[level]
+        return margin[0], margin[1] * place.rate
+
+    def always_folded(self, level: int, curve: Curve) -> bool:
+        """Whether a closure is folded flat all along a curve, where it yet exists: not so where its pins coincide."""
+        place = curve.place(curve.low + (curve.high - curve.low) * np.array([0.13, 0.31, 0.57, 0.77]))
+        if not np.all(np.abs(self.margin(level, place)[0]) <= TOUCHES):
+            return False
+        signs = self.signs(np.vstack([place.signs, np.ones(len(place.theta), np.int64)]))
+        motion = drive_one(self.mechanism, place.theta[:, None], signs, 0)
+        if level + 1 == len(self.links):
+            return bool(motion.valid.any())
+        return bool(np.isfinite(motion.margins[self.links[level + 1]]).any())
+
+    def swings(self, level: int, curve: Curve, v: float) -> bool:
+        """Whether the closure's assemblies do not meet at a change point: its pins coincide, and a link is free."""
+        place = curve.place(np.array([v - 1e-7, v - 1e-7, v + 1e-7, v + 1e-7]))
+        signs = np.vstack([place.signs, [1, -1, 1, -1]])
+        motion = drive_one(self.mechanism, place.theta[:, None], self.signs(signs), 0)
+        angle = motion.angles[self.links[level]][0, :, 0]
+        apart = np.abs(np.angle(np.exp(1j * (angle[::2] - angle[1::2]))))
+        return bool(np.nanmax(apart, initial=0.0) > SWING)
+
+
+def configuration_curves(mechanism: Mechanism, closures: Closures, period: float) -> list[Curve]:
+    """All curves of configurations of one design, in the parameters of its last closure.
+
+    Raises
+    ------
+    TopologyError
+        Where a link swings freely at a change point while others depend on it, or a dyad is always folded flat.
+    """
+    waves = max(map(abs, gear_rotations(mechanism, closures.steps).values()))
+    curves = [Curve(None, "straight", 0.0, 0.0, 1, 0.0, period, True, (), ())]
+    for level in range(len(closures.links)):
+        below = chains(curves) if curves else np.empty((0, 0, 4))
+
+        def margin(row: Rows, at: Real, level: int = level, below: Real = below) -> tuple[Real, Real]:
+            return closures.margin(level, places(below, row, at))
+
+        turns = [waves * _way(curve, period) / (2.0 * np.pi) for curve in curves]
+        domains = [
+            Domain(c.low, c.high, c.closed, int(CELLS * max(n, 1.0))) for c, n in zip(curves, turns, strict=True)
+        ]
+        arcs = positive_arcs(margin, domains)
+        curves = [new for curve, own in zip(curves, arcs, strict=True) for new in _next(closures, level, curve, own)]
+    return curves
+
+
+def gear_rotations(mechanism: Mechanism, steps: Sequence[Step]) -> dict[str, float]:
+    """Rotations of the input and of all links that gears alone tie to it, by the input's."""
+    turned = {mechanism.input: 1.0}
+    for step in steps:
+        if step.kind == "gear":
+            turned[step.link] = step.ratio * turned.get(step.other, 0.0)
+    return turned
+
+
+def chains(curves: Sequence[Curve]) -> Real:
+    """What :func:`places` needs of curves of one closure; shape (curves, closures, 4)."""
+    return np.stack([curve.chain for curve in curves])
+
+
+def places(chains: Real, row: Rows, at: Real) -> Place:
+    """Places on many curves."""
+    place = np.empty((3, len(at)))
+    signs = np.empty((chains.shape[1], len(at)), np.int64)
+    _places(chains, row, at, place, signs)
+    return Place(place[0], place[1], place[2], signs)
+
+
+@njit(cache=True, nogil=True)
+def _places(chains: Real, row: Rows, at: Real, place: Real, signs: Rows) -> None:
+    closures = chains.shape[1]
+    for n in range(len(at)):
+        u, rate, second = at[n], 1.0, 0.0
+        for link in range(closures):
+            shape, a, half, sign = chains[row[n], link]
+            if shape == STRAIGHT:
+                signs[closures - 1 - link, n] = int(sign)
+                continue
+            if shape == ROUND:
+                half *= 0.5
+                sign, cosine = math.sin(u), math.cos(u)
+                u, first, bend = a + half * (1.0 - cosine), half * sign, half * cosine
+            else:
+                sign = u
+                u, first, bend = a + half * u * u, 2.0 * half * u, 2.0 * half
+            signs[closures - 1 - link, n] = 1 if sign >= 0.0 else -1
+            second = bend * rate * rate + first * second
+            rate *= first
+        place[0, n], place[1, n], place[2, n] = u, rate, second
+
+
+def _way(curve: Curve, period: float) -> float:
+    """The input's way along a curve, forth and back."""
+    if curve.closed and not curve.turns:
+        return period
+    cuts = [turn.theta for turn in curve.turns]
+    cuts = [*cuts, cuts[0]] if curve.closed else [curve.ends[0].theta, *cuts, curve.ends[1].theta]
+    return float(np.abs(np.diff(cuts)).sum())
+
+
+def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list[Curve]:
+    """The curves of the next closure over a curve's arcs."""
+    if not arcs and closures.always_folded(level, curve):
+        raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; its circuits are not known")
+    found: list[Curve] = []
+    points: dict[float, ChangePoint] = {}
+    length = curve.high - curve.low
+
+    def end(at: float, kind: str, side: int) -> End:
+        if kind == "end":
+            own = curve.ends[side]
+            margin = closures.margin(level, curve.place(np.array([at + (1e-6 - 2e-6 * side) * length])))[0][0]
+            return own._replace(folded=own.folded | {level}) if margin < 1e-9 else own
+        around = round(float(np.mod(at - curve.low, length)), 9) if curve.closed else at
+        if around not in points:
+            points[around] = ChangePoint(level, closures.swings(level, curve, at))
+            if points[around].swings and level + 1 < len(closures.links):
+                raise TopologyError(
+                    f"{closures.links[level]!r} swings freely at a change point, its pins on each other, and other "
+                    "links with it; its circuits are not known"
+                )
+        return End(curve.input_at(at), points[around], frozenset({level}))
+
+    for arc in arcs:
+        shift = length * np.floor((arc.low - curve.low) / length) if curve.closed and arc.at_low != "whole" else 0.0
+        low, high = float(arc.low - shift), float(arc.high - shift)
+        turns = [
+            turn._replace(at=turn.at + k * length)
+            for k in ((0, 1) if curve.closed else (0,))
+            for turn in curve.turns
+            if arc.at_low == "whole" or low < turn.at + k * length < high
+        ]
+        if arc.at_low == "whole":
+            found += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
+        elif arc.at_low == arc.at_high == "zero":
+            found.append(_round(curve, level, low, high, turns))
+        elif "zero" not in (arc.at_low, arc.at_high):
+            ends = end(low, arc.at_low, 0), end(high, arc.at_high, 1)
+            inner = tuple(t for t in turns if INSIDE < (t.at - low) / (high - low) < 1.0 - INSIDE)
+            found += [Curve(curve, "straight", low, high, sign, low, high, False, inner, ends) for sign in (1, -1)]
+        elif arc.at_low == "zero":
+            found.append(_bend(curve, level, low, high, turns, end(high, arc.at_high, 1)))
+        else:
+            found.append(_bend(curve, level, high, low, turns, end(low, arc.at_low, 0)))
+    return found
+
+
+def _round(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:
+    own = [Turn(0.0, curve.input_at(a), level), Turn(np.pi, curve.input_at(b), level)]
+    for turn in turns:
+        part = (turn.at - a) / (b - a)
+        if INSIDE < part < 1.0 - INSIDE:
+            v = float(np.arccos(1.0 - 2.0 * part))
+            own += [turn._replace(at=v), turn._replace(at=2.0 * np.pi - v)]
+    return Curve(curve, "round", a, b, 1, 0.0, 2.0 * np.pi, True, tuple(sorted(own)), ())
+
+
+def _bend(curve: Curve, level: int, fold: float, opening: float, turns: list[Turn], end: End) -> Curve:
+    own = [Turn(0.0, curve.input_at(fold), level)]
+    for turn in turns:
+        part = (turn.at - fold) / (opening - fold)
+        if INSIDE < part < 1.0 - INSIDE:
+            own += [turn._replace(at=float(np.sqrt(part))), turn._replace(at=-float(np.sqrt(part)))]
+    return Curve(curve, "bend", fold, opening, 1, -1.0, 1.0, False, tuple(sorted(own)), (end, end))
+
+
+def circuits(curves: Sequence[Curve]) -> list[int]:
+    """Number of the circuit of each curve: those that meet at a change point belong together."""
+    parent = list(range(len(curves)))
+
+    def root(n: int) -> int:
+        while parent[n] != n:
+            n = parent[n]
+        return n
+
+    ends = [
+        (n, end, curve.place(np.array([at])).signs[:, 0])
+        for n, curve in enumerate(curves)
+        if not curve.closed
+        for end, at in zip(curve.ends, _near_ends(curve), strict=True)
+    ]
+    for (n, one, mine), (m, other, theirs) in itertools.combinations(ends, 2):
+        if one.point is other.point:
+            later = set(range(one.point.level + 1, len(mine)))
+            if all(mine[k] == theirs[k] for k in later - one.folded - other.folded):
+                parent[root(n)] = root(m)
+    return [root(n) for n in range(len(curves))]
+
+
+def _near_ends(curve: Curve) -> tuple[float, float]:
+    hair = 1e-6 * (curve.high - curve.low)
+    return curve.low + hair, curve.high - hair

@@ -1,0 +1,252 @@
+"""Driving a mechanism: positions, velocities, accelerations and jerks of every link and joint, closure by closure.
+
+Here inputs and assemblies are put in rows for the compiled sweep (:mod:`drive_kernels`), and what it fills is named.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.linkage.fourbar.closed_form import one_shape, require
+from kinematics.linkage.planar import drive_kernels as kernels
+from kinematics.linkage.planar.closures import RECENT, decompose
+from kinematics.linkage.planar.mechanism import Mechanism, Real
+from kinematics.linkage.planar.program import (
+    Frame,
+    Program,
+    Signs,
+    assembly_signs,
+    program_of,
+    unit_frame,
+)
+from kinematics.linkage.planar.triad_transmission import triad_of, triad_sine
+from kinematics.linkage.planar.triads import (
+    STALLED,
+    Loops,
+    Track,
+    loop_equations,
+    rates,
+)
+
+Jet = NDArray[np.complex128]
+"""Complex jet, shape (n, ...) with n from 1 to 4: value, velocity, acceleration and jerk, or the first few of them."""
+
+RealJet = NDArray[np.float64]
+"""Real jet, shape (n, ...) with n from 1 to 4."""
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class MechanismMotion:
+    """What a mechanism does over designs × inputs; the first axis of a jet is value, velocity, acceleration, jerk.
+
+    Attributes
+    ----------
+    valid : bool, shape S + (N,)
+        Where the mechanism can be assembled; elsewhere positions are NaN.
+    smooth : bool, shape S + (N,)
+        Where derivatives exist too: valid and not at a toggle.
+    input : float, shape (n,) + S + (N,)
+        The input: angle of the input link, radians, or position along the slide.
+    angles : dict of str to float, shape (n,) + S + (N,)
+        Link angles, radians and rad/s^n: from the reference angle, continuous along the motion's sign choices.
+    joints : dict of str to complex, shape (n,) + S + (N,)
+        Joints in the mechanism's own coordinates and their derivatives per s^n.
+    slides : dict of str to float, shape (n,) + S + (N,)
+        Position of each slide's joint along its line, and its rates relative to the line's link; by the names of
+        :attr:`Mechanism.slide_names`.
+    sines : dict of str to float, shape S + (N,)
+        For each closure, by the name of its link: the sine that vanishes at its limit. Its magnitude is the sine of the
+        transmission angle there; its sign changes from assembly to assembly. For a class III mechanism with a triad,
+        by the triad's third leg (:mod:`triad_transmission`).
+    margins : dict of str to float, shape (2,) + S + (N,), or (1,) + S + (N,) without derivatives
+        For each closure: a smooth function that is positive where it exists, zero at its limit and negative beyond, and
+        its rate; NaN where the closures before it do not exist. Where two links or a link and a slide close, it is the
+        square of the sine; where a known joint slides in the link, |q − p|² − r² in unit coordinates, with q − p from
+        the link's pin to that joint and r the line's distance from the pin.
+    """
+
+    valid: Mask
+    smooth: Mask
+    input: RealJet
+    angles: dict[str, RealJet]
+    joints: dict[str, Jet]
+    slides: dict[str, RealJet]
+    sines: dict[str, Real]
+    margins: dict[str, Real]
+
+
+def drive(
+    mechanism: Mechanism,
+    input: ArrayLike,
+    *,
+    speed: ArrayLike = 1.0,
+    acceleration: ArrayLike = 0.0,
+    jerk: ArrayLike = 0.0,
+    signs: tuple[Signs, ...] | None = None,
+    order: int = 3,
+) -> MechanismMotion:
+    """Drive a mechanism to inputs: by its dyadic closures, or by continuation from the reference where it has none.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Designs of shape S.
+    input : float
+        Absolute input angles, radians (or positions along the input slide), broadcasting with S + (1,); not reduced by
+        full turns, which matters for gears.
+    speed, acceleration, jerk : float
+        Rates of the input, broadcasting with the inputs; with the defaults results are derivatives by the input.
+    signs : tuple of int arrays, optional
+        Assembly at each dyadic closure; the reference configuration's by default.
+    order : int
+        Highest derivative computed, 0 to 3; jets have the length ``order + 1``.
+
+    Returns
+    -------
+    MechanismMotion
+        Arrays of shape S + (N,).
+
+    Raises
+    ------
+    TopologyError
+        For a class III mechanism with slides or gears.
+    DimensionError
+        For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, a
+        link without length between the joints by which it closes, or a class III mechanism whose reference is at a
+        toggle: two branches meet there, and only signs, which it has not, could say which one is meant.
+    ShapeError
+        For inputs that do not broadcast.
+    """
+    require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
+    program = program_of(mechanism)
+    chosen = program.signs
+    if signs is not None:
+        chosen, count = signs, len(program.steps)
+        require("signs", f"{count} arrays", np.asarray(len(signs)), np.bool_(len(signs) == count))
+        for sign in signs:
+            require("signs", "+1 or −1", np.asarray(sign), np.abs(sign) == 1)
+    q = np.asarray(input, np.float64)
+    require("input", "finite", q, ~np.isinf(q))
+    given = (q, *(np.asarray(rate, np.float64) for rate in (speed, acceleration, jerk)[:order]))
+    shape = one_shape(
+        designs=(*mechanism.shape, 1),
+        signs=(*one_shape(**{f"sign {n}": np.shape(sign) for n, sign in enumerate(chosen)}), 1),
+        **{f"input rate {n}" if n else "input": rate.shape for n, rate in enumerate(given)},
+    )
+    inputs = np.empty((order + 1, *shape))
+    for n, values in enumerate(given):
+        inputs[n, ...] = values
+    designs = shape[:-1]
+    rows = np.ones((len(program.rows), *designs), np.int64)
+    for n, sign in enumerate(chosen):
+        rows[n, ...] = sign
+    own = np.broadcast_to(np.arange(len(program.frame)).reshape(mechanism.shape), designs).ravel()
+    return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
+
+
+def drive_one(mechanism: Mechanism, input: Real, signs: Signs, order: int) -> MechanismMotion:
+    """One design at inputs (D, N) on assemblies (steps, D) each, by the input, unchecked: what root finding calls."""
+    program = program_of(mechanism)
+    inputs = np.zeros((order + 1, *input.shape))
+    inputs[0], inputs[1:2] = input, 1.0
+    return _named(mechanism, program, inputs, np.zeros(len(input), np.int64), signs)
+
+
+def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
+    """Margins of one design's closures at inputs (N,) on assemblies (steps, N), and rates; shape (closures, 2, N)."""
+    program, count = program_of(mechanism), len(input)
+    moved = np.ones((count, 2, 1))
+    moved[:, 0, 0] = input - program.reference_input[0]
+    sines, margins = np.empty((len(program.closing), count, 1)), np.empty((len(program.closing), 2, count, 1))
+    own = np.zeros(count, np.int64)
+    none = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
+    masks = np.empty((2, 0, 0), np.bool_)
+    kernels.drive(*program[6:], own, signs, moved, none[0], none[1], none[0], none[0], sines, margins, masks)
+    return margins[..., 0]
+
+
+def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
+    """Sweep, and name what comes out."""
+    length, *shape = inputs.shape
+    flat = len(own), shape[-1]
+    moved = np.ascontiguousarray(inputs.reshape(length, *flat).swapaxes(0, 1))
+    moved[:, 0] -= program.reference_input[own, None]
+    given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
+    points = np.empty((len(mechanism.joints), length, *flat), np.complex128)
+    angles = np.empty((len(program.links), length, *flat))
+    travels = np.empty((len(mechanism.slides), length, *flat))
+    sines = np.empty((len(program.closing), *flat))
+    margins = np.empty((len(program.closing), min(length, 2), *flat))
+    masks = np.empty((2, *flat), np.bool_)
+    kernels.drive(*program[6:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
+    valid, smooth = masks.reshape(2, *shape)
+    joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
+    closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
+    triad = triad_of(mechanism) if program.class_iii else None
+    if triad is not None:
+        closing[triad.third.link] = triad_sine(triad, {name: jet[0] for name, jet in joints.items()})
+    return MechanismMotion(
+        valid,
+        smooth,
+        inputs,
+        dict(zip(program.links[1:], angles[1:].reshape(-1, length, *shape), strict=True)),
+        joints,
+        dict(zip(mechanism.slide_names, travels.reshape(-1, length, *shape), strict=True)),
+        closing,
+        dict(zip(program.closing, margins.reshape(-1, margins.shape[1], *shape), strict=True)),
+    )
+
+
+def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) -> Real:
+    """Rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
+    designs, length, count = moved.shape
+    given = np.full((len(program.links), designs, length, count), np.nan)
+    for design in range(designs):
+        loops, track = _track(mechanism, int(own[design]))
+        numbers = [program.links.index(link) for link in loops.links]
+        rotation = moved[design, 0]
+        angles = track.at(rotation)
+        given[numbers, design, 0] = angles
+        if length > 1:
+            given[numbers, design, 1:] = np.moveaxis(rates(loops, rotation, angles, moved[design, 1:]), 0, 1)
+    return given
+
+
+def followed_to(mechanism: Mechanism, inputs: Real) -> Mask:
+    """Whether the motion of a class III design leads from the reference to inputs, shape (N,), without a toggle.
+
+    A branch of more than a turn has some inputs twice. The positions that :func:`drive` gives are of either place; this
+    takes each input for the place that many full turns away that it says.
+    """
+    at = float(mechanism.reference_input)
+    there: Mask = np.isfinite(_track(mechanism, 0)[1].followed(inputs - at)[0])
+    return there
+
+
+def given_up(mechanism: Mechanism) -> bool:
+    """Whether continuation, in drives of this class III design so far, left a way before its end.
+
+    Links of very different lengths need more certified steps than can be waited for. Positions beyond are not valid in
+    the answer though they may exist.
+    """
+    return bool(decompose(mechanism).left) and _track(mechanism, 0)[1].given_up
+
+
+@lru_cache(maxsize=RECENT)
+def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
+    """The loops of one design of a class III mechanism and what is known of their solutions."""
+    joints = program_of(mechanism).joints[design]
+    loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
+    track = Track(loops)
+    at = program_of(mechanism).reference_input[design : design + 1]
+    require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= STALLED))
+    return loops, track
+
+
+__all__ = ["Frame", "MechanismMotion", "assembly_signs", "decompose", "drive", "given_up", "unit_frame"]

@@ -1,0 +1,67 @@
+"""Instant centres of any planar mechanism: the point that two links have in common at an instant.
+
+A link that turns at ω and carries a point z at velocity v moves every point p at v + iω(p − z). Two links move a point
+alike at
+
+    p = z + i (v − w) / (ω − σ),   w = velocity of z as a point of the other link, which turns at σ,
+
+wherever their angular velocities differ (Norton, Sec. 6.3; Kennedy's theorem follows). Where they are equal the centre
+lies at infinity, square to v − w.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.drive import MechanismMotion
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Complex,
+    Mechanism,
+    Real,
+)
+
+PARALLEL = 1e-9
+"""Difference of angular velocities, as a share of the fastest link's, below which two links move parallel."""
+
+
+class InstantCenter(NamedTuple):
+    """Where the two links have a point in common; ``finite`` is False, and the point NaN, where they move parallel."""
+
+    point: Complex
+    finite: NDArray[np.bool_]
+
+
+def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple[str, str], InstantCenter]:
+    """All n(n − 1)/2 instant centres of a mechanism in motion, by pairs of links in the mechanism's order.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Designs of shape S.
+    motion : MechanismMotion
+        Its motion with at least one derivative; arrays of shape S + (N,).
+
+    Returns
+    -------
+    dict
+        Points in the mechanism's coordinates, shape S + (N,); NaN at toggles and where it cannot be assembled.
+    """
+    still = np.zeros_like(motion.input[1])
+    spins: dict[str, Real] = {name: motion.angles[name][1] if name != GROUND else still for name in mechanism.links}
+    fastest = np.max(np.abs(np.stack(list(spins.values()))), axis=0)
+    found = {}
+    for one, other in combinations(mechanism.links, 2):
+        z, velocity = (motion.joints[mechanism.links[one][0]][k] for k in (0, 1))
+        base, base_velocity = (motion.joints[mechanism.links[other][0]][k] for k in (0, 1))
+        carried = base_velocity + 1j * spins[other] * (z - base)
+        gap = spins[one] - spins[other]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            finite = np.abs(gap) > PARALLEL * fastest
+            point = np.where(finite, z + 1j * (velocity - carried) / gap, np.complex128(complex(np.nan, np.nan)))
+        found[(one, other)] = InstantCenter(point, finite & motion.smooth)
+    return found

@@ -1,0 +1,227 @@
+"""A planar mechanism by its skeleton: where its joints are in a reference configuration, and what joins them.
+
+Links are rigid and named; two links that list the same joint are pinned together there. A *slide* keeps a joint on a
+line fixed in a link. A *gear pair* makes one link turn a multiple of another. The input is a link that is pinned to the
+ground (its rotation drives), or the joint of a slide on the ground (its displacement drives).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import MechanismError
+from kinematics.linkage.fourbar.closed_form import one_shape, require
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+GROUND = "ground"
+"""Name of the link that does not move; every mechanism has it."""
+
+
+OFF_SLIDE = 1e-6
+"""Distance of a joint from its slide in the reference, as a share of the mechanism's size: inputs may be rounded."""
+
+
+TOO_SHORT = 1e-13
+"""Length as a share of the mechanism's size below which two joints lie on each other: rounding is as large."""
+
+
+class TopologyError(MechanismError, ValueError):
+    """Links, slides or gears that do not make one mechanism with a mobility of one."""
+
+
+class Slide(NamedTuple):
+    """``joint`` stays on the line through ``point`` at ``angle`` fixed in ``link``; reference, radians."""
+
+    joint: str
+    link: str
+    point: Complex
+    angle: Real
+
+
+class GearPair(NamedTuple):
+    """Rotation of ``second`` = ``ratio`` × rotation of ``first``, both relative to ground."""
+
+    first: str
+    second: str
+    ratio: float
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Designs of one topology.
+
+    Parameters
+    ----------
+    joints : mapping of str to complex
+        Joints in the reference configuration; arrays that broadcast to the shape S of the designs.
+    links : mapping of str to tuple of str
+        Joints on each link. The angle of a link is that of the line from its first joint to its second.
+    slides, gears : tuples
+        See :class:`Slide` and :class:`GearPair`.
+    input : str
+        Name of a link that is pinned to the ground, or of the joint of a slide on the ground.
+    turns : int
+        Full turns of the input link in the reference beyond the angle, from −π to π, at which its joints show it. With
+        gears of a ratio that is not whole the same input angle a turn on is another configuration.
+
+    Raises
+    ------
+    TopologyError
+        For names that do not exist, a link without joints, or a mobility other than one.
+    DimensionError
+        For coordinates or gear ratios that are not finite, a joint that is not on its slide, or a link in motion whose
+        first two joints lie on each other: it has no angle, and a crank without length drives nothing. Fixed pivots may
+        lie on each other; the mechanism then turns about them as one body.
+    ShapeError
+        For coordinates that do not broadcast.
+    """
+
+    joints: dict[str, Complex]
+    links: dict[str, tuple[str, ...]]
+    input: str
+    slides: tuple[Slide, ...] = ()
+    gears: tuple[GearPair, ...] = ()
+    turns: int = 0
+    shape: tuple[int, ...] = field(init=False)
+
+    def __init__(
+        self,
+        joints: dict[str, ArrayLike],
+        links: dict[str, tuple[str, ...]],
+        input: str,
+        slides: tuple[Slide, ...] = (),
+        gears: tuple[GearPair, ...] = (),
+        turns: int = 0,
+    ) -> None:
+        points = {name: np.asarray(z, np.complex128) for name, z in joints.items()}
+        lines = tuple(
+            s._replace(point=np.asarray(s.point, np.complex128), angle=np.asarray(s.angle, np.float64)) for s in slides
+        )
+        for name, point in points.items():
+            require(name, "finite", point, np.isfinite(point))
+        for line in lines:
+            require(f"slide of {line.joint}", "finite", line.point, np.isfinite(line.point))
+            require(f"slide angle of {line.joint}", "finite", line.angle, np.isfinite(line.angle))
+        for gear in gears:
+            require("gear ratio", "finite", np.asarray(gear.ratio), np.isfinite(gear.ratio))
+        shapes = {name: point.shape for name, point in points.items()}
+        for n, line in enumerate(lines):
+            shapes |= {f"slide {n}": line.point.shape, f"slide angle {n}": line.angle.shape}
+        shape = one_shape(**shapes)
+        own = {name: np.broadcast_to(point, shape) for name, point in points.items()}
+        for name, value in (
+            ("joints", own),
+            ("links", {name: tuple(listed) for name, listed in links.items()}),
+            ("input", input),
+            ("slides", lines),
+            ("gears", tuple(gears)),
+            ("turns", turns),
+            ("shape", shape),
+        ):
+            object.__setattr__(self, name, value)
+        self._check_names()
+        self._check_slides()
+        self._check_lengths()
+        if self.mobility != 1:
+            raise TopologyError(f"expected a mobility of 1, got {self.mobility}; look for a link or joint too many")
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
+
+        A joint on k links counts as k − 1 pins. Peaucellier's and other overconstrained mechanisms move although a
+        link more would count as one freedom less.
+        """
+        pins = sum(self._links_at(joint) - 1 for joint in self.joints if self._links_at(joint))
+        return 3 * (len(self.links) - 1) - 2 * pins - len(self.slides) - len(self.gears)
+
+    def _links_at(self, joint: str) -> int:
+        return sum(joint in listed for listed in self.links.values())
+
+    def _check_names(self) -> None:
+        if GROUND not in self.links:
+            raise TopologyError(f"expected a link named {GROUND!r}")
+        for name, listed in self.links.items():
+            unknown = [joint for joint in listed if joint not in self.joints]
+            if unknown:
+                raise TopologyError(f"link {name!r} lists the joint {unknown[0]!r}, which has no position")
+            if len(set(listed)) != len(listed):
+                raise TopologyError(f"link {name!r} lists a joint twice")
+            if name != GROUND and len(listed) < 2:
+                raise TopologyError(f"link {name!r} needs two joints or more")
+        loose = [joint for joint in self.joints if not self._links_at(joint)]
+        if loose:
+            raise TopologyError(f"the joint {loose[0]!r} is on no link")
+        for slide in self.slides:
+            if slide.joint not in self.joints or slide.link not in self.links:
+                raise TopologyError(f"a slide joins {slide.joint!r} and {slide.link!r}, one of which does not exist")
+        for gear in self.gears:
+            if gear.first not in self.links or gear.second not in self.links:
+                raise TopologyError(
+                    f"a gear pair joins {gear.first!r} and {gear.second!r}, one of which does not exist"
+                )
+        drives = [slide.joint for slide in self.slides if slide.link == GROUND]
+        pinned = [
+            name for name, listed in self.links.items() if set(listed) & set(self.links[GROUND]) and name != GROUND
+        ]
+        if self.input not in (*drives, *pinned):
+            raise TopologyError(f"the input {self.input!r} is neither a link pinned to the ground nor a slide on it")
+
+    def _check_slides(self) -> None:
+        for slide in self.slides:
+            offset = self.joints[slide.joint] - slide.point
+            across = np.abs((offset * np.exp(-1j * slide.angle)).imag)
+            spread = np.max([np.abs(z - self.joints[slide.joint]) for z in self.joints.values()], axis=0)
+            reach = np.maximum(spread, np.abs(offset))
+            require(f"distance of {slide.joint} from its slide", "zero", across, across <= OFF_SLIDE * reach)
+
+    def _check_lengths(self) -> None:
+        anywhere = next(iter(self.joints.values()))
+        size = np.max([np.abs(z - anywhere) for z in self.joints.values()], axis=0)
+        for link, listed in self.links.items():
+            if link != GROUND:
+                first, second = listed[:2]
+                length = np.abs(self.joints[second] - self.joints[first])
+                name = f"length of {link} from {first} to {second}"
+                require(name, "positive", length, length > TOO_SHORT * size)
+
+    @property
+    def slide_names(self) -> tuple[str, ...]:
+        """A name for each slide: its joint, with the slide's number where the joint has several."""
+        joints = [slide.joint for slide in self.slides]
+        return tuple(f"{name}_{k}" if joints.count(name) > 1 else name for k, name in enumerate(joints))
+
+    @property
+    def driven_by_slide(self) -> bool:
+        """Whether the input is the displacement of a slide."""
+        return self.input not in self.links
+
+    @property
+    def input_pivot(self) -> str:
+        """The ground joint about which the input link turns."""
+        return next(joint for joint in self.links[self.input] if joint in self.links[GROUND])
+
+    @property
+    def reference_input(self) -> Real:
+        """Input in the reference: angle of the input link, radians, or position along the slide; shape S."""
+        if self.driven_by_slide:
+            slide = next(s for s in self.slides if s.joint == self.input and s.link == GROUND)
+            offset = self.joints[self.input] - slide.point
+            return np.asarray((offset * np.exp(-1j * slide.angle)).real)
+        return np.asarray(self.link_angle(self.input) + 2.0 * np.pi * self.turns)
+
+    def link_line(self, link: str) -> tuple[str, str]:
+        """The joints from and to which the angle of a link is measured: the first two, the input's from its pivot."""
+        first, second = self.links[link][:2]
+        return (second, first) if link == self.input and second == self.input_pivot else (first, second)
+
+    def link_angle(self, link: str) -> Real:
+        """Angle of a link along its line in the reference; radians, shape S."""
+        first, second = self.link_line(link)
+        return np.asarray(np.angle(self.joints[second] - self.joints[first]))

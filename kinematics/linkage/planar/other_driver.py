@@ -1,0 +1,225 @@
+"""Branches of a mechanism whose input does not close it by dyads, found by driving it elsewhere.
+
+Which configurations a mechanism can reach does not depend on which link is called ground or input. Where the input
+leaves a class III group, or is a slide, another pair of links is taken for ground and input such that all closures are
+dyads. The configurations are then known as curves (:mod:`kinematics.linkage.planar.configuration_curves`), along which
+the true input is a smooth function; where it turns back is a toggle, and what lies between two such points is a branch.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.planar.branches import Branch, reference_first
+from kinematics.linkage.planar.closures import decompose, order_of_closures
+from kinematics.linkage.planar.configuration_curves import (
+    CELLS,
+    Closures,
+    Curve,
+    Place,
+    chains,
+    circuits,
+    configuration_curves,
+    places,
+)
+from kinematics.linkage.planar.drive import (
+    MechanismMotion,
+    assembly_signs,
+    drive_one,
+)
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from kinematics.linkage.planar.positive_arcs import (
+    HAIR,
+    Domain,
+    positive_arcs,
+)
+from kinematics.linkage.planar.program import program_of
+
+Real = NDArray[np.float64]
+Rows = NDArray[np.int64]
+FULL_TURN = 2.0 * np.pi
+
+DEAD = 1e-9
+"""Way of the true input along a curve, in units of the mechanism, below which it stands still."""
+
+LEAP = 0.5
+"""Change of an angle between neighbouring samples, radians, above which they stand too far apart to be unwrapped."""
+
+
+def other_driver(mechanism: Mechanism) -> Mechanism:
+    """The same mechanism with another ground and input, closed by dyads; the names of the two grounds are exchanged.
+
+    Raises
+    ------
+    TopologyError
+        Where no pair of pinned links closes it by dyads, or where gears tie it to its ground.
+    """
+    if mechanism.gears:
+        raise TopologyError("a geared mechanism must close by dyads from its input; this one does not")
+    for base in (GROUND, *(link for link in mechanism.links if link != GROUND)):
+        swapped = {GROUND: base, base: GROUND}
+        links = {swapped.get(name, name): listed for name, listed in mechanism.links.items()}
+        slides = tuple(slide._replace(link=swapped.get(slide.link, slide.link)) for slide in mechanism.slides)
+        for driver, listed in links.items():
+            if driver == GROUND or not set(listed) & set(links[GROUND]):
+                continue
+            if order_of_closures(links, driver, slides, ()).left:
+                continue
+            try:
+                other = Mechanism(dict(mechanism.joints), links, driver, slides)
+                program_of(other)
+                return other
+            except DimensionError:  # pivots on each other make no link that can drive or be driven
+                continue
+    raise TopologyError("no pair of links closes this mechanism by dyads")
+
+
+def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
+    """All branches of one design, circuit by circuit, the reference's first; ``signs`` and closures are left empty.
+
+    Raises
+    ------
+    TopologyError
+        Where no pair of links closes the mechanism by dyads, or a link swings freely while the other driver stands
+        still: such a motion is on none of its curves.
+    """
+    other = other_driver(mechanism)
+    decomposition = decompose(other)
+    closures = Closures(other, decomposition)
+    curves = configuration_curves(other, closures, FULL_TURN)
+    if any(end.point.swings for curve in curves for end in curve.ends):
+        raise TopologyError("a link swings freely while the link that stands in for the input stands still")
+    true_input = _TrueInput(mechanism, other, closures, curves)
+    numbers = circuits(curves)
+    signs = assembly_signs(other, decomposition.steps)
+    choice = np.array([int(signs[n]) for n in closures.position])
+    at = float(other.reference_input)
+    held = {n for n, curve in enumerate(curves) if _passes(curve, at, choice)}
+    found = [(branch, n in held) for n in range(len(curves)) for branch in true_input.branches(n, numbers[n])]
+    first = next((k for k, (_, holds) in enumerate(found) if holds), 0)
+    return reference_first([branch for branch, _ in found], first)
+
+
+def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
+    """Whether a curve of the other driver passes an input of it on certain assemblies."""
+    cuts = [turn.at for turn in curve.turns]
+    cuts = [*cuts, cuts[0] + curve.high - curve.low] if curve.closed and cuts else [curve.low, *cuts, curve.high]
+    for low, high in pairwise(cuts):
+        ends = sorted((curve.input_at(low), curve.input_at(high)))
+        middle = curve.place(np.array([0.5 * (low + high)])).signs[:, 0]
+        hair = 1e-7
+        if np.mod(theta - ends[0] + hair, FULL_TURN) <= ends[1] - ends[0] + 2.0 * hair and np.all(middle == choice):
+            return True
+    return False
+
+
+class _TrueInput:
+    """The true input along the curves of the other driver."""
+
+    def __init__(self, mechanism: Mechanism, other: Mechanism, closures: Closures, curves: list[Curve]) -> None:
+        self.mechanism, self.other, self.closures, self.curves = mechanism, other, closures, curves
+        self.chains = chains(curves) if curves else np.empty((0, 0, 4))
+        self.slide = mechanism.driven_by_slide
+        pushed = [s.link == GROUND and s.joint == mechanism.input for s in mechanism.slides]
+        self.pushed = mechanism.slide_names[pushed.index(True)] if self.slide else ""
+        self.base = next(name for name, listed in other.links.items() if listed == mechanism.links[GROUND])
+        self.link = {GROUND: self.base, self.base: GROUND}.get(mechanism.input, mechanism.input)
+        arcs = positive_arcs(self._rates, [Domain(c.low, c.high, c.closed, 2 * CELLS) for c in curves])
+        self.turns = [
+            sorted(
+                {at for arc in own for at, kind in ((arc.low, arc.at_low), (arc.high, arc.at_high)) if kind == "zero"}
+            )
+            for own in arcs
+        ]
+
+    def _jet(self, place: Place, order: int) -> Real:
+        """Jet of the true input by the other one; shape (order + 1, n)."""
+        signs = self.closures.signs(place.signs)
+        motion = drive_one(self.other, place.theta[:, None], signs, order)
+        if self.slide:
+            return np.asarray(motion.slides[self.pushed][..., 0])
+        turned = _rotation(self.other, motion, self.link) - _rotation(self.other, motion, self.base)
+        turned[0] += self.mechanism.reference_input
+        return turned
+
+    def _rates(self, row: Rows, at: Real) -> tuple[Real, Real]:
+        """First two derivatives of the true input by the parameters of curves."""
+        place = places(self.chains, row, at)
+        jet = self._jet(place, 2)
+        return jet[1] * place.rate, jet[2] * place.rate**2 + jet[1] * place.second
+
+    def branches(self, n: int, circuit: int) -> list[Branch]:
+        """The branches along one curve."""
+        curve, turns = self.curves[n], self.turns[n]
+        length = curve.high - curve.low
+        if curve.closed:
+            start = turns[0] if turns else curve.low + 0.1 * length
+            cuts = [t for t in turns if t - start < length * (1.0 - 1e-12)] if turns else [start]
+            if turns and len(cuts) % 2:
+                raise TopologyError(
+                    "two limits lie closer together than they can be told apart; circuits are not known"
+                )
+            cuts.append(cuts[0] + length)
+        else:
+            cuts = [curve.low, *turns, curve.high]
+        values = self._along(curve, cuts)
+        found = []
+        for one, another in pairwise(values):
+            low, high = min(one, another), max(one, another)
+            if high - low <= DEAD:
+                continue
+            start = low if self.slide else float(np.mod(low, FULL_TURN))
+            found.append(Branch(circuit, start, start + high - low, curve.closed and not turns, (), "", ""))
+        return found
+
+    def _along(self, curve: Curve, cuts: list[float]) -> list[float]:
+        """The true input at places on a curve, unwrapped."""
+        length = curve.high - curve.low
+        inner = np.linspace(cuts[0], cuts[-1], CELLS + 1)[1:-1] + 0.003 / CELLS * length
+        known = np.unique(np.concatenate([cuts, inner]))
+        if not curve.closed:
+            known = np.clip(known, curve.low + HAIR * length, curve.high - HAIR * length)
+        value = self._value(curve, known)
+        while not self.slide:
+            leap = np.abs(np.mod(np.diff(value) + np.pi, FULL_TURN) - np.pi) > LEAP
+            leap &= np.diff(known) > 1e-12 * length
+            if not leap.any():
+                break
+            between = 0.5 * (known[:-1] + known[1:])[leap]
+            place = np.flatnonzero(leap) + 1
+            known, value = np.insert(known, place, between), np.insert(value, place, self._value(curve, between))
+        smooth = value if self.slide else np.unwrap(value)
+        ends = np.clip(cuts, known[0], known[-1])
+        found = smooth[np.searchsorted(known, ends)]
+        if not curve.closed:
+            # Where curves cross the assembly may be lost to rounding; from a hair beside it the series leads there.
+            at = np.array([known[0], known[-1]])
+            hair = np.array([cuts[0], cuts[-1]]) - at
+            rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
+            found[[0, -1]] += hair * rate + 0.5 * hair**2 * second
+        return [float(x) for x in found]
+
+    def _value(self, curve: Curve, at: Real) -> Real:
+        """The true input, at folded places where rounding takes the assembly away from a hair beside them."""
+        value: Real = self._jet(curve.place(at), 0)[0]
+        lost = np.isnan(value)
+        if lost.any():
+            value[lost] = self._jet(curve.place(at[lost] + HAIR), 0)[0]
+        return value
+
+
+def _rotation(mechanism: Mechanism, motion: MechanismMotion, link: str) -> Real:
+    """Jet of a link's rotation from the reference; shape (n, inputs)."""
+    if link == GROUND:
+        return np.zeros(motion.input.shape[:2])
+    rotation: Real = motion.angles[link][..., 0].copy()
+    rotation[0] -= mechanism.link_angle(link)
+    return rotation

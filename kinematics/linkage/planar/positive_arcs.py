@@ -1,0 +1,262 @@
+"""Where smooth functions of one variable are positive: all their zeros, those that lie close together too.
+
+Each function has a domain, a circle or a segment, and comes with its rate. It is sampled ever finer until between
+neighbouring samples it is the cubic that values and rates there give, but for a small part of its change. Then no cell
+between two samples hides more than the cubic shows: a zero where the sign changes, an extreme where the rate turns
+towards zero. Such an extreme is found as a root of the rate, and tells whether the function has two zeros there, none,
+or touches zero. Many functions are treated at once, as rows, because one evaluation costs hardly less than a hundred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.roots import find_roots
+
+Real = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+CELL_ERROR = 0.01
+"""Part of its change in a cell (or of its distance from zero) by which a function may differ from the cubic."""
+
+NARROW = 1e-7
+"""Cells narrower than this part of the domain are not divided: beside a fold the input differs by its square only."""
+
+FIRST = 0.37
+"""Place of the first sample in the first cell: functions are often even about the ends, where rates may be infinite."""
+
+HAIR = 1e-6
+"""Distance of the outermost samples from the ends of a segment, as a part of it: the function may not exist there."""
+
+TOUCHES = 1e-12
+"""An extreme below this part of the function's greatest value touches zero: at a change point, to rounding."""
+
+VANISHES = 1e-13
+"""A function that stays below this at its first samples is zero all over; beside the ends, where roots of small
+differences are taken, rounding may be larger."""
+
+NOISE = 1e-12
+"""Cells in which a function stays below this part of its greatest value are not divided: their shape is rounding."""
+
+CROWD = 4
+"""When this many times its first cells are still to be divided at once, a function is rounding, and left as it is: one
+that is smooth but for a few places has but a few such cells at a time."""
+
+Function = Callable[[Rows, Real], tuple[Real, Real]]
+"""Value and rate of the functions ``rows`` at the places given, shape (n,) each; a rate may be NaN."""
+
+
+class Domain(NamedTuple):
+    """A segment, or a circle that is as long; and into how many cells it is divided at first."""
+
+    low: float
+    high: float
+    closed: bool
+    cells: int
+
+
+class Arc(NamedTuple):
+    """Where a function is positive: from ``low`` to ``high``, which on a circle may lie beyond its end.
+
+    ``at_low`` and ``at_high`` say what is there: a ``zero`` where the sign changes, a place where the function only
+    ``touches`` zero, or the ``end`` of the domain; ``whole`` for a circle without either.
+    """
+
+    low: float
+    high: float
+    at_low: Literal["zero", "touches", "end", "whole"]
+    at_high: Literal["zero", "touches", "end", "whole"]
+
+
+class Samples(NamedTuple):
+    """Rows, places, values and rates, sorted by row and place; on a circle the first one comes again at the end."""
+
+    row: Rows
+    at: Real
+    value: Real
+    rate: Real
+
+    def merged(self, *others: Samples) -> Samples:
+        """These and others, sorted."""
+        every = [self, *others]
+        row, at = np.concatenate([s.row for s in every]), np.concatenate([s.at for s in every])
+        value, rate = np.concatenate([s.value for s in every]), np.concatenate([s.rate for s in every])
+        order = np.lexsort((at, row))
+        return Samples(row[order], at[order], value[order], rate[order])
+
+    def part(self, index: NDArray[np.bool_] | Rows) -> Samples:
+        """Some of them."""
+        return Samples(self.row[index], self.at[index], self.value[index], self.rate[index])
+
+    def cells(self) -> tuple[Samples, Samples]:
+        """Left and right ends of the cells."""
+        left = np.flatnonzero(self.row[:-1] == self.row[1:])
+        return self.part(left), self.part(left + 1)
+
+
+def positive_arcs(function: Function, domains: Sequence[Domain]) -> list[list[Arc]]:
+    """The arcs on which each of the functions is positive, by rows, ascending."""
+    if not domains:
+        return []
+    samples, vanishes = _resolved(function, domains)
+    samples = samples.merged(_extremes(function, samples))
+    scale = np.full(len(domains), 0.0)
+    np.maximum.at(scale, samples.row, samples.value)
+    starts = np.searchsorted(samples.row, np.arange(len(domains) + 1))
+    pending: list[tuple[int, list[_Boundary], bool]] = []
+    changes: list[tuple[int, float, float, float, float]] = []
+    for row, domain in enumerate(domains):
+        at, value = (column[starts[row] : starts[row + 1]] for column in (samples.at, samples.value))
+        sure = np.flatnonzero(np.abs(value) > TOUCHES * scale[row])
+        if vanishes[row] or not len(sure):
+            pending.append((row, [], False))
+            continue
+        if domain.closed:  # once round from a place that is surely not zero
+            turn = int(sure[0])
+            at = np.concatenate([at[turn:], at[1 : turn + 1] + (domain.high - domain.low)])
+            value = np.concatenate([value[turn:], value[1 : turn + 1]])
+            sure = np.flatnonzero(np.abs(value) > TOUCHES * scale[row])
+        boundaries: list[_Boundary] = []
+        positive = value[sure] > 0.0
+        for n in np.flatnonzero((positive[:-1] != positive[1:]) | (positive[:-1] & (np.diff(sure) > 1))):
+            one, other = sure[n], sure[n + 1]
+            if positive[n] == positive[n + 1]:
+                least = one + 1 + int(np.argmin(np.abs(value[one + 1 : other])))
+                boundaries.append(_Boundary(float(at[least]), None, None))
+            else:
+                boundaries.append(_Boundary(np.nan, len(changes), bool(positive[n + 1])))
+                changes.append((row, float(at[one]), float(at[other]), float(value[one]), float(value[other])))
+        pending.append((row, boundaries, bool(positive[0])))
+    zeros = _zeros(function, changes)
+    return [
+        _arcs(
+            domains[row],
+            [b if b.change is None else b._replace(at=zeros[b.change]) for b in boundaries],
+            positive_first,
+        )
+        for row, boundaries, positive_first in pending
+    ]
+
+
+class _Boundary(NamedTuple):
+    """An end of arcs: its place, the number of its change of sign (none where it touches), and whether that rises."""
+
+    at: float
+    change: int | None
+    rises: bool | None
+
+
+def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, NDArray[np.bool_]]:
+    """Samples between which the functions are their cubics; and which functions are zero all over."""
+    places = []
+    for domain in domains:
+        cell = (domain.high - domain.low) / domain.cells
+        if domain.closed:
+            places.append(domain.low + cell * (np.arange(domain.cells) + FIRST))
+        else:
+            inner = domain.low + cell * (np.arange(domain.cells - 1) + 1.0 + FIRST / 2.0)
+            hair = HAIR * (domain.high - domain.low)
+            places.append(np.concatenate([[domain.low + hair], inner, [domain.high - hair]]))
+    row = np.repeat(np.arange(len(domains)), [len(p) for p in places])
+    at = np.concatenate(places)
+    samples = Samples(row, at, *_known(function, row, at))
+    changes = np.diff(row) != 0
+    inner = ~(np.append(True, changes) | np.append(changes, True)) | np.array([d.closed for d in domains])[row]
+    largest = np.zeros(len(domains))
+    np.maximum.at(largest, row[inner], np.abs(samples.value[inner]))
+    closing = np.array([n for n, domain in enumerate(domains) if domain.closed], np.int64)
+    begins = np.searchsorted(row, closing)
+    length = np.array([domain.high - domain.low for domain in domains])
+    again = Samples(closing, at[begins] + length[closing], samples.value[begins], samples.rate[begins])
+    samples = samples.merged(again)
+    first = np.array([domain.cells for domain in domains])
+    narrow = NARROW * length
+    noise = np.full(len(domains), VANISHES)
+    np.maximum.at(noise, samples.row, NOISE * np.abs(samples.value))
+    noise[largest <= VANISHES] = np.inf
+    left, right = samples.cells()
+    found = [samples]
+    while len(left.row):
+        width = right.at - left.at
+        at = left.at + 0.5 * width
+        middle = Samples(left.row, at, *_known(function, left.row, at))
+        found.append(middle)
+        off = np.abs(middle.value - 0.5 * (left.value + right.value) - width * (left.rate - right.rate) / 8.0)
+        slope = 1.5 * (right.value - left.value) - 0.25 * width * (left.rate + right.rate)
+        off = np.maximum(off, 0.25 * np.abs(width * middle.rate - slope))
+        values = np.abs([left.value, middle.value, right.value])
+        change = np.maximum(np.abs(middle.value - left.value), np.abs(middle.value - right.value))
+        change = np.maximum(change, width * np.abs([left.rate, middle.rate, right.rate]).max(axis=0))
+        same = (left.value > 0.0) == (right.value > 0.0)
+        allowed = np.maximum(change, np.where(same, values.min(axis=0), 0.0))
+        rough = ~(off <= CELL_ERROR * allowed) & (width > narrow[left.row]) & (values.max(axis=0) > noise[left.row])
+        crowded = np.bincount(left.row[rough], minlength=len(domains)) > CROWD * first
+        rough &= ~crowded[left.row]
+        half = [samples.part(rough) for samples in (left, middle, right)]
+        left, right = half[0].merged(half[1]), half[1].merged(half[2])
+    return found[0].merged(*found[1:]), largest <= VANISHES
+
+
+def _known(function: Function, row: Rows, at: Real) -> tuple[Real, Real]:
+    """Value and rate, the value zero where it is not known."""
+    value, rate = function(row, at)
+    return np.nan_to_num(value, nan=0.0), rate
+
+
+def _extremes(function: Function, samples: Samples) -> Samples:
+    """Minima above zero and maxima below it that may come near zero, between samples."""
+    left, right = samples.cells()
+    width, side = right.at - left.at, np.sign(left.value)
+    falls, rises = side * left.rate, side * right.rate
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Where the tangents at both ends meet: lower than the function, which is convex around a minimum.
+        meet = left.value + left.rate * (right.value - left.value - right.rate * width) / (left.rate - right.rate)
+        low = ~(side * meet > 0.5 * np.minimum(np.abs(left.value), np.abs(right.value)))
+    turns = (side == np.sign(right.value)) & (falls <= 0.0) & (rises >= 0.0) & (falls < rises) & low
+    row = left.row[turns]
+    if not len(row):
+        return Samples(row, np.empty(0), np.empty(0), np.empty(0))
+
+    def rate(at: Real) -> Real:
+        return np.nan_to_num(function(row, at)[1], nan=0.0)
+
+    at = find_roots(rate, left.at[turns], right.at[turns], left.rate[turns], right.rate[turns])[0]
+    return Samples(row, at, _known(function, row, at)[0], np.zeros(len(row)))
+
+
+def _zeros(function: Function, changes: list[tuple[int, float, float, float, float]]) -> Real:
+    """Where functions change sign, each between two places; the last of them where it is not negative."""
+    if not changes:
+        return np.empty(0)
+    row, low, high, at_low, at_high = (np.array(column) for column in zip(*changes, strict=True))
+    return find_roots(lambda at: _known(function, row, at)[0], low, high, at_low, at_high)[0]
+
+
+def _arcs(domain: Domain, boundaries: list[_Boundary], positive_first: bool) -> list[Arc]:
+    """The positive arcs between boundaries in their order."""
+    if not boundaries:
+        kind: Literal["whole", "end"] = "whole" if domain.closed else "end"
+        return [Arc(domain.low, domain.high, kind, kind)] if positive_first else []
+    arcs = []
+    if domain.closed:
+        length = domain.high - domain.low
+        boundaries = [*boundaries, boundaries[0]._replace(at=boundaries[0].at + length)]
+    elif positive_first:
+        arcs.append(Arc(domain.low, float(boundaries[0].at), "end", _kind(boundaries[0])))
+    for n, boundary in enumerate(boundaries):
+        if boundary.rises is False or (n + 1 == len(boundaries) and domain.closed):
+            continue
+        if n + 1 == len(boundaries):
+            arcs.append(Arc(float(boundary.at), domain.high, _kind(boundary), "end"))
+        else:
+            after = boundaries[n + 1]
+            arcs.append(Arc(float(boundary.at), float(after.at), _kind(boundary), _kind(after)))
+    return arcs
+
+
+def _kind(boundary: _Boundary) -> Literal["zero", "touches"]:
+    return "touches" if boundary.change is None else "zero"

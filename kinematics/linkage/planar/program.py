@@ -1,0 +1,221 @@
+"""A mechanism as the compiled sweep takes it: its closures as rows of numbers, its designs in unit coordinates.
+
+Unit coordinates have their origin at the reference position of the first ground joint and the size of the mechanism as
+unit, so that tolerances are relative and digits are not lost to a far origin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.fourbar.closed_form import require
+from kinematics.linkage.planar import drive_kernels as kernels
+from kinematics.linkage.planar.closures import (
+    RECENT,
+    Step,
+    decompose,
+)
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    TOO_SHORT,
+    Complex,
+    Mechanism,
+    Real,
+)
+
+Signs = NDArray[np.int64]
+
+KINDS = {
+    "gear": kernels.GEAR,
+    "carried": kernels.CARRIED,
+    "RRP": kernels.RRP,
+    "RPR": kernels.RPR,
+    "RRR": kernels.RRR,
+}
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Unit coordinates of a mechanism: origin and size, shape S, and the joints and slides in them."""
+
+    origin: Complex
+    size: Real
+    joints: dict[str, Complex]
+    lines: dict[int, Complex]
+
+
+class Program(NamedTuple):
+    """What :func:`kinematics.linkage.planar.drive_kernels.drive` takes, in its order, after the names of things.
+
+    ``links`` are in the kernel's order, the ground first. ``closing`` are the links that have two assemblies, ``signs``
+    the reference's assemblies by step, ``reference_input`` the inputs there, of shape (M,).
+    """
+
+    steps: tuple[Step, ...]
+    class_iii: bool
+    links: tuple[str, ...]
+    closing: tuple[str, ...]
+    signs: tuple[Signs, ...]
+    reference_input: Real
+    rows: Signs
+    ratios: Real
+    gives: Signs
+    joints: Complex
+    lines: Complex
+    line_angles: Real
+    link_angles: Real
+    frame: Complex
+    slides: Signs
+    driver: Signs
+
+
+@lru_cache(maxsize=RECENT)
+def unit_frame(mechanism: Mechanism) -> Frame:
+    """The mechanism's unit coordinates."""
+    ground = mechanism.links[GROUND]
+    origin = mechanism.joints[ground[0]] if ground else next(iter(mechanism.joints.values()))
+    spread = np.stack([np.abs(z - origin) for z in mechanism.joints.values()])
+    size = spread.max(axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    joints = {name: np.asarray((z - origin) / size) for name, z in mechanism.joints.items()}
+    lines = {k: np.asarray((s.point - origin) / size) for k, s in enumerate(mechanism.slides)}
+    return Frame(np.asarray(origin), size, joints, lines)
+
+
+def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs, ...]:
+    """The reference's choice at every closure, shape S each: +1 or −1; +1 where the reference is at a limit."""
+    frame = unit_frame(mechanism)
+    signs = []
+    for step in steps:
+        if not step.has_two_solutions:
+            signs.append(np.ones(mechanism.shape, np.int64))
+            continue
+        k = _reference_k(frame, mechanism, step)
+        signs.append(np.where(k.imag < 0.0, -1, 1))
+    return tuple(signs)
+
+
+def _reference_k(frame: Frame, mechanism: Mechanism, step: Step) -> Complex:
+    pin = frame.joints[step.pin]
+    if step.kind == "RRR":
+        return np.asarray(np.conj(frame.joints[step.joint] - pin) * (frame.joints[step.other_pin] - pin))
+    assert step.slide is not None
+    normal = 1j * np.exp(1j * step.slide.angle)
+    arm = frame.joints[step.joint] - pin
+    return np.asarray(normal * np.conj(arm) if step.kind == "RRP" else np.conj(normal) * arm)
+
+
+@lru_cache(maxsize=RECENT)
+def program_of(mechanism: Mechanism) -> Program:
+    """The program of a mechanism.
+
+    Raises
+    ------
+    DimensionError
+        For a link without length between the joints by which it closes.
+    """
+    decomposition, frame = decompose(mechanism), unit_frame(mechanism)
+    steps = () if decomposition.left else decomposition.steps
+    for step in steps:
+        _check_arms(frame, step)
+    links = (GROUND, *(link for link in mechanism.links if link != GROUND))
+    numbers = _Numbers(mechanism, links)
+    driver = numbers.drive()
+    closing: list[str] = []
+    rows: list[tuple[int, ...]] = []
+    for step in steps:
+        rows.append(numbers.row(step, len(closing) if step.has_two_solutions else -1))
+        closing += [step.link] if step.has_two_solutions else []
+    if decomposition.left:
+        rows = numbers.tree()
+    designs = int(np.prod(mechanism.shape, dtype=np.int64))
+
+    def in_rows(values: list[Any], dtype: type) -> NDArray[Any]:
+        out: NDArray[Any] = np.empty((designs, len(values)), dtype)
+        for n, value in enumerate(values):
+            out[:, n] = np.broadcast_to(value, mechanism.shape).ravel()
+        return out
+
+    return Program(
+        steps,
+        bool(decomposition.left),
+        links,
+        tuple(closing),
+        assembly_signs(mechanism, steps),
+        mechanism.reference_input.ravel(),
+        np.array(rows, np.int64).reshape(len(rows), 8),
+        np.array([step.ratio for step in steps] or [0.0] * len(rows)),
+        numbers.gives,
+        in_rows(list(frame.joints.values()), np.complex128),
+        in_rows(list(frame.lines.values()), np.complex128),
+        in_rows([s.angle for s in mechanism.slides], np.float64),
+        in_rows([0.0, *(mechanism.link_angle(link) for link in links[1:])], np.float64),
+        in_rows([frame.origin, frame.size], np.complex128),
+        np.array([(numbers.joint[s.joint], numbers.link[s.link]) for s in mechanism.slides], np.int64).reshape(-1, 2),
+        np.array(driver, np.int64),
+    )
+
+
+class _Numbers:
+    """Links, joints and slides by number, and which joints become known by which link, in the order of the rows."""
+
+    def __init__(self, mechanism: Mechanism, links: tuple[str, ...]) -> None:
+        self.mechanism = mechanism
+        self.links = links
+        self.link = {name: n for n, name in enumerate(links)}
+        self.joint = {name: n for n, name in enumerate(mechanism.joints)}
+        self.gives = np.zeros((len(links), len(self.joint) + 1), np.int64)
+        self.known: set[str] = set()
+        self._know(GROUND)
+
+    def _know(self, link: str) -> None:
+        made = [joint for joint in self.mechanism.links[link] if joint not in self.known]
+        self.known.update(made)
+        self.gives[self.link[link], : len(made) + 1] = len(made), *(self.joint[joint] for joint in made)
+
+    def drive(self) -> list[int]:
+        mechanism = self.mechanism
+        if not mechanism.driven_by_slide:
+            self._know(mechanism.input)
+            return [self.link[mechanism.input], self.joint[mechanism.input_pivot], -1]
+        slide = next(n for n, s in enumerate(mechanism.slides) if s.joint == mechanism.input and s.link == GROUND)
+        self.known.add(mechanism.input)
+        return [-1, self.joint[mechanism.input], slide]
+
+    def row(self, step: Step, closing: int) -> tuple[int, ...]:
+        slide, other = -1, step.other
+        if step.slide is not None:
+            slide = next(n for n, s in enumerate(self.mechanism.slides) if s is step.slide)
+            other = step.slide.link
+        self._know(step.link)
+        if step.kind == "RRR":
+            self._know(step.other)
+        joint, pin = self.joint.get(step.joint, -1), self.joint[step.pin]
+        other_pin = self.joint.get(step.other_pin, -1)
+        return KINDS[step.kind], self.link[step.link], pin, joint, self.link.get(other, -1), other_pin, slide, closing
+
+    def tree(self) -> list[tuple[int, ...]]:
+        """Rows of links whose rotations are given, each on a joint that is known by then."""
+        rows: list[tuple[int, ...]] = []
+        waiting = [link for link in self.links if link not in (GROUND, self.mechanism.input)]
+        while waiting:
+            link = next(w for w in waiting if self.known & set(self.mechanism.links[w]))
+            pin = next(joint for joint in self.mechanism.links[link] if joint in self.known)
+            rows.append((kernels.GIVEN, self.link[link], self.joint[pin], -1, -1, -1, -1, -1))
+            self._know(link)
+            waiting.remove(link)
+        return rows
+
+
+def _check_arms(frame: Frame, step: Step) -> None:
+    """Refuse a link that has no length between the joints by which it closes: any rotation would do."""
+    arms = {"RRR": [(step.link, step.pin), (step.other, step.other_pin)], "RRP": [(step.link, step.pin)]}
+    arms["carried"] = arms["RRP"]
+    for link, pin in arms.get(step.kind, []):
+        length = np.abs(frame.joints[step.joint] - frame.joints[pin])
+        require(f"length of {link} from {pin} to {step.joint}", "positive", length, length > TOO_SHORT)

@@ -1,0 +1,139 @@
+"""The strokes of an output that goes to and fro while the input turns: its limit positions, as roots of its rate.
+
+An output that reverses twice in a turn has two strokes. With the input at constant speed their times are as the input
+rotations α and β between the limit positions, α + β = 2π, and the *time ratio* is the longer over the shorter
+(Norton, eq. 3.1, inverted so that it is at least 1).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.planar.drive import drive_one
+from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.program import program_of
+from kinematics.linkage.planar.roots import find_roots, sign_changes
+
+Real = NDArray[np.float64]
+
+GRID = 1440
+"""Inputs at which reversals are looked for, a quarter of a degree apart."""
+
+
+EQUAL = 1e-10
+"""Radians by which rotations of strokes may differ and count as equal: what rounding leaves of equal ones."""
+
+
+class Reversals(NamedTuple):
+    """Limit positions of an output over one turn of the input, in the order of the input.
+
+    Attributes
+    ----------
+    inputs : float, shape (n,)
+        Input angles in the turn that begins at the reference, radians.
+    outputs : float, shape (n,)
+        The output there: angle of a link, radians, or position along a slide.
+    full : bool
+        Whether the mechanism can be assembled at every input that was looked at.
+    """
+
+    inputs: Real
+    outputs: Real
+    full: bool
+
+
+class Strokes(NamedTuple):
+    """The two strokes of an output that reverses twice in a turn.
+
+    Attributes
+    ----------
+    inputs, outputs : float, shape (2,)
+        Limit positions: the slow stroke goes from the first to the second while the input turns counter-clockwise;
+        ``inputs`` ascend.
+    slow, fast : float
+        Input rotations of the strokes, radians; together a full turn.
+    travel : float
+        Distance of the limits: the swing, radians, or the stroke's length.
+    """
+
+    inputs: Real
+    outputs: Real
+    slow: float
+    fast: float
+    travel: float
+
+    @property
+    def time_ratio(self) -> float:
+        """Time of the slow stroke over that of the fast one, the input at constant speed."""
+        return max(self.slow, self.fast) / min(self.slow, self.fast)
+
+
+def reversals(mechanism: Mechanism, output: str) -> Reversals:
+    """Where an output reverses while the input link turns once, on the reference's assemblies.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        One design, driven by a link, that closes by dyads.
+    output : str
+        A link, or the joint of a slide as :class:`kinematics.linkage.planar.drive.MechanismMotion` names it.
+
+    Raises
+    ------
+    DimensionError
+        For a mechanism that is driven by a slide.
+    """
+    if mechanism.driven_by_slide:
+        raise DimensionError("input", "a link that turns", mechanism.input)
+    program = program_of(mechanism)
+    own = program.signs or [1] * len(program.rows)
+    signs = np.array(own, np.int64).reshape(-1, 1)
+
+    def jets(inputs: Real, order: int) -> Real:
+        motion = drive_one(mechanism, inputs[None], signs, order)
+        jet = motion.angles[output] if output in motion.angles else motion.slides[output]
+        return np.asarray(jet[:, 0])
+
+    start = float(mechanism.reference_input)
+    grid = start + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
+    outputs, rate = jets(grid, 1)
+    # The turn closes: what rounding makes of its end must not add or hide a reversal at the reference.
+    rate[-1] = rate[0]
+    full = bool(np.all(np.isfinite(rate)))
+    left = sign_changes(rate)
+    inputs = np.empty(0)
+    if len(left):
+        inputs = find_roots(lambda at: jets(at, 1)[1], grid[left], grid[left + 1], rate[left], rate[left + 1])[0]
+    found = jets(inputs, 0)[0] if len(left) else inputs
+    if output in mechanism.links:
+        # Angles are known to full turns; along the grid they are followed.
+        found = found + 2.0 * np.pi * np.round((np.unwrap(outputs)[left] - found) / (2.0 * np.pi))
+    return Reversals(inputs, found, full)
+
+
+def strokes(mechanism: Mechanism, output: str) -> Strokes | None:
+    """The strokes of an output; None where it does not reverse exactly twice in a turn, or the input does not turn.
+
+    Parameters and errors are those of :func:`reversals`.
+    """
+    inputs, outputs, full = reversals(mechanism, output)
+    if not full or len(inputs) != 2:
+        return None
+    between = float(inputs[1] - inputs[0])
+    travel = float(abs(outputs[1] - outputs[0]))
+    order = between >= np.pi
+    if abs(between - np.pi) <= EQUAL:
+        # Equal strokes: the first is the one that begins nearer to the reference.
+        near = np.abs(np.exp(1j * (inputs - float(mechanism.reference_input))) - 1.0)
+        order = bool(near[0] <= near[1])
+    if not order:
+        inputs, outputs, between = (
+            np.array([inputs[1], inputs[0] + 2.0 * np.pi]),
+            outputs[::-1].copy(),
+            2.0 * np.pi - between,
+        )
+    return Strokes(inputs, outputs, between, 2.0 * np.pi - between, travel)

@@ -1,0 +1,82 @@
+"""The transmission angle of a triad: a link on three legs, each pinned to the input link or to the ground.
+
+The pin of a two-force member pushes along the leg; the transmission angle there is the angle between the leg and the
+normal of the path on which it pushes (Alt's definition; Norton, Sec. 4.10, for the fourbar). Of the three legs two have
+their outer pins on one link, input or ground, and give the carried link one freedom relative to it. In that motion the
+inner pin of the third leg moves along v, and with the leg's direction e the sine is
+
+    sin μ = e · v / |v|.
+
+It vanishes where the three legs meet in one point or are parallel, which is a toggle. The twist of the carried link,
+(v, ω) with v at the third pin, is at right angles to both other legs' lines: e_i · v + (q_i × e_i) ω = 0, with q_i the
+inner pins from the third one; so it is the vector product of the two rows, legs that are parallel included.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Leg(NamedTuple):
+    """A link with an outer pin on the input link or the ground, and an inner pin on the carried link."""
+
+    link: str
+    outer: str
+    inner: str
+
+
+class Triad(NamedTuple):
+    """Two legs that guide the carried link relative to one link, and the third."""
+
+    guides: tuple[Leg, Leg]
+    third: Leg
+
+
+def triad_of(mechanism: Mechanism) -> Triad | None:
+    """The triad of a class III mechanism of four links beside input and ground; None where its links join otherwise."""
+    moving = [name for name in mechanism.links if name not in (GROUND, mechanism.input)]
+    if len(moving) != 4 or mechanism.slides or mechanism.gears:
+        return None
+    for carried in moving:
+        legs: dict[str, list[Leg]] = {GROUND: [], mechanism.input: []}
+        for name in moving:
+            if name == carried:
+                continue
+            inner = [joint for joint in mechanism.links[name] if joint in mechanism.links[carried]]
+            for end, listed in legs.items():
+                outer = [joint for joint in mechanism.links[name] if joint in mechanism.links[end]]
+                if len(inner) == len(outer) == 1 and inner != outer:
+                    listed.append(Leg(name, outer[0], inner[0]))
+        counts = sorted(len(listed) for listed in legs.values())
+        if counts == [1, 2]:
+            one, two = sorted(legs.values(), key=len)
+            return Triad((two[0], two[1]), one[0])
+    return None
+
+
+def triad_sine(triad: Triad, joints: dict[str, Complex]) -> Real:
+    """Sine of the transmission angle at the third leg, signed; the joints' shape. 0 where its pin cannot move."""
+    pin = joints[triad.third.inner]
+    with np.errstate(divide="ignore", invalid="ignore"):  # NaN where the mechanism cannot be assembled
+        e1, e2 = (_direction(joints, leg) for leg in triad.guides)
+        q1, q2 = (joints[leg.inner] - pin for leg in triad.guides)
+        m1, m2 = np.imag(np.conj(q1) * e1), np.imag(np.conj(q2) * e2)
+        moved = (e1.imag * m2 - m1 * e2.imag) + 1j * (m1 * e2.real - e1.real * m2)
+        sine = np.real(np.conj(_direction(joints, triad.third)) * moved) / np.abs(moved)
+    return np.asarray(np.where(moved == 0.0, 0.0, sine))
+
+
+def _direction(joints: dict[str, Complex], leg: Leg) -> Complex:
+    vector = joints[leg.inner] - joints[leg.outer]
+    return np.asarray(vector / np.abs(vector))
+
+
+__all__ = ["Leg", "Triad", "triad_of", "triad_sine"]

@@ -1,0 +1,512 @@
+"""Mechanisms that no sequence of dyads closes (class III), followed from the reference by certified continuation.
+
+With u_l = e^{iφ_l} for the links in motion and z = e^{i(θ − θ_ref)} for the input, every loop of pins is linear in
+them,
+
+    F(φ, θ) = C u + k z + c = 0,
+
+one complex row a loop, as many real equations as unknown rotations φ. A solution is followed in θ by steps that cannot
+leap to another: by the affine covariant Newton–Kantorovich theorem (Deuflhard and Heindl, SIAM J. Numer. Anal. 16
+(1979) 1), with J = ∂F/∂φ at the solution φ for θ, there is just one solution in a ball around φ for every θ' with
+
+    η ω ≤ 1/2,    η ≥ ‖J⁻¹ k (z' − z)‖,    ω ≥ ‖J⁻¹ (J(φ₂) − J(φ₁))‖ / ‖φ₂ − φ₁‖ in the ball, of radius 2η;
+
+the ball is the same for all of them, so it is the continuation of φ. Near a toggle J⁻¹ grows along one direction, which
+the rates of the links, t, tend to. Hence the norm is ‖φ‖ = max |y| with φ = y₀ t + ε (y₁, …), the last on all links but
+the fastest: across t it may be as fine as makes the step longest. With A = J⁻¹ C u in these coordinates the second
+derivative is Re A, known at φ, and over the ball it changes by no more than |A| times the links' rotations; so
+ω = ω₀ + 2 η ω₁, and η may be as large as 1/(ω₀ + √(ω₀² + 4 ω₁)), for each row of A. So a toggle is approached by steps
+that are a good part of the distance to it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Indices = NDArray[np.int64]
+
+STALLED = 1e-12
+"""A certified step below this, radians, means a toggle: its distance is up to a hundred times as large, 1e-10."""
+
+CONVERGED = 1e-14
+"""Newton's correction, radians, at which a position counts as solved."""
+
+
+MOST_NODES = 100_000
+"""Certified steps at most: links of very different lengths need more than can be waited for, and what lies beyond is
+then given as not reached."""
+
+NODES_AT_ONCE = 256
+"""Steps between two looks at how far the track has come, at first; then as many as there are already."""
+
+CERTAIN = 0.9
+"""Part of the certified step that is taken: at its end Newton's method would no longer converge quadratically."""
+
+LEAST_SHARE = 1e-9
+"""Least ε in the norm of the certificate; at a toggle's distance of 1e-10 the best is some 1e-5."""
+
+LOST = 1e-12
+"""Reciprocal condition of the equations below which derivatives are undefined: no digits would be left."""
+
+FULL_TURN = 2.0 * np.pi
+
+NEWTON_STEPS = 20
+"""Steps at most; from inside the ball three or four do."""
+
+FEW_STEPS = 3
+"""Steps after which one that is not half the one before is rounding: in the ball each is at most half the last."""
+
+CLOSED = 1e-13
+"""Misfit of the loops, as a part of the size, that a position may have: where the equations are all but singular,
+rounding may keep Newton's method from where the theorem has it, and there is no position to give."""
+
+
+class Loops(NamedTuple):
+    """Loop equations of one design: C (loops, links), k and c (loops,), and the names of the unknown links in order."""
+
+    coefficients: Complex
+    by_input: Complex
+    fixed: Complex
+    links: tuple[str, ...]
+
+
+def loop_equations(mechanism: Mechanism, joints: dict[str, complex]) -> Loops:
+    """Loops of a pin-jointed mechanism from a tree of its links; ``joints`` are one design's, in unit coordinates.
+
+    Raises
+    ------
+    TopologyError
+        For a mechanism with slides or gears, or driven by a slide.
+    """
+    if mechanism.slides or mechanism.gears:
+        raise TopologyError("a mechanism with slides or gears must close by dyads; this one does not")
+    unknown = tuple(link for link in mechanism.links if link not in (GROUND, mechanism.input))
+    column = {link: n for n, link in enumerate(unknown)}
+    width = len(unknown) + 2  # unknown links, input, ground
+
+    def along(link: str, start: str, end: str) -> Complex:
+        row = np.zeros(width, np.complex128)
+        index = column.get(link, width - 2 if link == mechanism.input else width - 1)
+        row[index] = joints[end] - joints[start]
+        return row
+
+    # Where a joint is, as a row over (unknown links, input, ground), by each link that carries it.
+    place: dict[str, Complex] = {}
+    reached = [GROUND]
+    for joint in mechanism.links[GROUND]:
+        place[joint] = np.zeros(width, np.complex128)
+        place[joint][-1] = joints[joint]
+    rows: list[Complex] = []
+    waiting = [mechanism.input, *unknown]
+    while waiting:
+        link = next((w for w in waiting if any(j in place for j in mechanism.links[w])), None)
+        if link is None:
+            raise TopologyError(f"the link {waiting[0]!r} is not joined to the rest")
+        waiting.remove(link)
+        reached.append(link)
+        pin = next(j for j in mechanism.links[link] if j in place)
+        for joint in mechanism.links[link]:
+            here = place[pin] + along(link, pin, joint)
+            if joint in place and joint != pin:
+                rows.append(here - place[joint])
+            elif joint not in place:
+                place[joint] = here
+    matrix = np.array(rows)
+    return Loops(
+        np.ascontiguousarray(matrix[:, : len(unknown)]),
+        np.ascontiguousarray(matrix[:, -2]),
+        np.ascontiguousarray(matrix[:, -1]),
+        unknown,
+    )
+
+
+class Track:
+    """The solutions of one design's loops along its input, as far as they have been asked for.
+
+    Certified steps from the reference are kept: each *node* is an input rotation with its solution, and has the next
+    node at the end of its certified step. Whatever lies between is Newton's method away from a node.
+    """
+
+    def __init__(self, loops: Loops) -> None:
+        self._loops = loops
+        self._sides = {side: _Side(loops, side) for side in (1.0, -1.0)}
+
+    @property
+    def first_step(self) -> float:
+        """The step that is certified at the reference, radians; below ``STALLED`` that is a toggle."""
+        return self._sides[1.0].first_step
+
+    def at(self, rotation: Real) -> Real:
+        """Rotations of the unknown links for input rotations from the reference; NaN where no way leads there.
+
+        An input is reached by its own rotation, or, where a toggle lies before it, by the least rotation that differs
+        from that by full turns.
+
+        Parameters
+        ----------
+        rotation : float, shape (N,)
+            Input rotations, radians, in any order, not reduced by full turns.
+
+        Returns
+        -------
+        float, shape (links, N)
+        """
+        found = self.followed(rotation)
+        lost = np.flatnonzero(np.isnan(found[0]) & np.isfinite(rotation))
+        least = np.mod(rotation + np.pi, FULL_TURN) - np.pi
+        turns = 0
+        while len(lost) and not all(side.ended_before(FULL_TURN * (turns - 0.5)) for side in self._sides.values()):
+            for away in (-1.0, 1.0) if turns else (0.0,):
+                found[:, lost] = self.followed(least[lost] + away * np.copysign(FULL_TURN * turns, least[lost]))
+                lost = lost[np.isnan(found[0, lost])]
+            turns += 1
+        return found
+
+    @property
+    def given_up(self) -> bool:
+        """Whether a way was so long that it was left before its end: what is not reached may then exist."""
+        return any(side.given_up for side in self._sides.values())
+
+    def followed(self, rotation: Real) -> Real:
+        """The same, each input by its own rotation only: NaN where a toggle lies before it."""
+        found = np.full((len(self._loops.links), len(rotation)), np.nan)
+        for sign, side in self._sides.items():
+            chosen = np.flatnonzero(sign * rotation >= 0.0)
+            if len(chosen):
+                found[:, chosen] = side.at(rotation[chosen])
+        return found
+
+
+class _Side:
+    """The nodes of a track in one sense of rotation; the input is counted positive in it."""
+
+    def __init__(self, loops: Loops, sign: float) -> None:
+        self._equations = loops.coefficients, loops.by_input, loops.fixed
+        self._sign = sign
+        self._nodes, self._reach = np.zeros(1), np.zeros(1)
+        self._angles = np.zeros((1, len(loops.links)))
+        self._ended = self.given_up = False
+        self._reach[0] = _reach(*self._equations, 0.0, self._angles[0])
+
+    @property
+    def first_step(self) -> float:
+        return float(self._reach[0])
+
+    def ended_before(self, rotation: float) -> bool:
+        """Whether a toggle lies within this rotation."""
+        self._extend(rotation)
+        return self._ended and float(self._nodes[-1] + self._reach[-1]) < rotation
+
+    def at(self, rotation: Real) -> Real:
+        ahead = self._sign * rotation
+        self._extend(float(ahead.max()))
+        node = np.searchsorted(self._nodes, ahead, side="right") - 1
+        found = np.full((len(rotation), self._angles.shape[1]), np.nan)
+        _near(*self._equations, self._sign * self._nodes, self._reach, self._angles, node, rotation, found)
+        return found.T
+
+    def _extend(self, target: float) -> None:
+        while not self._ended and self._nodes[-1] + self._reach[-1] < target:
+            if len(self._nodes) > MOST_NODES:
+                self._ended = self.given_up = True
+                return
+            room = max(NODES_AT_ONCE, min(len(self._nodes), MOST_NODES - len(self._nodes) + 2))
+            nodes, reach, angles = np.empty(room), np.empty(room), np.empty((room, self._angles.shape[1]))
+            nodes[0], reach[0], angles[0] = self._nodes[-1], self._reach[-1], self._angles[-1]
+            count, self._ended, lost = _march(*self._equations, self._sign, target, nodes, reach, angles)
+            self.given_up = self.given_up or lost
+            self._nodes = np.concatenate([self._nodes, nodes[1:count]])
+            self._reach = np.concatenate([self._reach, reach[1:count]])
+            self._angles = np.concatenate([self._angles, angles[1:count]])
+
+
+def rates(loops: Loops, rotation: Real, angles: Real, input_rates: Real) -> Real:
+    """Time derivatives of the unknown rotations, shape (n, links, N); NaN at toggles.
+
+    ``input_rates`` holds the input's speed, acceleration and jerk, or the first n of them, shape (n, N).
+    """
+    out = np.empty((len(input_rates), *angles.shape))
+    _rates(loops.coefficients, loops.by_input, rotation, angles, input_rates, out)
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> float:
+    """The certified step at a solution; 0 where the equations are singular."""
+    links = len(phi)
+    value, inverse = np.empty(links), np.empty((links, links))
+    _evaluate(c, k, fixed, phi, at, value, inverse)
+    return _certified(c, k, phi, at, inverse) if np.isfinite(_invert(inverse)) else 0.0
+
+
+@njit(cache=True, nogil=True)
+def _march(
+    c: Complex, k: Complex, fixed: Complex, sign: float, target: float, nodes: Real, reach: Real, angles: Real
+) -> tuple[int, bool, bool]:
+    """Nodes until the target is passed, the first of them known: how many, whether they end there, at a toggle or lost,
+    and whether lost."""
+    links = c.shape[1]
+    phi, value = angles[0].copy(), np.empty(links)
+    inverse, slope = np.empty((links, links)), np.empty(links)
+    _evaluate(c, k, fixed, phi, sign * nodes[0], value, inverse)
+    _invert(inverse)
+    for n in range(1, len(nodes)):
+        step = reach[n - 1]
+        if step < STALLED:
+            return n, True, False
+        if nodes[n - 1] + step >= target:
+            return n, False, False
+        at, to = sign * nodes[n - 1], sign * (nodes[n - 1] + step)
+        if not _newton(c, k, fixed, phi, at, to, value, inverse, slope):
+            return n, True, True
+        nodes[n], angles[n] = nodes[n - 1] + step, phi
+        # Newton's last inverse is that of the solution but for a correction of rounding size.
+        reach[n] = _certified(c, k, phi, to, inverse) if np.isfinite(inverse).all() else 0.0
+    return len(nodes), False, False
+
+
+@njit(cache=True, nogil=True)
+def _near(
+    c: Complex,
+    k: Complex,
+    fixed: Complex,
+    nodes: Real,
+    reach: Real,
+    angles: Real,
+    node: Indices,
+    rotation: Real,
+    found: Real,
+) -> None:
+    """Solutions at rotations within the certified steps of their nodes; those beyond stay as they are."""
+    links = c.shape[1]
+    value, slope, inverse = np.empty(links), np.empty(links), np.empty((links, links))
+    for n in range(len(rotation)):
+        at = nodes[node[n]]
+        if not abs(rotation[n] - at) <= reach[node[n]]:
+            continue
+        phi = found[n]
+        phi[:] = angles[node[n]]
+        if rotation[n] != at:
+            _evaluate(c, k, fixed, phi, at, value, inverse)
+            _invert(inverse)
+            if not _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope):
+                phi[:] = np.nan
+
+
+@njit(cache=True, nogil=True)
+def _newton(
+    c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, to: float, value: Real, inverse: Real, slope: Real
+) -> bool:
+    """Move a solution at one input to another within its certified step; ``inverse`` is J⁻¹ before and after.
+
+    Returns whether the loops close there.
+    """
+    loops = len(k)
+    turned = 1j * complex(math.cos(at), math.sin(at)) * (to - at)
+    for row in range(loops):
+        slope[row] = (k[row] * turned).real
+        slope[row + loops] = (k[row] * turned).imag
+    _subtract(phi, inverse, slope)
+    last = np.inf
+    for n in range(NEWTON_STEPS):
+        _evaluate(c, k, fixed, phi, to, value, inverse)
+        _invert(inverse)
+        change = _subtract(phi, inverse, value)
+        if change < CONVERGED:
+            return True
+        if n > FEW_STEPS and change > 0.5 * last:
+            break
+        last = change
+    _evaluate(c, k, fixed, phi, to, value, inverse)
+    misfit = np.abs(value).max()
+    _invert(inverse)
+    return bool(misfit < CLOSED)
+
+
+@njit(cache=True, nogil=True)
+def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, out: Real) -> None:
+    """Solve the differentiated loops, order by order: J φ⁽ⁿ⁾ = −(what the lower orders give)."""
+    loops, links = c.shape
+    value, inverse, right = np.empty(links), np.empty((links, links)), np.empty(links)
+    phi, solved = np.empty(links), np.empty((3, links))
+    none = np.zeros(loops, np.complex128)
+    for n in range(len(rotation)):
+        for link in range(links):
+            phi[link] = angles[link, n]
+        _evaluate(c, k, none, phi, rotation[n], value, inverse)
+        largest = 0.0
+        for row in range(links):
+            total = 0.0
+            for col in range(links):
+                total += abs(inverse[row, col])
+            largest = max(largest, total)
+        sound = _invert(inverse) * largest < 1.0 / LOST
+        w1 = given[0, n]
+        w2 = given[1, n] if len(given) > 1 else 0.0
+        w3 = given[2, n] if len(given) > 2 else 0.0
+        z = complex(math.cos(rotation[n]), math.sin(rotation[n]))
+        for order in range(len(given)):
+            if order == 0:
+                turned = 1j * w1 * z
+            elif order == 1:
+                turned = complex(-w1 * w1, w2) * z
+            else:
+                turned = complex(-3.0 * w1 * w2, w3 - w1**3) * z
+            for row in range(loops):
+                total_z = k[row] * turned
+                for link in range(links):
+                    u = complex(math.cos(phi[link]), math.sin(phi[link]))
+                    if order == 1:
+                        total_z += c[row, link] * u * -(solved[0, link] ** 2)
+                    elif order == 2:
+                        total_z += (
+                            c[row, link]
+                            * u
+                            * complex(-3.0 * solved[0, link] * solved[1, link], -(solved[0, link] ** 3))
+                        )
+                right[row], right[row + loops] = total_z.real, total_z.imag
+            for link in range(links):
+                total = 0.0
+                for col in range(links):
+                    total -= inverse[link, col] * right[col]
+                solved[order, link] = total
+                out[order, link, n] = total if sound else np.nan
+
+
+@njit(cache=True, nogil=True)
+def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> float:
+    """The step within which the continuation is the only solution, less a tenth."""
+    loops, links = c.shape
+    z = complex(math.cos(at), math.sin(at))
+    rate, bend = np.empty(links), np.empty(links)
+    a = np.empty((links, links), np.complex128)
+    for row in range(links):
+        by_input = 0j
+        for loop in range(loops):
+            by_input += complex(inverse[row, loop], -inverse[row, loop + loops]) * k[loop]
+        by_input *= z
+        rate[row], bend[row] = by_input.imag, by_input.real
+    fastest = np.argmax(np.abs(rate))
+    eta = max(abs(rate[fastest]), 1e-300)
+    t = rate / (eta if rate[fastest] >= 0.0 else -eta)
+    t[fastest] = 1.0
+    for col in range(links):
+        u = complex(math.cos(phi[col]), math.sin(phi[col]))
+        for row in range(links):
+            by_link = 0j
+            for loop in range(loops):
+                by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
+            a[row, col] = by_link * u
+    for row in range(links):
+        if row != fastest:
+            bend[row] -= t[row] * bend[fastest]
+            for col in range(links):
+                a[row, col] -= t[row] * a[fastest, col]
+    along, across, beside = np.zeros(links), np.zeros(links), np.zeros(links)
+    for row in range(links):
+        for col in range(links):
+            along[row] += a[row, col].real * t[col] * t[col]
+            if col != fastest:
+                across[row] += 2.0 * abs(a[row, col].real * t[col])
+                beside[row] += abs(a[row, col].real)
+    best, share = 0.0, 1.0
+    while share > LEAST_SHARE:
+        ball = np.inf
+        for row in range(links):
+            second = abs(along[row]) + share * (across[row] + share * beside[row])
+            third = 0.0
+            for col in range(links):
+                weight = abs(t[col]) + (share if col != fastest else 0.0)
+                third += abs(a[row, col]) * weight**3
+            if row != fastest:
+                second, third = second / share, third / share
+            ball = min(ball, 1.0 / max(second + math.sqrt(second * second + 4.0 * third), 1e-300))
+        step = 2.0 * ball / (eta + math.sqrt(eta * eta + 2.0 * abs(bend[fastest]) * ball))
+        for row in range(links):
+            if row != fastest and bend[row] != 0.0:
+                step = min(step, math.sqrt(2.0 * share * ball / abs(bend[row])))
+        if step <= best:
+            break
+        best, share = step, share * 0.5
+    return CERTAIN * best
+
+
+@njit(cache=True, nogil=True)
+def _evaluate(c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, value: Real, jacobian: Real) -> None:
+    loops, links = c.shape
+    z = complex(math.cos(at), math.sin(at))
+    for row in range(loops):
+        total = k[row] * z + fixed[row]
+        for col in range(links):
+            term = c[row, col] * complex(math.cos(phi[col]), math.sin(phi[col]))
+            total += term
+            jacobian[row, col] = -term.imag
+            jacobian[row + loops, col] = term.real
+        value[row] = total.real
+        value[row + loops] = total.imag
+
+
+@njit(cache=True, nogil=True)
+def _subtract(phi: Real, matrix: Real, vector: Real) -> float:
+    """phi -= matrix · vector, in place; the largest change."""
+    largest = 0.0
+    for row in range(len(phi)):
+        change = 0.0
+        for col in range(len(vector)):
+            change += matrix[row, col] * vector[col]
+        phi[row] -= change
+        largest = max(largest, abs(change))
+    return largest
+
+
+@njit(cache=True, nogil=True)
+def _invert(matrix: Real) -> float:
+    """Invert in place by Gauss–Jordan elimination with row pivoting; the largest row sum of the inverse.
+
+    The matrices have a few rows, and are inverted at every step: a library call would cost more than the work.
+    """
+    n = len(matrix)
+    order = np.arange(n)
+    for col in range(n):
+        pivot = col
+        for row in range(col + 1, n):
+            if abs(matrix[row, col]) > abs(matrix[pivot, col]):
+                pivot = row
+        if matrix[pivot, col] == 0.0:
+            return np.inf
+        if pivot != col:
+            for j in range(n):
+                matrix[col, j], matrix[pivot, j] = matrix[pivot, j], matrix[col, j]
+            order[col], order[pivot] = order[pivot], order[col]
+        scale = 1.0 / matrix[col, col]
+        matrix[col, col] = 1.0
+        for j in range(n):
+            matrix[col, j] *= scale
+        for row in range(n):
+            if row != col:
+                factor = matrix[row, col]
+                matrix[row, col] = 0.0
+                for j in range(n):
+                    matrix[row, j] -= factor * matrix[col, j]
+    norm = 0.0
+    unordered = matrix.copy()
+    for row in range(n):
+        total = 0.0
+        for col in range(n):
+            matrix[row, order[col]] = unordered[row, col]
+            total += abs(unordered[row, col])
+        norm = max(norm, total)
+    return norm

@@ -1,0 +1,29 @@
+"""The slider-crank in closed form: motion, limits, and what it does over a range of crank angles."""
+
+from kinematics.linkage.slider_crank.closed_form import (
+    CrankLimits,
+    SliderCrank,
+    SliderDerivatives,
+    SliderMotion,
+    SliderPositions,
+    coupler_points,
+    crank_limits,
+    full_rotation,
+    motion,
+    positions,
+    toggle_angles,
+)
+
+__all__ = [
+    "CrankLimits",
+    "SliderCrank",
+    "SliderDerivatives",
+    "SliderMotion",
+    "SliderPositions",
+    "coupler_points",
+    "crank_limits",
+    "full_rotation",
+    "motion",
+    "positions",
+    "toggle_angles",
+]

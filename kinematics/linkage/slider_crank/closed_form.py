@@ -1,0 +1,296 @@
+"""The slider-crank driven at its crank: position, velocity, acceleration and jerk in closed form.
+
+O2 is the fixed pivot of the crank, A the pin between crank and coupler, B the pin of the slider on the *slide*, a fixed
+line with a direction, P the coupler point. Lengths are Norton's a (crank), b (coupler) and c, the offset: how far the
+slide passes to the left of the pivot, looking along the slide.
+
+Position. In the frame of the slide, x along it, the crank is k = a e^{i(θ2 − φ)} and the coupler u = B − A reaches from
+height k_y to the slide (Norton 4.16 and 4.17 without their angles):
+
+    u_y = c − k_y,        u_x = σ √((b − u_y)(b + u_y)),        σ = +1 open, −1 crossed
+
+Derivatives. B moves along the slide only, so that the part across of each derivative of k + u vanishes, which gives the
+coupler's rates, and the part along is the slider's (Norton 6.20 ff., 7.15 ff.). The divisor is u_x: at a toggle, where
+the coupler stands across the slide, the derivatives do not exist and are marked invalid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinematics.linkage.batch import (
+    OPEN,
+    Complex,
+    CouplerPoints,
+    Mask,
+    Real,
+    block,
+    fields,
+    one_shape,
+    rate_rows,
+    require,
+    sweep,
+)
+from kinematics.linkage.slider_crank import kernels
+
+
+@dataclass(frozen=True, eq=False)
+class SliderCrank:
+    """A batch of slider-cranks; all fields are kept with one shape, the *designs*. One design has shape ``()``.
+
+    A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
+
+    Parameters
+    ----------
+    pivot : complex
+        Fixed pivot O2 of the crank.
+    slide_point : complex
+        A point of the slide, from which the slider's travel is counted.
+    slide_angle : float
+        Direction of the slide, radians.
+    crank, coupler : float
+        Lengths a and b; positive.
+    coupler_point : complex
+        P in the coupler's frame: origin at A, real axis towards B. Default: A itself.
+
+    Raises
+    ------
+    DimensionError
+        For a length that is not positive and finite, or a point or angle that is not finite.
+    ShapeError
+        For fields that do not broadcast.
+    """
+
+    pivot: Complex
+    slide_point: Complex
+    slide_angle: Real
+    crank: Real
+    coupler: Real
+    coupler_point: Complex
+
+    def __init__(
+        self,
+        pivot: ArrayLike,
+        slide_point: ArrayLike,
+        slide_angle: ArrayLike,
+        crank: ArrayLike,
+        coupler: ArrayLike,
+        coupler_point: ArrayLike = 0.0,
+    ) -> None:
+        o2, on_slide, point = (np.asarray(z, np.complex128) for z in (pivot, slide_point, coupler_point))
+        angle, a, b = (np.asarray(x, np.float64) for x in (slide_angle, crank, coupler))
+        named = {"pivot": o2, "slide_point": on_slide, "coupler_point": point, "slide_angle": angle}
+        lengths_named = {"crank": a, "coupler": b}
+        designs = one_shape(**{name: field.shape for name, field in (named | lengths_named).items()})
+        pivots, lengths = (
+            block((o2, on_slide, point), designs, np.complex128),
+            block((a, b, angle), designs, np.float64),
+        )
+        if not kernels.sound_dimensions(pivots.reshape(3, -1), lengths.reshape(3, -1)):
+            for name, length in lengths_named.items():
+                require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+            for name, field in named.items():
+                require(name, "finite", field, np.isfinite(field))
+        self.__dict__.update(
+            pivot=pivots[0, ...],
+            slide_point=pivots[1, ...],
+            coupler_point=pivots[2, ...],
+            crank=lengths[0, ...],
+            coupler=lengths[1, ...],
+            slide_angle=lengths[2, ...],
+            _blocks=(pivots, lengths),
+        )
+
+    @property
+    def blocks(self) -> tuple[Complex, Real]:
+        """The fields as the kernels take them: O2, a point of the slide, P; a, b, the slide's angle; shape (3,) + S."""
+        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
+        return blocks
+
+    def __reduce__(self) -> tuple[type[SliderCrank], tuple[Complex | Real, ...]]:
+        given = self.pivot, self.slide_point, self.slide_angle, self.crank, self.coupler, self.coupler_point
+        return SliderCrank, given
+
+    @classmethod
+    def from_lengths(
+        cls, crank: ArrayLike, coupler: ArrayLike, offset: ArrayLike = 0.0, coupler_point: ArrayLike = 0.0
+    ) -> SliderCrank:
+        """Slider-crank of Norton's a, b, c with O2 at the origin, the slide along +x, its travel counted from x = 0."""
+        return cls(0.0, 1j * np.asarray(offset, np.float64), 0.0, crank, coupler, coupler_point)
+
+    @cached_property
+    def offset(self) -> Real:
+        """Norton's c, shape designs: signed distance from the pivot to the slide, positive to its left."""
+        return np.asarray(((self.slide_point - self.pivot) * np.exp(-1j * self.slide_angle)).imag)
+
+
+class SliderPositions(NamedTuple):
+    """Configuration over designs × crank angles. Where ``valid`` is False the numbers are NaN.
+
+    ``coupler_angle`` (of A → B) is absolute, radians in (−π, π]; ``travel`` is how far B stands along the slide from
+    the slide's point.
+    """
+
+    valid: Mask
+    a: Complex
+    b: Complex
+    p: Complex
+    coupler_angle: Real
+    travel: Real
+
+
+class SliderDerivatives(NamedTuple):
+    """One time derivative of the motion: rates of the coupler in rad/s^n, points and travel in length/s^n."""
+
+    valid: Mask
+    a: Complex
+    b: Complex
+    p: Complex
+    coupler: Real
+    travel: Real
+
+
+class SliderMotion(NamedTuple):
+    """Positions with velocities, accelerations and jerks."""
+
+    position: SliderPositions
+    velocity: SliderDerivatives
+    acceleration: SliderDerivatives
+    jerk: SliderDerivatives
+
+
+def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> SliderPositions:
+    """Closed-form positions for every design at every crank angle (Norton 4.16, 4.17).
+
+    Parameters
+    ----------
+    linkage : SliderCrank
+        Designs of shape S.
+    crank_angle : float
+        Absolute crank angles θ2, radians, as for :func:`kinematics.linkage.positions`.
+    assembly : int
+        +1 open (B farther along the slide) or −1 crossed, shape S or scalar.
+
+    Returns
+    -------
+    SliderPositions
+        Arrays of shape S + (N,).
+
+    Raises
+    ------
+    DimensionError
+        For an assembly that is neither +1 nor −1.
+    ShapeError
+        For angles or assemblies that do not broadcast with the designs.
+
+    Examples
+    --------
+    Norton, Table P4-2, row a:
+
+    >>> at = positions(SliderCrank.from_lengths(1.4, 4.0, 1.0), np.radians(45.0))
+    >>> round(float(at.travel), 4)
+    4.9899
+    """
+    at = sweep(linkage.blocks, crank_angle, assembly)
+    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
+    kernels.whole_positions(*at[:4], points, angles, valid)
+    points, angles = points.reshape(3, *at.shape), angles.reshape(2, *at.shape)
+    return SliderPositions(*fields(valid.reshape(at.shape), points, angles))
+
+
+def coupler_points(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
+    """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
+    at = sweep(linkage.blocks, crank_angle, assembly)
+    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
+    kernels.coupler_points(*at[:4], points, valid)
+    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+
+
+def motion(
+    linkage: SliderCrank,
+    crank_angle: ArrayLike,
+    assembly: ArrayLike = OPEN,
+    *,
+    speed: ArrayLike = 1.0,
+    acceleration: ArrayLike = 0.0,
+    jerk: ArrayLike = 0.0,
+) -> SliderMotion:
+    """Positions and their first three time derivatives.
+
+    Parameters
+    ----------
+    linkage, crank_angle, assembly
+        As for :func:`positions`.
+    speed, acceleration, jerk : float
+        Crank θ2', θ2'', θ2''' in rad/s, rad/s², rad/s³, making one shape with the positions. With the defaults
+        the results are derivatives with respect to the crank angle.
+
+    Returns
+    -------
+    SliderMotion
+        Derivatives are invalid (NaN) where the position is, and at toggles.
+
+    Raises
+    ------
+    DimensionError, ShapeError
+        As for :func:`positions`; ShapeError also for rates that do not broadcast with them.
+    """
+    at = sweep(linkage.blocks, crank_angle, assembly)
+    given = np.asarray(speed, np.float64), np.asarray(acceleration, np.float64), np.asarray(jerk, np.float64)
+    if any(rate.ndim for rate in given):
+        named = dict(zip(("speed", "acceleration", "jerk"), (rate.shape for rate in given), strict=True))
+        shape = one_shape(positions=at.shape, **named)
+        at = sweep(linkage.blocks, crank_angle, assembly, shape)
+    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
+    valid = np.empty((2, *at.flat), np.bool_)
+    kernels.whole_motion(*at[:4], rate_rows(*given, at.shape), points, angles, valid)
+    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
+    valid = valid.reshape(2, *at.shape)
+    position, sound = SliderPositions(*fields(valid[0, ...], points[0], angles[0])), valid[1, ...]
+    return SliderMotion(position, *(SliderDerivatives(*fields(sound, points[k], angles[k])) for k in (1, 2, 3)))
+
+
+class CrankLimits(NamedTuple):
+    """Where B can be on the slide: the heights k_y = a sin(θ2 − φ) of A from ``lower`` to ``upper``, shape designs.
+
+    A stands between c − b and c + b across the slide. The masks say whether the crank meets that end, a toggle with the
+    coupler square to the slide; NaN where no position exists.
+    """
+
+    lower: Real
+    upper: Real
+    lower_toggle: Mask
+    upper_toggle: Mask
+
+
+def crank_limits(linkage: SliderCrank) -> CrankLimits:
+    """Heights between which A moves: those of the crank circle that the coupler can reach the slide from."""
+    a, b, c = linkage.crank, linkage.coupler, linkage.offset
+    sound = np.abs(c) <= a + b
+    lower, upper = np.maximum(c - b, -a), np.minimum(c + b, a)
+    return CrankLimits(
+        np.where(sound, lower, np.nan), np.where(sound, upper, np.nan), sound & (c - b >= -a), sound & (c + b <= a)
+    )
+
+
+def full_rotation(linkage: SliderCrank) -> Mask:
+    """Whether the crank turns through without a toggle: a + |c| < b."""
+    return np.asarray(linkage.crank + np.abs(linkage.offset) < linkage.coupler)
+
+
+def toggle_angles(linkage: SliderCrank) -> Real:
+    """Absolute crank angles of all toggles of one design, radians in (−π, π], ascending; empty for a full crank.
+
+    The coupler is square to the slide there: a sin(θ2 − φ) = c ∓ b.
+    """
+    limits, a = crank_limits(linkage), float(linkage.crank)
+    found = [float(limits.lower)] * bool(limits.lower_toggle) + [float(limits.upper)] * bool(limits.upper_toggle)
+    first = np.array([np.arctan2(y, np.sqrt((a - y) * (a + y))) for y in found])
+    angles = np.concatenate([first, np.pi - first]) + linkage.slide_angle
+    wrapped = np.pi - np.mod(np.pi - angles, 2.0 * np.pi)
+    return np.unique(np.where(wrapped <= -np.pi, np.pi, wrapped))

@@ -1,0 +1,86 @@
+"""The inspection table of a cam as CSV: program, contact and profile at each cam angle.
+
+Displacement and its derivatives are the program's; pressure angle and radius of curvature are measured on the profile
+by the analysis core. The polar columns are what a dial indicator on a rotary table shows. Columns name their units;
+lines that begin with ``#`` say what the table is of.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.render.cam.scene import CamScene
+from service.render.page.svg import clean
+from synthesis.kinds.cam.design import CamDesign
+from synthesis.kinds.cam.problem import CamProblem
+
+
+def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
+    """The inspection table of a cam design; numbers in full precision, nothing where there is none."""
+    scene, unit = CamScene(design.mechanism), problem.length_unit
+    table, contact = design.mechanism.program, scene.contact
+    pitch, profile = scene.pitch_curve, contact.point
+    s_unit, rate = ("deg", "rad") if scene.oscillating else (unit, unit)
+    columns: dict[str, object] = {
+        "cam_angle [deg]": table.angle,
+        f"s [{s_unit}]": table.s,
+        f"v [{rate}/rad]": table.v,
+        f"a [{rate}/rad^2]": table.a,
+        f"j [{rate}/rad^3]": table.j,
+        "pressure_angle [deg]": np.degrees(contact.pressure_angle),
+        f"radius_of_curvature [{unit}]": contact.radius,
+        f"profile_x [{unit}]": profile.real,
+        f"profile_y [{unit}]": profile.imag,
+        f"profile_radius [{unit}]": np.abs(profile),
+        "profile_polar_angle [deg]": _polar(profile),
+    }
+    if scene.roller and len(pitch) == len(scene.angle):
+        columns |= {
+            f"roller_centre_x [{unit}]": pitch.real,
+            f"roller_centre_y [{unit}]": pitch.imag,
+            f"roller_centre_radius [{unit}]": np.abs(pitch),
+            "roller_centre_polar_angle [deg]": _polar(pitch),
+        }
+    wall = scene.outer_wall
+    if wall is not None and len(wall) == len(scene.angle):
+        columns |= {f"outer_wall_x [{unit}]": wall.real, f"outer_wall_y [{unit}]": wall.imag}
+    follower = design.mechanism.follower
+    given = {name: value for name, value in follower.model_dump().items() if value is not None and name != "type"}
+    remarks = [f"{follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}"]
+    remarks += [", ".join(f"{name} {value:.12g}" for name, value in given.items())] if given else []
+    remarks.append("x and y in the cam's own frame, the follower on +x at cam angle 0")
+    return table_text(clean(title) or "Cam", remarks, columns)
+
+
+def table_text(title: str, remarks: Sequence[str], columns: Mapping[str, object]) -> str:
+    """Columns of numbers below lines that begin with ``#``."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for line in (title, *remarks):
+        text.write(f"# {line}\n")
+    writer.writerow(columns)
+    for row in zip(*(np.asarray(values, dtype=np.float64).tolist() for values in columns.values()), strict=True):
+        writer.writerow([_number(value) for value in row])
+    return text.getvalue()
+
+
+def _radius(design: CamDesign) -> str:
+    mechanism = design.mechanism
+    if mechanism.prime_radius is not None:
+        return f"prime radius {mechanism.prime_radius:.12g}"
+    return f"base radius {mechanism.base_radius:.12g}"
+
+
+def _polar(points: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Degrees from 0 to 360; what is 0 but for rounding is 0."""
+    return np.asarray(np.mod(np.round(np.degrees(np.angle(points)), 9), 360.0))
+
+
+def _number(value: float) -> str:
+    return f"{value:.12g}" if math.isfinite(value) else ""

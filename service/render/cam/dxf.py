@@ -1,0 +1,173 @@
+"""A cam as DXF: profile and pitch curve as splines, the profile again as tangent arcs, circles and follower, by layers.
+
+=================  ==================================================================
+layer              what is on it
+=================  ==================================================================
+PROFILE            closed cubic spline through the profile's points, tangents kept
+PROFILE_ARCS       the same as a closed polyline of tangent arcs (biarcs); frozen
+OUTER_WALL         spline through the points of a groove's outer wall, of form-closed cams
+PITCH_CURVE        spline of the roller's centres
+PRIME_CIRCLE       prime circle of a roller's cam
+BASE_CIRCLE        base circle
+FOLLOWER           roller or face, arm and pivot at cam angle 0
+CENTRE             cross at the cam's centre, and the mark of cam angle 0
+=================  ==================================================================
+
+Coordinates are the cam's own frame in the problem's unit, which the header names.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from ezdxf.layouts.layout import Modelspace
+from numpy.typing import NDArray
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
+from service.render.cam.scene import CamScene
+from service.render.page import dxf
+from service.render.page.svg import clean
+from synthesis.kinds.cam.design import CamDesign
+from synthesis.kinds.cam.problem import CamProblem
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+LAYERS = {
+    "PROFILE": (5, "CONTINUOUS"),
+    "PROFILE_ARCS": (4, "CONTINUOUS"),
+    "OUTER_WALL": (5, "CONTINUOUS"),
+    "PITCH_CURVE": (6, "DASHED"),
+    "PRIME_CIRCLE": (8, "DOT"),
+    "BASE_CIRCLE": (8, "DASHDOT"),
+    "FOLLOWER": (30, "CONTINUOUS"),
+    "CENTRE": (7, "CONTINUOUS"),
+}
+"""Colour index and line type of each layer."""
+
+ARC_TOLERANCE = 1e-5
+"""Distance of the arcs from the points that they replace, as a share of the base radius: 0.4 µm for 40 mm."""
+
+LONGEST_RUN = 64
+"""Points that one pair of arcs replaces at most."""
+
+STRAIGHT = 1e-12
+"""Bulge below which a part is a line."""
+
+
+def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
+    """The drawing of a cam design as a DXF document (R2010)."""
+    scene = CamScene(design.mechanism)
+    document = dxf.new_drawing(clean(title) or "Cam", problem.length_unit)
+    for name, (colour, linetype) in LAYERS.items():
+        document.layers.add(name, color=colour, linetype=linetype)
+    document.layers.get("PROFILE_ARCS").freeze()
+    space = document.modelspace()
+    _closed(space, scene.contour, "PROFILE")
+    space.add_lwpolyline(
+        _biarcs(scene.contour, ARC_TOLERANCE * scene.base_radius),
+        format="xyb",
+        close=True,
+        dxfattribs={"layer": "PROFILE_ARCS"},
+    )
+    space.add_circle((0.0, 0.0), scene.base_radius, dxfattribs={"layer": "BASE_CIRCLE"})
+    if scene.outer_wall is not None:
+        _closed(space, Contour(scene.outer_wall), "OUTER_WALL")
+    if scene.roller:
+        _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
+        space.add_circle((0.0, 0.0), scene.roller.prime_radius, dxfattribs={"layer": "PRIME_CIRCLE"})
+    _follower(space, scene)
+    arm = 0.08 * scene.base_radius
+    for end in (arm, 1j * arm):
+        dxf.add_line(space, -end, end, "CENTRE")
+    dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
+    return dxf.written(document)
+
+
+def _biarcs(contour: Contour, tolerance: float) -> list[tuple[float, float, float]]:
+    """Vertices with bulges: pairs of tangent arcs over runs of points as long as they stay within a tolerance."""
+    points = np.append(contour.points, contour.points[0])
+    tangents = np.append(contour.tangents, contour.tangents[0])
+    vertices, k, last = [], 0, len(points) - 1
+    while k < last:
+        run = min(LONGEST_RUN, last - k)
+        while True:
+            pair = _biarc(
+                complex(points[k]), complex(tangents[k]), complex(points[k + run]), complex(tangents[k + run])
+            )
+            if run == 1 or _distance(points[k + 1 : k + run], pair) <= tolerance:
+                break
+            run = max(1, run // 2)
+        vertices += [(start.real, start.imag, bulge) for start, _, bulge in pair]
+        k += run
+    return vertices
+
+
+def _biarc(a: complex, ta: complex, b: complex, tb: complex) -> list[tuple[complex, complex, float]]:
+    """Two arcs, (start, end, bulge), with given ends and unit tangents and equal lengths of tangent.
+
+    With d the length of the tangents, the arcs meet at the middle of a + d ta and b − d tb, where
+    |a + d ta − (b − d tb)| = 2 d (Bolton, Computer-Aided Design 7 (1975) 29).
+    """
+    v, t = b - a, ta + tb
+    square = 2.0 * (1.0 - (ta * tb.conjugate()).real)
+    along = (v * t.conjugate()).real
+    if square > STRAIGHT:
+        d = (-along + math.sqrt(along * along + square * abs(v) ** 2)) / square
+    else:
+        d = 0.5 * abs(v) ** 2 / along
+    middle = 0.5 * (a + d * ta + b - d * tb)
+    return [(a, middle, _bulge(a, ta, middle)), (middle, b, -_bulge(b, -tb, middle))]
+
+
+def _bulge(start: complex, tangent: complex, end: complex) -> float:
+    """tan of a quarter of the arc's angle, positive to the left; the angle is twice that from tangent to chord."""
+    chord = (end - start) * tangent.conjugate()
+    return math.tan(0.5 * math.atan2(chord.imag, chord.real))
+
+
+def _distance(points: Complex, pair: list[tuple[complex, complex, float]]) -> float:
+    """Greatest distance of points from the nearer of two arcs."""
+    off = []
+    for start, end, bulge in pair:
+        if abs(bulge) < STRAIGHT:
+            along = (end - start) / abs(end - start)
+            off.append(np.abs(((points - start) * along.conjugate()).imag))
+            continue
+        centre = start + (end - start) * complex(0.5, 0.25 * (1.0 / bulge - bulge))
+        off.append(np.abs(np.abs(points - centre) - abs(start - centre)))
+    middle = pair[0][1]
+    chord = pair[1][1] - pair[0][0]
+    first = ((points - middle) * chord.conjugate()).real < 0.0
+    return float(np.where(first, *off).max())
+
+
+def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
+    """A closed curve with its own tangents at its points."""
+    around = np.append(contour.points, contour.points[0])
+    dxf.add_spline(space, around, np.append(contour.tangents, contour.tangents[0]), layer)
+
+
+def _follower(space: Modelspace, scene: CamScene) -> None:
+    """Roller or face at cam angle 0, with the arm and its pivot."""
+    layer = {"layer": "FOLLOWER"}
+    follower = scene.follower
+    if isinstance(follower, TranslatingRoller | OscillatingRoller):
+        centre = complex(scene.pitch_curve[0])
+        if follower.roller_radius > 0.0:
+            space.add_circle((centre.real, centre.imag), follower.roller_radius, dxfattribs=layer)
+        end = scene.pivot if scene.pivot is not None else centre + scene.base_radius
+        dxf.add_line(space, centre, end, "FOLLOWER")
+    else:
+        start, end = scene.faces(len(scene.angle))[0]
+        if isinstance(follower, OscillatingFlat):
+            along = scene.face_direction(0)
+            pivot = complex(follower.pivot_distance)
+            start += along * ((pivot - start) * along.conjugate()).real
+            dxf.add_line(space, start, pivot, "FOLLOWER")
+        dxf.add_line(space, start, end, "FOLLOWER")
+    if scene.pivot is not None:
+        pin = 0.04 * scene.base_radius
+        space.add_circle((scene.pivot.real, scene.pivot.imag), pin, dxfattribs=layer)

@@ -1,0 +1,120 @@
+"""What a drawing of a cam shows, from the mechanism's dimensions and points: curves, follower, what contact gives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.contact import ContactMotion, Contour
+from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
+from synthesis.kinds.cam.design import CamMechanism
+from synthesis.kinds.cam.mechanism import (
+    core_follower,
+    points_of,
+    profile_points,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FACE_SHARE = 0.35
+"""Half the length of a drawn face, as a share of the base radius."""
+
+
+@dataclass(frozen=True, eq=False)
+class CamScene:
+    """A cam with its follower, ready to be drawn or listed. Everything is in the cam's frame, at cam angle 0."""
+
+    mechanism: CamMechanism
+
+    @cached_property
+    def follower(self) -> Follower:
+        """The follower as the analysis core has it."""
+        return core_follower(self.mechanism)
+
+    @property
+    def sense(self) -> float:
+        """1 for a cam that turns counter-clockwise, −1 for clockwise."""
+        return 1.0 if self.mechanism.rotation == "ccw" else -1.0
+
+    @property
+    def base_radius(self) -> float:
+        """Of the circle under the profile."""
+        follower = self.follower
+        if isinstance(follower, TranslatingFlat | OscillatingFlat):
+            return follower.base_radius
+        return follower.prime_radius - follower.roller_radius
+
+    @property
+    def roller(self) -> TranslatingRoller | OscillatingRoller | None:
+        """The follower where it has a roller."""
+        return self.follower if isinstance(self.follower, TranslatingRoller | OscillatingRoller) else None
+
+    @cached_property
+    def profile(self) -> Complex:
+        """Points of the profile."""
+        return profile_points(self.mechanism)
+
+    @cached_property
+    def pitch_curve(self) -> Complex:
+        """Path of the roller's centre around the cam; the profile under a flat face."""
+        curve = self.mechanism.pitch_curve
+        return np.array(curve.x) + 1j * np.array(curve.y)
+
+    @cached_property
+    def outer_wall(self) -> Complex | None:
+        """Points of the groove's outer wall; None without a groove."""
+        wall = self.mechanism.outer_wall
+        return None if wall is None else points_of(wall)
+
+    @cached_property
+    def contour(self) -> Contour:
+        """The profile as the analysis core sees it."""
+        return Contour(self.profile)
+
+    @cached_property
+    def angle(self) -> Real:
+        """Cam angles of the program's table, degrees."""
+        return np.array(self.mechanism.program.angle)
+
+    @cached_property
+    def contact(self) -> ContactMotion:
+        """What the follower does on the profile, measured at the table's angles."""
+        return self.contour.follow(self.follower, np.radians(self.angle), self.mechanism.rotation)
+
+    @property
+    def oscillating(self) -> bool:
+        """Whether displacements are angles of an arm."""
+        return isinstance(self.follower, OscillatingRoller | OscillatingFlat)
+
+    def station(self, degrees: float) -> complex:
+        """Unit vector, in the cam's frame, of the ground's +x axis when the cam has turned so far."""
+        turn = -self.sense * math.radians(degrees)
+        return complex(math.cos(turn), math.sin(turn))
+
+    @cached_property
+    def pivot(self) -> complex | None:
+        """Of an oscillating follower, at cam angle 0."""
+        follower = self.follower
+        return complex(follower.pivot_distance) if isinstance(follower, OscillatingRoller | OscillatingFlat) else None
+
+    def faces(self, every: int) -> list[tuple[complex, complex]]:
+        """A flat face around its contact, in each so many positions of the table."""
+        half = FACE_SHARE * self.base_radius
+        return [
+            (complex(self.contact.point[k] - half * along), complex(self.contact.point[k] + half * along))
+            for k, along in ((k, self.face_direction(k)) for k in range(0, len(self.angle), every))
+        ]
+
+    def face_direction(self, k: int) -> complex:
+        """Unit vector along a flat face at a position of the table; away from the pivot where there is one."""
+        follower, station = self.follower, self.station(float(self.angle[k]))
+        if not isinstance(follower, OscillatingFlat):
+            return station * 1j
+        reach = complex(self.contact.point[k]) - follower.pivot_distance * station
+        foot = math.sqrt(max(abs(reach) ** 2 - follower.face_offset**2, 0.0))
+        return reach / complex(foot, -follower.face_offset * follower.sense * self.sense)

@@ -1,0 +1,212 @@
+"""The panel of a cam drawing: profile, pitch curve, prime and base circle, follower and its envelope, cam angles.
+
+Line styles carry the meaning without colours too: profile heavy, pitch curve dashed, prime circle dotted, base circle
+dash-dotted, follower bold, its other positions thin. Parts are marked ``data-part``.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
+from service.render.cam.scene import CamScene
+from service.render.page.labels import Labels
+from service.render.page.numbers import angle
+from service.render.page.svg import (
+    Box,
+    Element,
+    Viewport,
+    circle,
+    element,
+    line,
+    path,
+    text,
+)
+from service.render.page.symbols import (
+    COUPLER,
+    CURVE,
+    GREY,
+    GROUND,
+    INK,
+    INPUT,
+    OUTPUT,
+    PALE,
+    arrow,
+    bearing,
+    scale_bar,
+)
+
+Complex = NDArray[np.complex128]
+
+MARGIN, FOOT = 34.0, 22.0
+"""Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+
+ENVELOPE = 36
+"""Positions of the follower that are drawn around the cam."""
+
+STATIONS = 30
+"""Degrees between the cam angles that are written around the cam."""
+
+STEM = 0.8
+"""Length of a translating follower's stem beyond its roller or face, as a share of the base radius."""
+
+ROTATION = 0.45
+"""Radius of the arc that shows the rotation, as a share of the base radius."""
+
+STYLES: dict[str, dict[str, str | float]] = {
+    "profile": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
+    "outer wall": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
+    "pitch curve": {"stroke": CURVE, "stroke_width": 1.1, "stroke_dasharray": "7 4"},
+    "prime circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "2 3"},
+    "base circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "11 3 2 3"},
+    "follower": {"stroke": COUPLER, "stroke_width": 2.4},
+    "other positions": {"stroke": PALE, "stroke_width": 0.7},
+}
+"""Line styles by what they show; the key of the sheet lists them."""
+
+
+def shown_box(scene: CamScene) -> Box:
+    """What a panel must show."""
+    roller = scene.roller
+    reach = roller.roller_radius if roller else 0.0
+    box = Box.around(np.concatenate([scene.pitch_curve, scene.profile])).grown(reach)
+    face = max((max(abs(a), abs(b)) for a, b in scene.faces(1)), default=0.0) if roller is None else 0.0
+    box = box.united(Box.around(np.array([-face - 1j * face, face + 1j * face]))) if face else box
+    if scene.pivot is not None:
+        return box.united(Box.around(np.array([scene.pivot])).grown(0.1 * scene.base_radius))
+    start = scene.pitch_curve[0]
+    return box.united(Box.around(np.array([start, start + reach + STEM * scene.base_radius])))
+
+
+def panel(scene: CamScene, box: Box, unit: str) -> Element:
+    """The drawing in a box of the sheet."""
+    viewport = Viewport.fit(shown_box(scene), box, MARGIN, FOOT)
+    labels = Labels(box)
+    group = element("g", data_panel="cam", fill="none")
+    frame = {"x": box.left, "y": box.low, "width": box.width, "height": box.height}
+    group.add(element("rect", **frame, fill="#fff", stroke=PALE, stroke_width=1.0))
+    group.add(_envelope(scene, viewport))
+    centre = viewport.point(0j)
+    group.add(circle(centre, viewport.scale * scene.base_radius, data_part="base circle", **STYLES["base circle"]))
+    roller = scene.roller
+    if roller:
+        radius = viewport.scale * roller.prime_radius
+        group.add(circle(centre, radius, data_part="prime circle", **STYLES["prime circle"]))
+        group.add(_closed(scene.pitch_curve, viewport, "pitch curve"))
+    group.add(_closed(scene.profile, viewport, "profile"))
+    if scene.outer_wall is not None:
+        group.add(_closed(scene.outer_wall, viewport, "outer wall"))
+    group.add(_stations(scene, viewport, labels))
+    group.add(_follower(scene, viewport))
+    symbol, _ = bearing(centre, 0.8)
+    group.add(
+        element("g", symbol, circle(centre, 4.0, fill="#fff", stroke=GROUND, stroke_width=1.5), data_part="centre")
+    )
+    group.add(_rotation(scene, viewport))
+    bar, _ = scale_bar(viewport, unit)
+    return group.add(bar, *labels.drawn)
+
+
+def _closed(points: Complex, viewport: Viewport, part: str) -> Element | None:
+    around = np.append(points, points[0])
+    return path(viewport.shown(around), data_part=part, **STYLES[part])
+
+
+def _envelope(scene: CamScene, viewport: Viewport) -> Element:
+    """The roller or the face in positions around the cam: the profile is their envelope."""
+    group = element("g", data_part="other positions", **STYLES["other positions"])
+    every = max(1, round(len(scene.angle) / ENVELOPE))
+    roller = scene.roller
+    if roller and roller.roller_radius > 0.0:
+        for centre in scene.pitch_curve[:: max(1, round(len(scene.pitch_curve) / ENVELOPE))]:
+            group.add(circle(viewport.point(complex(centre)), viewport.scale * roller.roller_radius))
+    elif roller is None:
+        for start, end in scene.faces(every):
+            group.add(line(viewport.point(start), viewport.point(end)))
+    return group
+
+
+def _stations(scene: CamScene, viewport: Viewport, labels: Labels) -> Element:
+    """Ticks on the pitch curve, or on the profile, where the follower stands at round cam angles, and those angles."""
+    group = element("g", data_part="cam angles")
+    curve = scene.mechanism.pitch_curve
+    for degrees in range(0, 360, STATIONS):
+        k = int(np.argmin(np.abs(np.array(curve.angle) - degrees)))
+        at = viewport.point(complex(curve.x[k], curve.y[k]))
+        group.add(circle(at, 1.8, fill=CURVE))
+        labels.place(
+            at,
+            angle(degrees, 1),
+            9.5,
+            clearance=4.0,
+            away=at - viewport.point(0j),
+            optional=True,
+            style={"fill": GREY},
+        )
+    return group
+
+
+def _follower(scene: CamScene, viewport: Viewport) -> Element:
+    """The follower at cam angle 0."""
+    group = element("g", data_part="follower", **STYLES["follower"])
+    follower, reach = scene.follower, scene.base_radius
+    if isinstance(follower, TranslatingRoller | OscillatingRoller):
+        centre = complex(scene.pitch_curve[0])
+        if isinstance(follower, OscillatingRoller):
+            group.add(line(viewport.point(centre), viewport.point(complex(follower.pivot_distance))))
+        else:
+            group.add(*_stem(viewport, centre, centre + follower.roller_radius + STEM * reach))
+        radius = max(viewport.scale * follower.roller_radius, 1.5)
+        group.add(circle(viewport.point(centre), radius, fill="#fff", fill_opacity=0.7))
+        group.add(circle(viewport.point(centre), 2.5, fill=COUPLER))
+    else:
+        (start, end), along = scene.faces(len(scene.angle))[0], scene.face_direction(0)
+        if isinstance(follower, OscillatingFlat):
+            pivot = complex(follower.pivot_distance)
+            foot = start + along * ((pivot - start) * along.conjugate()).real
+            group.add(
+                line(viewport.point(foot), viewport.point(end)), line(viewport.point(foot), viewport.point(pivot))
+            )
+        else:
+            group.add(line(viewport.point(start), viewport.point(end)))
+            foot = complex(scene.profile[0].real)
+            group.add(*_stem(viewport, foot, foot + STEM * reach))
+    if scene.pivot is not None:
+        at = viewport.point(scene.pivot)
+        group.add(bearing(at, 0.8)[0], circle(at, 4.0, fill="#fff", stroke=GROUND, stroke_width=1.5))
+    return group
+
+
+def _stem(viewport: Viewport, start: complex, end: complex) -> list[Element]:
+    """Stem of a translating follower, with hatched guides on both sides of its outer half."""
+    a, b = viewport.point(start), viewport.point(end)
+    along = (b - a) / abs(b - a)
+    drawn = [line(a, b)]
+    for side in (7j, -7j):
+        low, high = a + 0.62 * (b - a) + side * along, b - 4.0 * along + side * along
+        drawn.append(line(low, high, stroke=GROUND, stroke_width=1.4))
+        count = max(2, int(abs(high - low) / 6.0))
+        for k in range(count):
+            root = low + (high - low) * (k + 0.5) / count
+            drawn.append(line(root, root + (0.7 * side - 3.0) * along, stroke=GROUND, stroke_width=0.8))
+    return drawn
+
+
+def _rotation(scene: CamScene, viewport: Viewport) -> Element:
+    """An arc with an arrow in the sense in which the cam turns."""
+    radius = ROTATION * scene.base_radius * viewport.scale
+    centre = viewport.point(0j)
+    # On the sheet y points down, so that a counter-clockwise turn has falling angles.
+    start, turn = math.radians(-110.0), -scene.sense * math.radians(80.0)
+    start -= 0.5 * turn
+    points = centre + radius * np.exp(1j * (start + turn * np.linspace(0.0, 1.0, 25)))
+    tip = complex(points[-1])
+    back = tip - 9.0 * cmath.exp(1j * (start + turn)) * 1j * math.copysign(1.0, turn)
+    group = element("g", data_part="rotation", data_rotation=scene.mechanism.rotation)
+    group.add(path([points[:-1]], stroke=OUTPUT, stroke_width=1.6), arrow(back, tip, 4.0, OUTPUT))
+    middle = centre + (radius + 11.0) * cmath.exp(1j * (start + 0.5 * turn))
+    return group.add(text(middle.real, middle.imag, "turns", 9.5, text_anchor="middle", fill=INK))

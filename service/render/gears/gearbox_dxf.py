@@ -1,0 +1,103 @@
+"""Gearboxes as DXF, in two views to scale: the shafts seen from their ends, and the developed view along them.
+
+=====================  ==============================================================
+layer                  what is on it (NAME: STAGE_n_PAIR_k; HEAD, GEAR_n, REVERSE)
+=====================  ==============================================================
+NAME_PITCH             pitch circles, seen from the end
+NAME_TEETH             closed outlines of all teeth in mesh: involutes, fillets, tips
+NAME_DEVELOPED         outside diameters along the shafts, below the other view
+SHAFTS                 crosses at the shafts, and their axes in the developed view
+TEXT                   tooth numbers, names of the shafts
+=====================  ==============================================================
+
+All pairs of a stage lie over each other when seen from the end: freeze the layers of those that are not engaged. The
+developed view has the shafts in one plane, at their true distances; the idler of reverse is turned into it about the
+layshaft. Diameters and distances are true in both views. A design has no face widths: faces are drawn 8 modules wide.
+"""
+
+from __future__ import annotations
+
+from ezdxf.document import Drawing
+
+from service.render.gears.gearbox_layout import (
+    BoxLayout,
+    gearbox_layout,
+    layshaft_layout,
+)
+from service.render.page import dxf
+from service.render.page.svg import clean
+from synthesis.kinds.gearbox.design import GearboxDesign, LayshaftDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+
+COLOURS = (5, 3, 30, 6, 4, 1, 2)
+"""Colour indices, taken in turn."""
+
+FACE, ROOM, LETTERS = 8.0, 4.0, 2.0
+"""Width of a face, room beside it and height of letters, in modules."""
+
+
+def gearbox_drawing(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
+    """The drawing of a machine-tool gearbox as a DXF document (R2010)."""
+    mechanism = design.mechanism
+    document = dxf.new_drawing(clean(title) or "Gearbox", problem.length_unit)
+    return _drawn(document, gearbox_layout(mechanism), mechanism.module)
+
+
+def layshaft_drawing(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
+    """The drawing of a layshaft gearbox as a DXF document (R2010)."""
+    mechanism = design.mechanism
+    document = dxf.new_drawing(clean(title) or "Layshaft gearbox", problem.length_unit)
+    return _drawn(document, layshaft_layout(mechanism), mechanism.module)
+
+
+def _drawn(document: Drawing, layout: BoxLayout, module: float) -> str:
+    for pair, stage in {placed.pair: placed.stage for placed in layout.gears}.items():
+        colour = COLOURS[stage % len(COLOURS)]
+        dxf.add_gear_layers(document, pair, colour)
+        document.layers.add(f"{pair}_DEVELOPED", color=colour)
+    document.layers.add("SHAFTS", color=7, linetype="CENTER")
+    document.layers.add("TEXT", color=7)
+    _from_the_end(document, layout, module)
+    _developed(document, layout, module)
+    return dxf.written(document)
+
+
+def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
+    space = document.modelspace()
+    for placed in layout.gears:
+        teeth = dxf.teeth_outline(placed.gear, placed.centre, placed.tooth_at)
+        dxf.add_gear(space, placed.pair, placed.gear, placed.centre, teeth)
+    top = max(placed.centre.imag + placed.gear.tip_radius for placed in layout.gears)
+    for k, shaft in enumerate(layout.shafts):
+        dxf.add_cross(space, shaft.centre, LETTERS * module, "SHAFTS")
+        above = complex(shaft.centre.real, top + (2.0 + 1.6 * k) * LETTERS * module)
+        dxf.add_words(space, above, shaft.name, LETTERS * module)
+
+
+def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
+    space = document.modelspace()
+    bottom = min(placed.centre.imag - placed.gear.tip_radius for placed in layout.gears)
+    highest = max(placed.gear.tip_radius - layout.shafts[placed.shaft].below for placed in layout.gears)
+    left = min(placed.centre.real - placed.gear.tip_radius for placed in layout.gears) + 8.0 * LETTERS * module
+    axis = bottom - highest - 6.0 * LETTERS * module
+    face, step = FACE * module, (FACE + ROOM) * module
+
+    for placed in layout.gears:
+        low = complex(left + placed.slot * step, axis - layout.shafts[placed.shaft].below)
+        radius = placed.gear.tip_radius
+        corners = [low - 1j * radius, low + face - 1j * radius, low + face + 1j * radius, low + 1j * radius]
+        layer = {"layer": f"{placed.pair}_DEVELOPED"}
+        space.add_lwpolyline([(z.real, z.imag) for z in corners], close=True, dxfattribs=layer)
+        for side in (1j, -1j):
+            pitch = low + side * placed.gear.pitch_radius
+            dxf.add_line(space, pitch, pitch + face, f"{placed.pair}_PITCH")
+        words = low + 0.5 * face + 1j * (0.5 * placed.gear.pitch_radius)
+        dxf.add_words(space, words, f"z={placed.gear.teeth:g}", LETTERS * module)
+    for shaft in layout.shafts:
+        start = complex(left + shaft.slots[0] * step - 0.4 * ROOM * module, axis - shaft.below)
+        end = complex(left + shaft.slots[1] * step + face + 0.4 * ROOM * module, axis - shaft.below)
+        dxf.add_line(space, start, end, "SHAFTS")
+        if shaft.slots[0] == 0:
+            dxf.add_words(space, start - 4.0 * LETTERS * module, shaft.name, LETTERS * module)
+        else:
+            dxf.add_words(space, end + 5.0 * LETTERS * module, shaft.name, LETTERS * module)

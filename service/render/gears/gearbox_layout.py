@@ -1,0 +1,119 @@
+"""Where the gears of a gearbox stand: shafts seen from their ends, and one beside the other along the shafts.
+
+Seen from the end the shafts of a machine-tool gearbox stand in one line, the first at 0. Input and main shaft of a
+layshaft gearbox are coaxial at 0, the layshaft stands at the shaft distance from them, and the idler of reverse where
+it reaches both of its mates. Each pair is turned so that its teeth mesh.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+from kinematics.gear.teeth import Gear
+from service.render.gears.meshing import facing
+from synthesis.kinds.gearbox.design import GearboxMechanism, LayshaftMechanism
+
+
+@dataclass(frozen=True)
+class BoxGear:
+    """A gear in the drawing.
+
+    ``pair`` names the pair, ``stage`` counts what is drawn in one colour, ``shaft`` is the place of its shaft, ``slot``
+    counts the pairs along the shafts, and ``tooth_at`` is the angle of one tooth's middle.
+    """
+
+    pair: str
+    stage: int
+    shaft: int
+    slot: int
+    gear: Gear
+    centre: complex
+    tooth_at: float
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A shaft: its place seen from the end, how far below the first it is drawn in the developed view, its slots."""
+
+    name: str
+    centre: complex
+    below: float
+    slots: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class BoxLayout:
+    """All gears, two or three of each pair in the order of the power, and all shafts."""
+
+    gears: list[BoxGear]
+    shafts: list[Shaft]
+
+
+def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
+    """A machine-tool gearbox; the stages lie one behind the other along the shafts."""
+    gears: list[BoxGear] = []
+    at = [0.0]
+    first = [0]
+    for number, stage in enumerate(mechanism.stages):
+        at.append(at[-1] + stage.centre_distance)
+        first.append(first[-1] + len(stage.pairs))
+        for k, pair in enumerate(stage.pairs):
+            name = f"STAGE_{number + 1}_PAIR_{k + 1}"
+            one, other = (_gear(mechanism, z) for z in (pair.driver, pair.driven))
+            slot = first[number] + k
+            gears.append(BoxGear(name, number, number, slot, one, complex(at[number]), 0.0))
+            turned = facing(one, 0.0, other, 0.0)
+            gears.append(BoxGear(name, number, number + 1, slot, other, complex(at[number + 1]), turned))
+    count = len(mechanism.stages)
+    names = ["input", *(f"shaft {k}" for k in range(2, count + 1)), "spindle"]
+    shafts = [
+        Shaft(name, complex(x), x, (first[max(k - 1, 0)], first[min(k + 1, count)] - 1))
+        for k, (name, x) in enumerate(zip(names, at, strict=True))
+    ]
+    return BoxLayout(gears, shafts)
+
+
+def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
+    """A layshaft gearbox: the head pair, then the forward gears from the last to the first, then reverse."""
+    distance = mechanism.centre_distance
+    input_shaft, layshaft, main = 0, 1, 2
+    gears: list[BoxGear] = []
+
+    def add(pair: str, slot: int, *placed: tuple[int, int, complex]) -> None:
+        """Gears that mesh one after the other: teeth, shaft and centre of each."""
+        turned, before = 0.0, None
+        for teeth, shaft, centre in placed:
+            gear = _gear(mechanism, teeth)
+            if before is not None:
+                turned = facing(before.gear, turned, gear, cmath.phase(centre - before.centre))
+            before = BoxGear(pair, slot, shaft, slot, gear, centre, turned)
+            gears.append(before)
+
+    beside = complex(distance)
+    add("HEAD", 0, (mechanism.head.driver, input_shaft, 0j), (mechanism.head.driven, layshaft, beside))
+    slot = 1
+    for number in range(len(mechanism.gears), 0, -1):
+        pair = mechanism.gears[number - 1]
+        if pair.layshaft is not None and pair.mainshaft is not None:
+            add(f"GEAR_{number}", slot, (pair.layshaft, layshaft, beside), (pair.mainshaft, main, 0j))
+            slot += 1
+    shafts = [
+        Shaft("input", 0j, 0.0, (0, 0)),
+        Shaft("layshaft", beside, distance, (0, slot - (mechanism.reverse is None))),
+        Shaft("main shaft", 0j, 0.0, (1, slot - (mechanism.reverse is None))),
+    ]
+    if mechanism.reverse is not None:
+        back = mechanism.reverse
+        near, far = (0.5 * mechanism.module * (back.idler + z) for z in (back.layshaft, back.mainshaft))
+        x = 0.5 * (distance**2 + far**2 - near**2) / distance
+        centre = complex(x, math.sqrt(max(far**2 - x**2, 0.0)))
+        idler = len(shafts)
+        add("REVERSE", slot, (back.layshaft, layshaft, beside), (back.idler, idler, centre), (back.mainshaft, main, 0j))
+        shafts.append(Shaft("idler", centre, distance + near, (slot, slot)))
+    return BoxLayout(gears, shafts)
+
+
+def _gear(mechanism: GearboxMechanism | LayshaftMechanism, teeth: int) -> Gear:
+    return Gear(teeth, mechanism.module, math.radians(mechanism.pressure_angle))

@@ -1,0 +1,125 @@
+"""Where the gears of a planetary train stand: centres, planes, and the turn of each gear so that all teeth mesh."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.assembly import pins
+from kinematics.gear.teeth import Gear
+from service.render.gears.meshing import facing
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism
+
+
+@dataclass(frozen=True)
+class PlacedPlanetaryGear:
+    """A gear in the drawing; ``copy`` counts the copies of a planet, ``tooth_at`` is the angle of a tooth's middle."""
+
+    name: str
+    body: str
+    copy: int
+    planes: tuple[int, ...]
+    gear: Gear
+    centre: complex
+    tooth_at: float
+
+
+def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlacedPlanetaryGear]:
+    """All gears with the axis at 0 and the first planet of each set on the positive real axis.
+
+    Bevel gears are shown as if spread out in one plane, and without meshing teeth.
+    """
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    placed = pins(arrangement, mechanism.teeth)
+    if placed is None:
+        return []
+    gears = {
+        name: Gear(
+            mechanism.teeth[name],
+            mechanism.module,
+            math.radians(mechanism.pressure_angle),
+            mechanism.addendum[name],
+            internal=arrangement.places[name].internal,
+        )
+        for name in arrangement.gear_names
+    }
+    centres = {planet: mechanism.module * pin for planet, pin in placed.items()}
+    first = _first_copies(arrangement, gears, centres)
+    found = []
+    for place in arrangement.gears:
+        if place.body not in arrangement.carriers:
+            found.append(
+                PlacedPlanetaryGear(place.name, place.body, 0, place.planes, gears[place.name], 0j, first[place.name])
+            )
+            continue
+        places = mechanism.places[place.body]
+        for copy, step in enumerate(places.steps):
+            turn = 2.0 * math.pi * step / places.divisions
+            centre = centres[place.body] * cmath.exp(1j * turn)
+            turned = _turned(arrangement, gears, centres, first, place.body, turn)
+            at = first[place.name] + turned
+            found.append(PlacedPlanetaryGear(place.name, place.body, copy, place.planes, gears[place.name], centre, at))
+    return found
+
+
+def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dict[str, complex]) -> dict[str, float]:
+    """Angles of a tooth of every gear, with the first copies of the planets in mesh."""
+    found: dict[str, float] = {}
+    for start in arrangement.gear_names:
+        if start in found:
+            continue
+        found[start] = 0.0
+        waiting = [start]
+        while waiting:
+            known = waiting.pop()
+            for mate in arrangement.meshing(known):
+                if mate not in found:
+                    ahead = _direction(arrangement, centres, known, mate)
+                    found[mate] = facing(gears[known], found[known], gears[mate], ahead)
+                    waiting.append(mate)
+    return found
+
+
+def _direction(arrangement: Arrangement, centres: dict[str, complex], one: str, other: str) -> float:
+    """Angle from the centre of ``one`` to its contact with ``other``."""
+    here, there = (centres.get(arrangement.places[gear].body, 0j) for gear in (one, other))
+    if arrangement.places[one].internal or arrangement.places[other].internal:
+        return cmath.phase(here or there)
+    return cmath.phase(there - here)
+
+
+def _turned(
+    arrangement: Arrangement,
+    gears: dict[str, Gear],
+    centres: dict[str, complex],
+    first: dict[str, float],
+    planet: str,
+    turn: float,
+) -> float:
+    """How far a copy of a planet, ``turn`` ahead of the first, is turned itself so that all its gears mesh.
+
+    Its first gear fixes the rotation up to whole teeth; of these the one that suits the other gears best is taken.
+    """
+    (own, central), *others = arrangement.central_meshes(planet)
+    ahead = cmath.phase(centres[planet]) + turn
+    base = _wanted(gears, first, central, own, ahead) - first[own]
+    pitch = 2.0 * math.pi / gears[own].teeth
+
+    def misfit(turned: float) -> float:
+        return sum(
+            abs(
+                math.remainder(
+                    first[gear] + turned - _wanted(gears, first, mate, gear, ahead), 2.0 * math.pi / gears[gear].teeth
+                )
+            )
+            for gear, mate in others
+        )
+
+    return min((base + pitch * k for k in range(int(gears[own].teeth))), key=misfit)
+
+
+def _wanted(gears: dict[str, Gear], first: dict[str, float], central: str, own: str, ahead: float) -> float:
+    """Angle of a tooth of a planet gear that meshes with a sun or ring, its pin in direction ``ahead``."""
+    return facing(gears[central], first[central], gears[own], ahead)

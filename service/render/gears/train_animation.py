@@ -1,0 +1,65 @@
+"""A gear train that turns as GIF: true outlines in mesh, each gear at its own speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from kinematics.errors import DimensionError
+from kinematics.gear.profile import outline
+from service.render.gears.train_layout import PlacedGear, placed_gears
+from service.render.page.animation import (
+    FRAMES,
+    Stroke,
+    animated,
+    ring,
+)
+from service.render.page.svg import Box, Points
+from service.render.page.symbols import (
+    COUPLER,
+    GROUND,
+    INPUT,
+    OUTPUT,
+)
+from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+
+COLOURS = (INPUT, OUTPUT, COUPLER)
+"""Of the stages."""
+
+FACES = ("#e8eef6", "#e6f1ea", "#f8eee2")
+
+PITCHES = 6
+"""Teeth of the input gear that pass in one cycle; the other stages' gears stand otherwise at its end."""
+
+
+def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> bytes:
+    """Some teeth of a gear train's input as GIF."""
+    gears = placed_gears(design, problem.reverted)
+    outlines = [_outline(gear) for gear in gears]
+    turn = math.tau * PITCHES / gears[0].gear.teeth
+
+    def frames() -> Iterator[list[Stroke]]:
+        for k in range(FRAMES):
+            strokes = []
+            for gear, points in zip(gears, outlines, strict=True):
+                turned = complex(np.exp(1j * turn * k / FRAMES * float(gear.speed)))
+                colour, face = COLOURS[(gear.stage - 1) % 3], FACES[(gear.stage - 1) % 3]
+                strokes.append(Stroke(gear.centre + points * turned, colour, 1.4, closed=True, fill=face))
+                spoke = np.array([gear.centre, gear.centre + 0.8 * gear.pitch_radius * turned])
+                strokes.append(Stroke(spoke, colour, 1.6))
+                strokes.append(Stroke(ring(gear.centre, 0.08 * gear.pitch_radius), GROUND, 1.4, True, "#ffffff"))
+            yield strokes
+
+    reached = [ring(gear.centre, float(np.abs(points).max())) for gear, points in zip(gears, outlines, strict=True)]
+    return animated(frames(), Box.around(np.concatenate(reached)))
+
+
+def _outline(placed: PlacedGear) -> Points:
+    """All teeth around the origin; the pitch circle where a cutter would come to a point."""
+    try:
+        return np.asarray(outline(placed.gear, placed.tooth_at))
+    except DimensionError:
+        return ring(0j, placed.pitch_radius)

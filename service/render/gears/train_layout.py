@@ -1,0 +1,82 @@
+"""Where the gears of an ordinary train stand: shaft centres in the plane, and the turn of each gear so that teeth mesh.
+
+The shafts stand in one line; those of a reverted train go back and forth between two places, or round a triangle for
+three stages, so that the output shaft comes to stand on the input's axis.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from kinematics.gear.teeth import Gear
+from service.render.gears.meshing import facing
+from service.render.page.svg import Box
+from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.verification import driven_train
+
+SAME_DISTANCE = 1e-9
+"""Share of a centre distance by which those of a reverted train may differ in rounding."""
+
+
+@dataclass(frozen=True)
+class PlacedGear:
+    """A gear in the drawing; ``speed`` is its share of the input's, ``tooth_at`` the angle of one tooth's middle."""
+
+    stage: int
+    role: str
+    gear: Gear
+    centre: complex
+    tooth_at: float
+    speed: Fraction
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the pitch circle."""
+        return self.gear.pitch_radius
+
+
+def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
+    """All gears in the order of the power, the input shaft at 0."""
+    mechanism = design.mechanism
+    train = driven_train(mechanism)
+    distances = train.centre_distances
+    coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
+    found: list[PlacedGear] = []
+    shaft = 0j
+    for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True)):
+        ahead = _direction(number, len(train.stages), coaxial)
+        roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
+        centre, tooth_at = shaft, cmath.phase(ahead)
+        previous: Gear | None = None
+        for role, teeth, speed in zip(roles, stage.gears, speeds, strict=True):
+            gear = Gear(teeth, stage.module, train.pressure_angle)
+            if previous is not None:
+                centre += ahead * (previous.pitch_radius + gear.pitch_radius)
+                tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
+            found.append(PlacedGear(number + 1, role, gear, centre, tooth_at, speed))
+            previous = gear
+        shaft = centre
+    return found
+
+
+def _direction(number: int, stages: int, coaxial: bool) -> complex:
+    """Unit vector from one shaft to the next."""
+    if not coaxial:
+        return 1.0 + 0j
+    if stages == 3:
+        return cmath.exp(2j * math.pi * number / 3.0)
+    return complex((-1) ** number)
+
+
+def box_around(gears: list[PlacedGear]) -> Box:
+    """The box around all tip circles."""
+    sides = [(g.centre, g.gear.tip_radius) for g in gears]
+    return Box(
+        min(c.real - r for c, r in sides),
+        min(c.imag - r for c, r in sides),
+        max(c.real + r for c, r in sides),
+        max(c.imag + r for c, r in sides),
+    )

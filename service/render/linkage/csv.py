@@ -1,0 +1,50 @@
+"""The motion of a linkage as CSV: every joint and link over the cycle, with rates by the input.
+
+Rates are derivatives by the input, whose unit is the radian for a crank and the length unit for a driven slider: times
+the input's speed (and its square) they are velocities and accelerations at constant speed. Cells are empty where the
+linkage cannot be assembled. Lines that begin with ``#`` say what the table is of.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from typing import Any
+
+import numpy as np
+
+from service.render.linkage.scene import scene_of
+from service.render.page.svg import clean
+from synthesis.model.linkage_statement import LinkageProblem
+
+STEPS = 360
+"""Steps of the cycle, both ends included."""
+
+
+def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
+    """The motion of a linkage design; numbers in full precision, nothing where there is none."""
+    scene, unit = scene_of(design), problem.length_unit
+    slide = scene.mechanism.driven_by_slide
+    inputs = np.linspace(scene.low, scene.high, STEPS + 1)
+    motion = scene.driven(inputs, order=2)
+    by = unit if slide else "rad"
+    columns = {f"input [{unit}]" if slide else "input_angle [deg]": inputs if slide else np.degrees(inputs)}
+    for name, turned in motion.angles.items():
+        columns[f"link_{name}_angle [deg]"] = np.degrees(turned[0])
+        columns[f"link_{name}_omega [rad/{by}]"] = turned[1]
+        columns[f"link_{name}_alpha [rad/{by}^2]"] = turned[2]
+    for name, point in motion.joints.items():
+        for order, (letter, per) in enumerate((("", ""), ("v", f"/{by}"), ("a", f"/{by}^2"))):
+            columns[f"{name}_{letter}x [{unit}{per}]"] = point[order].real
+            columns[f"{name}_{letter}y [{unit}{per}]"] = point[order].imag
+    for name, sine in motion.sines.items():
+        columns[f"{name}_transmission_angle [deg]"] = np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0)))
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    text.write(f"# {clean(title) or 'Linkage'}\n")
+    text.write(f"# {design.mechanism.type}; rates are derivatives by the input, in {by}\n")
+    writer.writerow(columns)
+    for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+        writer.writerow([repr(value) if math.isfinite(value) else "" for value in row])
+    return text.getvalue()

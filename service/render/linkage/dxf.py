@@ -1,0 +1,201 @@
+"""A linkage as DXF: links, joints and slides at the first target, the path of P as a spline, and the other targets.
+
+=================  ==================================================================
+layer              what is on it
+=================  ==================================================================
+GROUND             crosses at the fixed pivots, lines of slides on the ground
+LINK_<NAME>        a link at the first target: a line, or a closed outline of more joints
+JOINTS             circles at the pins
+SLIDES             blocks and lines of slides on moving links
+COUPLER_CURVE      the path of P over the cycle, a spline
+USED_CURVE         the part of it between the first target and the last
+TARGETS            demanded points, with their directions
+OTHER_POSITIONS    links at the other targets; frozen
+DIMENSIONS         lengths between the joints of each link, and the ground's
+TEXT               names of joints, numbers of targets
+=================  ==================================================================
+
+Coordinates are the problem's own, in its unit, which the header names.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from ezdxf.layouts.layout import Modelspace
+from ezdxf.math import Matrix44, global_bspline_interpolation
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import GROUND
+from service.render.linkage.drawing import Scene
+from service.render.linkage.scene import (
+    Demand,
+    demands,
+    scene_of,
+)
+from service.render.page import dxf
+from service.render.page.svg import Box, clean
+from synthesis.model.linkage_statement import LinkageProblem
+
+Complex = NDArray[np.complex128]
+
+LAYERS = {
+    "GROUND": (8, "CONTINUOUS"),
+    "JOINTS": (7, "CONTINUOUS"),
+    "SLIDES": (3, "DASHDOT"),
+    "COUPLER_CURVE": (6, "CONTINUOUS"),
+    "USED_CURVE": (200, "CONTINUOUS"),
+    "TARGETS": (1, "CONTINUOUS"),
+    "OTHER_POSITIONS": (9, "CONTINUOUS"),
+    "DIMENSIONS": (5, "CONTINUOUS"),
+    "TEXT": (7, "CONTINUOUS"),
+}
+"""Colour index and line type of each layer but the links'."""
+
+LINK_COLOURS = (5, 30, 3, 4, 2, 6)
+"""Colour indices of the links in their order."""
+
+PIN, ARM, WORDS, BLOCK = 0.008, 0.02, 0.018, 0.03
+"""Radius of a pin, arm of a cross, height of letters and length of a block, as shares of the drawing's diagonal."""
+
+DIMENSION_ASIDE = 0.045
+"""Distance of a dimension line from its link, as a share of the diagonal."""
+
+LONGEST_CURVE = 20.0
+"""A path farther off than this many diagonals of the linkage is no part of a drawing of it."""
+
+CLOSED = 1e-9
+"""Ends of a path nearer to one another than this share of the diagonal meet."""
+
+
+def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
+    """The drawing of a linkage design as a DXF document (R2010)."""
+    scene, demanded = scene_of(design), demands(problem)
+    document = dxf.new_drawing(clean(title) or "Linkage", problem.length_unit, dimensions=True)
+    for name, (colour, linetype) in LAYERS.items():
+        document.layers.add(name, color=colour, linetype=linetype)
+    document.layers.get("OTHER_POSITIONS").freeze()
+    moving = [name for name in scene.mechanism.links if name != GROUND]
+    for n, name in enumerate(moving):
+        document.layers.add(_layer(name), color=LINK_COLOURS[n % len(LINK_COLOURS)])
+    size = max(_box(scene, demanded).diagonal, np.finfo(np.float64).tiny)
+    space = document.modelspace()
+    for k in range(len(scene.inputs) - 1, -1, -1):
+        _links(space, scene, k, size)
+    _ground(space, scene, size)
+    for points in scene.paths:
+        _curve(space, points, "COUPLER_CURVE", size)
+    _curve(space, scene.used, "USED_CURVE", size)
+    _targets(space, demanded, size)
+    _dimensions(space, scene, size)
+    return dxf.written(document)
+
+
+def _box(scene: Scene, demanded: list[Demand]) -> Box:
+    """What is shown, the path of P left out."""
+    places = [z for k in range(len(scene.inputs)) for z in scene.joints(k).values()]
+    return Box.around(np.array([*places, *(demand.point for demand in demanded)]))
+
+
+def _layer(link: str) -> str:
+    return f"LINK_{link.upper()}"
+
+
+def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
+    """The links at one target, on their own layers at the first."""
+    joints = scene.joints(k)
+    for name, listed in scene.mechanism.links.items():
+        if name == GROUND or not joints:
+            continue
+        corners = [joints[joint] for joint in listed]
+        _outline(space, corners, _layer(name) if k == 0 else "OTHER_POSITIONS")
+    if k or not joints:
+        return
+    for name, place in joints.items():
+        space.add_circle((place.real, place.imag), PIN * size, dxfattribs={"layer": "JOINTS"})
+        dxf.add_words(space, place + 1.6 * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
+    for _, place, turned in scene.lines(0):
+        along, half = cmath.exp(1j * turned), 0.5 * BLOCK * size
+        block = [place + along * complex(x * half, 0.6 * y * half) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        space.add_lwpolyline([(z.real, z.imag) for z in block], close=True, dxfattribs={"layer": "SLIDES"})
+
+
+def _outline(space: Modelspace, corners: list[complex], layer: str) -> None:
+    """A line between two joints, the outline around more."""
+    if len(corners) < 2:
+        return
+    if len(corners) == 2:
+        dxf.add_line(space, corners[0], corners[1], layer)
+        return
+    centre = sum(corners) / len(corners)
+    around = sorted(corners, key=lambda z: math.atan2((z - centre).imag, (z - centre).real))
+    space.add_lwpolyline([(z.real, z.imag) for z in around], close=True, dxfattribs={"layer": layer})
+
+
+def _ground(space: Modelspace, scene: Scene, size: float) -> None:
+    """Crosses at the fixed pivots, and the lines of slides over all targets."""
+    for joint in scene.mechanism.links[GROUND]:
+        dxf.add_cross(space, complex(scene.mechanism.joints[joint]), ARM * size, "GROUND")
+    first = scene.joints(0)
+    for slide in scene.mechanism.slides:
+        if not first:
+            continue
+        along = cmath.exp(1j * float(slide.angle))
+        listed = [scene.joints(k) for k in range(len(scene.inputs))] if slide.link == GROUND else [first]
+        places = [joints[slide.joint] for joints in listed if joints]
+        if slide.link != GROUND:
+            places += [first[joint] for joint in scene.mechanism.links[slide.link]]
+        way = [((z - places[0]) * along.conjugate()).real for z in places]
+        ends = [places[0] + along * t for t in (min(way) - 2.0 * BLOCK * size, max(way) + 2.0 * BLOCK * size)]
+        dxf.add_line(space, ends[0], ends[1], "GROUND" if slide.link == GROUND else "SLIDES")
+
+
+def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:
+    """A path as a cubic spline through its points."""
+    kept = points[np.isfinite(points)]
+    if len(kept) < 4 or float(np.ptp(kept.real) + np.ptp(kept.imag)) > LONGEST_CURVE * size:
+        return
+    apart = np.append(np.abs(np.diff(kept)) > CLOSED * CLOSED * size, True)
+    kept = kept[apart]
+    if len(kept) < 4:
+        return
+    # Of unit size, because the library takes what is shorter than 1e-12 for a point.
+    corner = kept[0]
+    unit = [(z.real, z.imag, 0.0) for z in ((kept - corner) / size).tolist()]
+    back = Matrix44.chain(Matrix44.scale(size), Matrix44.translate(corner.real, corner.imag, 0.0))
+    spline = global_bspline_interpolation(unit, degree=3).transform(back)
+    space.add_spline(dxfattribs={"layer": layer}).apply_construction_tool(spline)
+
+
+def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
+    """Demanded points as circles, with the direction of the body."""
+    for k, demand in enumerate(demanded):
+        at = demand.point
+        space.add_circle((at.real, at.imag), 1.5 * PIN * size, dxfattribs={"layer": "TARGETS"})
+        if demand.angle is not None:
+            dxf.add_line(space, at, at + 3.0 * ARM * size * cmath.exp(1j * demand.angle), "TARGETS")
+        dxf.add_words(space, at - 1.6 * WORDS * size * (1.0 + 1.0j), str(k + 1), WORDS * size)
+
+
+def _dimensions(space: Modelspace, scene: Scene, size: float) -> None:
+    """True lengths from joint to joint of every link at the first target."""
+    joints = scene.joints(0)
+    for listed in scene.mechanism.links.values():
+        around = [*listed, listed[0]] if len(listed) > 2 else list(listed)
+        for start, end in pairwise(around):
+            if joints and abs(joints[end] - joints[start]) > CLOSED * size:
+                p1, p2 = joints[start], joints[end]
+                dimension = space.add_aligned_dim(
+                    p1=(p1.real, p1.imag),
+                    p2=(p2.real, p2.imag),
+                    distance=DIMENSION_ASIDE * size,
+                    dimstyle="EZDXF",
+                    override={"dimtxt": WORDS * size, "dimasz": 0.6 * WORDS * size, "dimexe": 0.3 * WORDS * size,
+                              "dimexo": 0.3 * WORDS * size, "dimdec": 4, "dimzin": 8},
+                    dxfattribs={"layer": "DIMENSIONS"},
+                )  # fmt: skip
+                dimension.render()

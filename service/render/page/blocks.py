@@ -1,0 +1,96 @@
+"""Blocks of rows on a sheet: a heading, names with values, and the checks of a design."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from service.render.page.svg import (
+    Element,
+    clean,
+    element,
+    line,
+    shortened,
+    text,
+    text_width,
+)
+from service.render.page.symbols import (
+    INK,
+    OUTPUT,
+    PALE,
+)
+from synthesis.model.answer import Check, Verification
+
+ROW, HEADING, GAP = 18.0, 24.0, 16.0
+"""Heights of a row and of a block's heading, and the space after a block, pixels."""
+
+SIZE, SMALL = 11.5, 10.5
+"""Font sizes of rows, and of the targets with their many columns, pixels."""
+
+Block = Callable[[float, float, float], tuple[Element, float]]
+"""Draws itself at left, top and width; returns its element and the y below it."""
+
+
+def rows(heading: str, entries: Sequence[tuple[str, str]]) -> Block:
+    """Names at the left and their values at the right."""
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        block, y = block_start(heading, left, top, width)
+        for name, value in entries:
+            y += ROW
+            block.add(
+                text(left, y, name, SIZE, fill=INK), value_at(left + width, y, value, left + text_width(name, SIZE))
+            )
+        return block, y + GAP
+
+    return draw
+
+
+def checks(verification: Verification, written: Callable[[Check, float], str]) -> Block:
+    """Every check with a mark, its value and its limit; ``written`` says how a check's numbers are."""
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        verdict = "all passed" if verification.passed else "not all passed"
+        block, y = block_start(f"Checks: {verdict}", left, top, width)
+        for check in verification.checks:
+            y += ROW
+            measure = _measure(check, written)
+            room = width - 22.0 - text_width(measure, SIZE) - 8.0
+            words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
+            row = element("g", _mark(check.passed, left + 8.0, y - 4.0), data_check=clean(check.name))
+            row.add(text(left + 22.0, y, words, SIZE, fill=INK))
+            row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
+            block.add(row)
+        return block, y + GAP
+
+    return draw
+
+
+def block_start(heading: str, left: float, top: float, width: float) -> tuple[Element, float]:
+    """A block with its heading and rule; the y from which rows are counted."""
+    base = top + HEADING - 9.0
+    rule = line(complex(left, base + 6.0), complex(left + width, base + 6.0), stroke=PALE, stroke_width=1.0)
+    title = text(left, base, heading, 12.5, font_weight="bold", fill=INK)
+    return element("g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()), top + HEADING - 2.0
+
+
+def value_at(right: float, y: float, value: str, after: float) -> Element:
+    """A value at the right end of a row, in smaller type where it would touch the row's name."""
+    width = text_width(value, SIZE)
+    size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
+    return text(right, y, value, size, text_anchor="end", fill=INK)
+
+
+def _measure(check: Check, written: Callable[[Check, float], str]) -> str:
+    """Value and limit of a check; their order tells whether the limit is the least or the most allowed."""
+    if check.value is None:
+        return ""
+    if check.limit is None:
+        return written(check, check.value)
+    return f"{written(check, check.value)}  (limit {written(check, check.limit)})"
+
+
+def _mark(passed: bool, x: float, y: float) -> Element:
+    """A tick or a cross, drawn, so that no font decides about it."""
+    colour = OUTPUT if passed else "#b3261e"
+    shape = f"M{x - 5:.1f} {y:.1f}l3.5 4l6.5 -8.5" if passed else f"M{x - 4:.1f} {y - 4:.1f}l8 8m0 -8l-8 8"
+    return element("path", d=shape, fill="none", stroke=colour, stroke_width=2.2, data_passed=str(passed).lower())

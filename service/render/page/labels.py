@@ -1,0 +1,226 @@
+"""Placement of labels in a panel: beside their points, clear of links, joints and each other.
+
+Every label tries places on rings around its point, in a fixed order of directions, and takes the one of least cost.
+The cost counts what the label's box would cover: other labels most, then joints, links, curves; a ring farther out and
+a direction that is not the preferred one cost little. Labels are placed in the order of their importance.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.render.page.svg import (
+    FONT_ASCENT,
+    FONT_DESCENT,
+    Box,
+    Element,
+    Points,
+    clip_segments,
+    element,
+    line,
+    text,
+    text_width,
+)
+
+RINGS = (0.0, 4.0, 9.0, 16.0, 26.0, 40.0, 58.0, 80.0)
+"""Gaps between a point's clearance and the label's box that are tried, pixels."""
+
+Real = NDArray[np.float64]
+
+HALO = {"stroke": "#fff", "stroke_width": "3", "stroke_linejoin": "round", "paint_order": "stroke"}
+"""White rim of a label, so that it is read on lines too."""
+
+DIRECTIONS = np.exp(2j * np.pi * np.arange(24) / 24)
+
+GAP_COST, TURN_COST = 0.25, 3.0
+"""Cost of a gap, for each pixel, and of a direction at right angles to the preferred one."""
+
+PAD = 2.0
+"""Space between a label and what it avoids, pixels."""
+
+TAKEN = 1000.0
+"""Cost of covering another label or leaving the panel; more than everything else together."""
+
+LEADER_GAP = 15.0
+"""From this gap on a label is tied to its point by a leader line, pixels."""
+
+NEAR = tuple(gap for gap in RINGS if gap < LEADER_GAP)
+"""Gaps that are tried for labels that may be left out."""
+
+SAMPLE_STEP = 5.0
+"""Distance of the sample points on lines that labels avoid, pixels: below half the height of any label."""
+
+
+class Placed(NamedTuple):
+    """A label's box, and the leader from its point where it stands far off."""
+
+    box: Box
+    leader: tuple[complex, complex] | None
+
+
+class Labels:
+    """The labels of one panel and what they keep clear of."""
+
+    def __init__(self, panel: Box) -> None:
+        self._panel = panel
+        self._boxes: list[Box] = []
+        self._lines: list[tuple[Points, float]] = []
+        self._samples: tuple[Points, Real] | None = None
+        self.drawn: list[Element] = []
+
+    def avoid(self, lines: list[Points], weight: float) -> None:
+        """Keep clear of polylines of the sheet; ``weight`` is the cost for each few pixels covered."""
+        self._lines.extend((polyline, weight) for polyline in lines)
+        self._samples = None
+
+    def reserve(self, box: Box) -> None:
+        """Keep all labels out of a box of the sheet."""
+        self._boxes.append(box)
+
+    def place(
+        self,
+        point: complex,
+        words: str,
+        size: float,
+        *,
+        subscript: str = "",
+        clearance: float = 6.0,
+        away: complex = 1j,
+        optional: bool = False,
+        ring: str | None = None,
+        style: Mapping[str, str],
+    ) -> None:
+        """Draw a label beside a point of the sheet.
+
+        Parameters
+        ----------
+        point : complex
+            What is labelled; a point outside the panel gets no label.
+        words, subscript : str
+            The text.
+        size : float
+            Font size, pixels.
+        clearance : float
+            Radius of the mark at the point, pixels.
+        away : complex
+            Preferred direction from the point to the label.
+        optional : bool
+            Leave the label out rather than let it cover another label or stand far off.
+        ring : str, optional
+            Colour of a circle around the text.
+        style : mapping
+            Attributes of the text.
+        """
+        if not self._panel.holds(point):
+            return
+        width = text_width(words, size) + text_width(subscript, 0.75 * size)
+        height = (FONT_ASCENT + FONT_DESCENT) * size + (0.12 * size if subscript else 0.0)
+        if ring:
+            width = height = max(width, height) + 4.0
+        placed, cost = self._best(point, width, height, clearance, away, NEAR if optional else RINGS)
+        if optional and cost >= TAKEN:
+            return
+        self._boxes.append(placed.box)
+        box = placed.box
+        if placed.leader:
+            self.drawn.append(line(*placed.leader, stroke="#555", stroke_width=0.7))
+        if ring:
+            self.drawn.append(
+                element("circle", cx=box.centre.real, cy=box.centre.imag, r=0.5 * width, fill="#fff", stroke=ring)
+            )
+        base = box.centre.imag + 0.5 * (FONT_ASCENT - FONT_DESCENT) * size - (0.06 * size if subscript else 0.0)
+        self.drawn.append(
+            text(
+                box.centre.real,
+                base,
+                words,
+                size,
+                subscript=subscript,
+                text_anchor="middle",
+                data_label=words + subscript,
+                **({} if ring else HALO),
+                **style,
+            )
+        )
+
+    def _best(
+        self, point: complex, width: float, height: float, clearance: float, away: complex, rings: tuple[float, ...]
+    ) -> tuple[Placed, float]:
+        """Cheapest place and its cost; rings that cannot be cheaper than the best so far are not looked at."""
+        preferred = away / abs(away) if abs(away) > 0.0 else 1j
+        turned_away = TURN_COST * (1.0 - (DIRECTIONS * preferred.conjugate()).real)
+        # The box touches the circle of radius clearance + gap about the point in the label's direction.
+        half = 0.5 * (width * np.abs(DIRECTIONS.real) + height * np.abs(DIRECTIONS.imag))
+        reach = clearance + rings[-1] + width + height
+        obstacles = self._near(point, reach)
+        best, found = math.inf, None
+        for gap in rings:
+            if GAP_COST * gap >= best:
+                break
+            centres = point + DIRECTIONS * (clearance + gap + half)
+            cost = GAP_COST * gap + turned_away + self._covered(centres, width, height, *obstacles)
+            k = int(np.argmin(cost))
+            if cost[k] < best:
+                best, found = float(cost[k]), (gap, complex(DIRECTIONS[k]), complex(centres[k]), float(half[k]))
+        assert found is not None
+        gap, direction, centre, radius = found
+        leader = (point + clearance * direction, centre - direction * (radius - 1.0)) if gap >= LEADER_GAP else None
+        corner = 0.5 * complex(width, height)
+        low, high = centre - corner, centre + corner
+        return Placed(Box(low.real, low.imag, high.real, high.imag), leader), best
+
+    def _near(self, point: complex, reach: float) -> tuple[Points, Real]:
+        """Sample points of the lines to avoid, and their weights, within reach of a point."""
+        if self._samples is None:
+            self._samples = self._sampled()
+        points, weights = self._samples
+        near = (np.abs(points.real - point.real) < reach) & (np.abs(points.imag - point.imag) < reach)
+        return points[near], weights[near]
+
+    def _sampled(self) -> tuple[Points, Real]:
+        lines = [(polyline, weight) for polyline, weight in self._lines if polyline.size > 1 and weight > 0.0]
+        if not lines:
+            return np.empty(0, np.complex128), np.empty(0)
+        start = np.concatenate([polyline[:-1] for polyline, _ in lines])
+        end = np.concatenate([polyline[1:] for polyline, _ in lines])
+        weights = np.repeat([weight for _, weight in lines], [polyline.size - 1 for polyline, _ in lines])
+        enter, leave = clip_segments(start, end, self._panel)
+        seen = enter <= leave
+        step = (end - start)[seen]
+        start, step = start[seen] + enter[seen] * step, (leave - enter)[seen] * step
+        count = np.ceil(np.abs(step) / SAMPLE_STEP).astype(np.int64) + 1
+        order = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        share = (order + 0.5) / np.repeat(count, count)
+        # A short segment covers less than one full step does.
+        weight = weights[seen] * np.minimum(1.0, np.abs(step) / (SAMPLE_STEP * count) + 0.25)
+        return np.repeat(start, count) + share * np.repeat(step, count), np.repeat(weight, count)
+
+    def _covered(self, centres: Points, width: float, height: float, points: Points, weights: Real) -> Real:
+        """Cost of what boxes at the given centres cover."""
+        x, y = centres.real, centres.imag
+        left, right, low, high = x - 0.5 * width, x + 0.5 * width, y - 0.5 * height, y + 0.5 * height
+        panel = self._panel
+        cost = TAKEN * ((left < panel.left) | (right > panel.right) | (low < panel.low) | (high > panel.high))
+        for box in self._boxes:
+            cost = cost + TAKEN * ((left < box.right) & (box.left < right) & (low < box.high) & (box.low < high))
+        if points.size == 0:
+            return np.asarray(cost, np.float64)
+        inside = np.abs(points.real - x[:, None]) < 0.5 * width + PAD
+        inside &= np.abs(points.imag - y[:, None]) < 0.5 * height + PAD
+        return np.asarray(cost + inside @ weights)
+
+
+def direction_between(directions: list[complex]) -> complex:
+    """Middle of the widest gap between directions from a point, where a label has most room."""
+    angles = sorted(cmath.phase(d) for d in directions if abs(d) > 0.0)
+    if not angles:
+        return 1j
+    gaps = [(later - angle, angle) for angle, later in zip(angles, [*angles[1:], angles[0] + math.tau], strict=True)]
+    gap, start = max(gaps)
+    return cmath.exp(1j * (start + 0.5 * gap))

@@ -1,1 +1,0 @@
-"""Dwells: sixbars whose output rests while the crank turns on."""

@@ -1,1 +1,0 @@
-"""Function generation: precision points, least squares and minimax."""

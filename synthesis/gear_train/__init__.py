@@ -1,1 +1,0 @@
-"""Ordinary gear trains for a speed ratio: exhaustive search in exact arithmetic."""

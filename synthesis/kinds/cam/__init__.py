@@ -1,0 +1,18 @@
+"""Cams: the motion program that is best by a criterion, the smallest cam that carries it, and their proof."""
+
+from __future__ import annotations
+
+from synthesis.kinds.cam.design import CamResult
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: CamProblem, progress: Progress) -> CamResult:
+    from synthesis.kinds.cam.solver import solve_cam
+
+    return solve_cam(problem, progress)
+
+
+KIND = Kind("cam", CamProblem, CamResult, _solve)

@@ -1,0 +1,191 @@
+"""What every answer about a cam has in common: segments, joints, how good the program is, forces, and the result."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from kinematics.cam.dynamics import RunningCam
+from kinematics.cam.program import Program
+from synthesis.kinds.cam.composition import (
+    Composition,
+    arm_length,
+    follower_load,
+)
+from synthesis.kinds.cam.design import (
+    BarrelCamDesign,
+    CamDesign,
+    CamForces,
+    CamJoint,
+    CamResult,
+    CamSearch,
+    CamSegment,
+    Optimality,
+)
+from synthesis.kinds.cam.problem import (
+    BarrelRoller,
+    CamProblem,
+    Move,
+)
+from synthesis.kinds.cam.sizing import Size
+
+SLOW = 10.0
+"""Natural frequency over cam speed below which the follower's own vibration is worth a warning (Norton §15.4)."""
+
+
+def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
+    """Every segment with its law, its place and its exact peaks."""
+    found, start = [], 0.0
+    unit = 1.0 / problem.displacement_unit
+    for stated, name, segment in zip(problem.segments, composed.names, composed.program.segments, strict=True):
+        ends = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
+        found.append(
+            CamSegment(
+                motion=stated.motion,
+                law=name,
+                start=start,
+                angle=stated.angle,
+                displacement=(float(ends[0].s) * unit, float(ends[1].s) * unit),
+                peak_velocity=segment.extremes(1).largest,
+                peak_acceleration=segment.extremes(2).largest,
+                peak_jerk=segment.extremes(3).largest,
+            )
+        )
+        start += stated.angle
+    return found
+
+
+def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
+    """Joints of the segments, and inner jumps."""
+    names: tuple[Literal["s", "v", "a", "j"], ...] = ("s", "v", "a", "j")
+    unit = 1.0 / problem.displacement_unit
+    found = []
+    for joint in program.continuity:
+        jump = joint.jump
+        found.append(
+            CamJoint(
+                angle=math.degrees(joint.angle),
+                segments=joint.segments,
+                continuous=[name for name, same in zip(names, joint.continuous, strict=True) if same],
+                jump=(jump[0] * unit, jump[1], jump[2], jump[3]),
+            )
+        )
+    return found
+
+
+def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Optimality:
+    """The criterion's value and its bound; ``size`` is the cam's, where that is the criterion."""
+    value, scope = composed.value, composed.scope
+    if problem.minimize == "size":
+        value = size
+        if composed.bound is not None:
+            scope += "; the bound is by pressure angle, or by curvature and width of a face"
+    bound = None if composed.bound is None else min(composed.bound, value)
+    if problem.minimize == "peak_contact_force":
+        value /= arm_length(problem)
+        bound = None if bound is None else bound / arm_length(problem)
+    gap = value / bound - 1.0 if bound else None
+    return Optimality(criterion=problem.minimize, value=value, bound=bound, gap=gap, scope=scope)
+
+
+def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
+    """Contact force and torque of the follower, with the least preload where the client leaves it free."""
+    dynamics = problem.dynamics
+    if dynamics is None:
+        return None
+    load, speed = follower_load(problem)
+    arm = arm_length(problem)
+    least = RunningCam(program, replace(load, preload=0.0), speed).least_preload(dynamics.least_force * arm)
+    groove = problem.closure == "form" or isinstance(problem.follower, BarrelRoller)
+    preload = least if dynamics.preload is None and not groove else load.preload
+    running = RunningCam(program, replace(load, preload=preload), speed)
+    force, torque = running.force_extremes, running.torque_extremes
+    warnings, changes = [], None
+    if groove:
+        changes = np.unique(np.degrees(running.reversals()).round(9)).tolist()
+    elif force.least < 0.0:
+        warnings.append("the follower leaves the cam")
+    elif force.least < dynamics.least_force * arm * (1.0 - 1e-9):
+        warnings.append("the contact force falls below the least that was asked for")
+    ratio = load.natural_frequency / speed
+    if 0.0 < ratio < SLOW:
+        warnings.append(f"the natural frequency is only {ratio:.3g} times the cam's speed; the follower will vibrate")
+    return CamForces(
+        preload=preload / arm,
+        least_preload=least / arm,
+        min_contact_force=force.least / arm,
+        max_contact_force=force.greatest / arm,
+        min_torque=torque.least,
+        max_torque=torque.greatest,
+        wall_changes=changes,
+        natural_frequency=load.natural_frequency,
+        frequency_ratio=ratio,
+        warning="; ".join(warnings) or None,
+    )
+
+
+def result_of(
+    problem: CamProblem,
+    composed: Composition,
+    design: CamDesign | BarrelCamDesign,
+    size: Size,
+    radius: tuple[str, float],
+) -> CamResult:
+    """The result with its only candidate; ``radius`` is its name and value, for the summary."""
+    passed = design.verification.passed
+    failed = [check.name for check in design.verification.checks if not check.passed]
+    kept = passed or problem.include_failed
+    name, length = radius
+    if passed:
+        summary = f"A cam of {name} radius {length:.6g} {problem.length_unit} carries the program."
+        if design.optimality.bound is not None and design.optimality.gap is not None:
+            gap = 100.0 * design.optimality.gap
+            summary += f" Its {problem.minimize} {design.optimality.value:.6g} is within {gap:.2g} % of the bound."
+    else:
+        summary = (
+            f"The smallest cam found, of {name} radius {length:.6g} {problem.length_unit}, fails: {', '.join(failed)}."
+        )
+        if "meets_accelerations" in failed and problem.limits.jerk is None:
+            summary += " Without a limit on jerk an acceleration may be met for an instant only; state one."
+    stated = any(getattr(problem.follower, f"{part}_radius", None) for part in ("prime", "base", "cylinder"))
+    given = composed.bound is None and not any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
+    # With the laws given and the smallest cam proven, a limit on size is broken by every cam.
+    proof = given and size.proven and failed == ["size"]
+    return CamResult(
+        designs=[design] if kept else [],
+        search=CamSearch(
+            method=_method(composed, stated),
+            complete=proof,
+            candidates=1,
+            accepted=int(passed),
+            rejected={} if passed else {failed[0]: 1},
+            seed=problem.seed,
+            sizing_proven=size.proven,
+        ),
+        summary=summary,
+    )
+
+
+def _method(composed: Composition, stated: bool) -> str:
+    program = "convex_program" if composed.bound is not None else "laws"
+    return f"{program}, {'stated size' if stated else 'exact sizing'}"
+
+
+def none_of(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:
+    """No design, and why."""
+    return CamResult(
+        designs=[],
+        search=CamSearch(
+            method="convex_program" if cause == "motion_limits" else "exact sizing",
+            complete=proven,
+            candidates=1,
+            accepted=0,
+            rejected={cause: 1},
+            seed=problem.seed,
+            sizing_proven=proven,
+        ),
+        summary=f"None exists: {reason}." if proven else f"None found: {reason}.",
+    )

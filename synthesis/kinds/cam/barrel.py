@@ -1,0 +1,152 @@
+"""Barrel cams: the smallest cylinder for a motion program, its groove, and their verification.
+
+tan φ = v/R, so that the greatest velocity of rise and fall ask for R ≥ |v|/tan φ; the unrolled pitch curve has the
+curvature a R/(R² + v²)^{3/2}, whose radius must exceed the roller's by the ratio that is asked for, at every angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.barrel import BarrelCam
+from kinematics.cam.extremes import extremes
+from kinematics.cam.pieces import Motion
+from kinematics.cam.program import Program
+from synthesis.kinds.cam.answer import (
+    forces_of,
+    joints_of,
+    none_of,
+    optimality_of,
+    result_of,
+    segments_of,
+)
+from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barrel
+from synthesis.kinds.cam.composition import Composition, root_mean_square
+from synthesis.kinds.cam.critical import smallest_allowed
+from synthesis.kinds.cam.design import (
+    BarrelCamDesign,
+    BarrelCamMechanism,
+    BarrelMetrics,
+    CamResult,
+)
+from synthesis.kinds.cam.mechanism import (
+    barrel_mechanism,
+    profile_angles,
+    refined,
+)
+from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
+from synthesis.kinds.cam.sizing import (
+    LARGEST,
+    MARGIN,
+    Size,
+)
+from synthesis.kinds.cam.verification import REPRODUCED
+from synthesis.model.kind import Progress
+
+Real = NDArray[np.float64]
+
+FINEST = 12_000
+"""Points of a wall at most."""
+
+REFINEMENTS = 8
+"""Times that points are put closer at most."""
+
+NO_UNDERCUT = 1.02
+"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 a wall has a cusp."""
+
+
+def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composition, progress: Progress) -> CamResult:
+    """Size, make and verify the barrel cam of a composed program."""
+    program, roller = composed.program, follower.roller_radius
+    size = smallest_barrel(problem, follower, program)
+    if size is None:
+        reason = "no cylinder carries the program within the limits on pressure angle and curvature"
+        return none_of(problem, reason, composed.bound is None, "size")
+    barrel = BarrelCam(program, size.radius, roller)
+    progress(0.7, "verifying")
+
+    walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
+    angle = max((profile_angles(program, wall, roller, problem.profile_points) for wall in walls), key=len)
+    mechanism = barrel_mechanism(barrel, problem.rotation, angle)
+    verification, measured = verify_barrel(problem, mechanism)
+    for _ in range(REFINEMENTS):
+        failed = {check.name for check in verification.checks if not check.passed}
+        lost = measured is None or not np.isfinite(measured.off).all() or "no_cusp" in failed
+        if measured is None or lost or not any("reproduces" in name for name in failed):
+            break
+        finer = refined(angle, measured.off, REPRODUCED)
+        if len(finer) > FINEST:
+            break
+        angle = finer
+        progress(0.8, f"verifying with {len(angle)} points")
+        mechanism = barrel_mechanism(barrel, problem.rotation, angle)
+        verification, measured = verify_barrel(problem, mechanism)
+    if measured is None:
+        reason = (
+            f"the contact of a roller of radius {roller:.6g} in a groove on a cylinder of radius {size.radius:.6g} is "
+            "not resolved by any number of points that a wall may have; take a larger roller or a slower motion"
+        )
+        return none_of(problem, reason, False, "follower_can_be_laid_on")
+    design = BarrelCamDesign(
+        mechanism=mechanism,
+        segments=segments_of(problem, composed),
+        joints=joints_of(problem, program),
+        optimality=optimality_of(problem, composed, size.radius),
+        verification=verification,
+        metrics=_metrics(problem, program, mechanism, measured),
+    )
+    progress(1.0, "verified")
+    return result_of(problem, composed, design, size, ("cylinder", size.radius))
+
+
+def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -> Size | None:
+    """The smallest radius of the cylinder, or the one that is stated; None where curvature allows none."""
+    if follower.cylinder_radius is not None:
+        return Size(follower.cylinder_radius, proven=True)
+    limits, v, roller = problem.limits, program.peaks[1], follower.roller_radius
+    rise = math.tan(math.radians(limits.pressure_angle))
+    fall = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
+    least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
+    rho = max(limits.curvature_ratio, NO_UNDERCUT) * roller
+    stop = LARGEST * (least + program.peaks[2].largest + rho)
+    found = smallest_allowed(program, _curvature(rho), least, stop)
+    return None if found is None else Size(found * (1.0 + MARGIN), proven=True)
+
+
+def _curvature(rho: float) -> Callable[[Motion, Real], Real]:
+    """|κ| ρ − 1 as a function of motion and R."""
+
+    def excess(motion: Motion, radius: Real) -> Real:
+        return np.asarray(np.abs(motion.a) * radius * rho / (radius**2 + motion.v**2) ** 1.5 - 1.0)
+
+    return excess
+
+
+def _metrics(
+    problem: CamProblem, program: Program, mechanism: BarrelCamMechanism, measured: MeasuredBarrel
+) -> BarrelMetrics:
+    roller = mechanism.follower.roller_radius
+    _, v, a, j = program.peaks
+    least = min(measured.least_radius, 1e9)
+    return BarrelMetrics(
+        lift=program.lift,
+        groove_width=2.0 * roller,
+        length=max(mechanism.upper_wall.y) - min(mechanism.lower_wall.y),
+        max_pressure_angle_rise=measured.rising,
+        max_pressure_angle_fall=measured.falling,
+        min_radius=least,
+        curvature_ratio=least / roller,
+        peak_velocity=v.largest,
+        peak_acceleration=a.largest,
+        peak_jerk=j.largest,
+        rms_acceleration=root_mean_square(program, lambda motion: motion.a),
+        peak_inertia_torque=extremes(
+            lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks
+        ).largest,
+        forces=forces_of(problem, program),
+    )

@@ -1,0 +1,590 @@
+"""The motion program of a problem: given segments, automatic laws, optimal runs, and how good it is.
+
+Segments with a law, dwells and polynomials are taken as they are. Automatic segments take the laws whose velocity and
+acceleration fit their neighbours, and among those the best by the criterion: a shortest path over the states at the
+joints. What is then still open is made of runs of neighbouring optimal segments, one convex program each, or one for
+all of them where the criterion belongs to the whole cam (size, contact force).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from kinematics.cam.dynamics import FollowerLoad
+from kinematics.cam.extremes import extremes
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.pieces import Motion, Pieces
+from kinematics.cam.program import TURN, Program
+from kinematics.cam.segments import Condition as PolynomialCondition
+from kinematics.cam.segments import Segment, dwell, knot_segment, law_segment, polynomial_segment
+from synthesis.kinds.cam.joints import (
+    END_RATES,
+    State,
+    law_ends,
+)
+from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.optimal import (
+    STEPS,
+    Best,
+    NoMotion,
+    Run,
+    Told,
+    best_derivative,
+    best_flat_size,
+    best_force,
+    best_roller_size,
+    best_torque,
+)
+from synthesis.kinds.cam.problem import (
+    BarrelRoller,
+    CamProblem,
+    Dwell,
+    LengthRange,
+    Move,
+    Polynomial,
+    TranslatingFlat,
+    TranslatingRoller,
+)
+from synthesis.model.kind import Progress
+from synthesis.numerics.convex import (
+    Condition,
+    Demand,
+    Limit,
+)
+
+ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+"""Derivatives that criteria and limits are named after."""
+
+FITS = 1e-9
+"""Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
+
+EDGE = 0.02
+"""Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge and no cam."""
+
+LOOSE = 1e6
+"""Limits on a derivative that are this many times a unit lift over a unit angle do not bind on any grid here, and would
+only spoil the program's scaling; verification holds the motion to them all the same."""
+
+SAMPLES = 721
+"""Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
+
+
+def unheard(fraction: float, message: str) -> None:
+    """A progress that nobody follows."""
+
+
+@dataclass(frozen=True)
+class _Teller:
+    """Tells how far the programs of several runs are, within a part of the whole work."""
+
+    progress: Progress
+    reach: tuple[float, float]
+    runs: int
+
+    def of(self, run: int) -> Told:
+        """For the programs of one run."""
+        start, end = self.reach
+
+        def told(steps: int) -> None:
+            share = (run + (0.5 if steps > STEPS[0] else 0.0)) / self.runs
+            which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
+            self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
+
+        return told
+
+
+@dataclass(frozen=True)
+class Composition:
+    """A finished program, and the criterion's value and bound.
+
+    ``names`` are the segments' laws. ``bound`` is None where nothing was optimized over all motions; ``scope`` says
+    what the bound holds for.
+    """
+
+    program: Program
+    names: tuple[str, ...]
+    value: float
+    bound: float | None
+    scope: str
+
+
+@dataclass(frozen=True)
+class NoProgram:
+    """No program keeps the limits; ``proven`` tells whether that is certain."""
+
+    reason: str
+    proven: bool
+
+
+def compose(
+    problem: CamProblem, grids: Sequence[int] = STEPS, progress: Progress = unheard, reach: tuple[float, float] = (0, 1)
+) -> Composition | NoProgram:
+    """The best program of a problem without contradictions.
+
+    ``grids`` is as for the convex program of least size; ``progress`` is told before each program, with fractions
+    within ``reach``.
+    """
+    heights = problem.heights()
+    ends = problem.ends()
+    segments: list[Segment | None] = []
+    names: list[str] = []
+    for stated, (start, end), pair in zip(problem.segments, heights, ends, strict=True):
+        angle = math.radians(stated.angle)
+        if isinstance(stated, Dwell):
+            segments.append(dwell(angle, start))
+        elif isinstance(stated, Polynomial):
+            conditions = [PolynomialCondition(*condition) for condition in problem.polynomial_conditions(stated)]
+            segments.append(polynomial_segment(angle, conditions))
+        elif pair is None:
+            segments.append(None)
+        else:
+            law = stated.law if isinstance(stated, Move) else "constant_velocity"
+            segments.append(law_segment(LAWS[law], angle, start, end))
+        names.append(stated.law if isinstance(stated, Move) else stated.motion)
+    refused = _choose_laws(problem, heights, ends, segments, names)
+    if refused is not None:
+        return refused
+    runs = _runs(problem, segments)
+    best: list[Best] = []
+    if runs:
+        found = _optimized(problem, heights, ends, segments, runs, grids, _Teller(progress, reach, len(runs)))
+        if isinstance(found, NoProgram):
+            return found
+        best = found
+    program = Program([segment for segment in segments if segment is not None])
+    value = criterion(problem, program)
+    return Composition(program, tuple(names), value, *_bound(problem, program, runs, best, value))
+
+
+def criterion(problem: CamProblem, program: Program) -> float:
+    """The criterion's exact value over the whole program; NaN for the size, which the sizing gives."""
+    name = problem.minimize
+    kind, _, of = name.partition("_")
+    if name == "size":
+        return math.nan
+    if name == "peak_contact_force":
+        load, speed = follower_load(problem)
+        force = extremes(lambda at: load.force(program.pieces.motion(at), speed), program.breaks)
+        lowest = _floor(problem) - force.least if _preload(problem) is None else 0.0
+        return force.greatest + lowest
+    if kind == "peak":
+        if of == "torque":
+            return extremes(lambda at: _product(program.pieces.motion(at)), program.breaks).largest
+        return program.peaks[ORDERS[of]].largest
+    if of == "torque":
+        return root_mean_square(program, lambda motion: motion.v * motion.a)
+    return root_mean_square(program, lambda motion: motion[ORDERS[of]])
+
+
+def root_mean_square(program: Program, function: Callable[[Motion], np.ndarray]) -> float:
+    """Over the whole turn."""
+    return math.sqrt(_integrated_square(program.pieces, function) / TURN)
+
+
+def _integrated_square(pieces: Pieces, function: Callable[[Motion], np.ndarray]) -> float:
+    """∫ f² by Gauss's rule on every piece: exact for polynomials, to rounding for laws with sines."""
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    half = 0.5 * np.diff(pieces.start)
+    values = function(pieces.motion(pieces.start[:-1, None] + half[:, None] * (nodes + 1.0)))
+    return max(float(half @ (values**2 @ weights)), 0.0)
+
+
+def follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
+    """What the cam moves, in a consistent set of units, and the speed in rad/s.
+
+    With newtons and kilograms lengths must be metres for F = m a; in millimetres the mass counts a thousandth. For an
+    oscillating follower mass and spring at the arm's end become moments about the pivot. A free preload is left at
+    zero.
+    """
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    assert problem.speed_rpm is not None
+    share = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}[problem.length_unit]
+    square = arm_length(problem) ** 2
+    load = FollowerLoad(
+        dynamics.mass * share * square,
+        dynamics.spring_rate * square,
+        (dynamics.preload or 0.0) * arm_length(problem),
+    )
+    return load.damped(dynamics.damping_ratio), problem.speed_rpm * math.pi / 30.0
+
+
+def arm_length(problem: CamProblem) -> float:
+    """From an oscillating roller's pivot to its centre; 1 for the followers that are pushed straight."""
+    return getattr(problem.follower, "arm", 1.0)
+
+
+def _floor(problem: CamProblem) -> float:
+    assert problem.dynamics is not None
+    return problem.dynamics.least_force * arm_length(problem)
+
+
+def _preload(problem: CamProblem) -> float | None:
+    assert problem.dynamics is not None
+    return None if problem.dynamics.preload is None else problem.dynamics.preload * arm_length(problem)
+
+
+def _product(motion: Motion) -> np.ndarray:
+    return np.asarray(motion.v * motion.a)
+
+
+def _choose_laws(
+    problem: CamProblem,
+    heights: Sequence[tuple[float, float]],
+    ends: list[tuple[State, State] | None],
+    segments: list[Segment | None],
+    names: list[str],
+) -> NoProgram | None:
+    """Fill in the automatic segments: the best path over laws that fit at the joints, for each row of neighbours."""
+    count = len(segments)
+    auto = [isinstance(s, Move) and s.law == "auto" for s in problem.segments]
+    if not any(auto):
+        return None
+    first = next((k for k in range(count) if not auto[k]), 0)
+    row: list[int] = []
+    for k in [*((first + n) % count for n in range(count)), -1]:
+        if k >= 0 and auto[k]:
+            row.append(k)
+        elif row:
+            refused = _choose_row(problem, heights, ends, segments, names, row)
+            if refused is not None:
+                return refused
+            row = []
+    return None
+
+
+def _choose_row(
+    problem: CamProblem,
+    heights: Sequence[tuple[float, float]],
+    ends: list[tuple[State, State] | None],
+    segments: list[Segment | None],
+    names: list[str],
+    row: list[int],
+) -> NoProgram | None:
+    count = len(segments)
+    before, after = ends[row[0] - 1], ends[(row[-1] + 1) % count]
+    closed = len(row) == count
+    enter = (0.0, 0.0) if before is None or closed else before[1][1:]
+    leave = (0.0, 0.0) if after is None or closed else after[0][1:]
+    paths: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {enter: (0.0, ())}
+    for n, k in enumerate(row):
+        angle, (start, end) = math.radians(problem.segments[k].angle), heights[k]
+        unit = abs(end - start) / angle
+        following: dict[tuple[float, float], tuple[float, tuple[tuple[str, Segment], ...]]] = {}
+        for state, (cost, chosen) in paths.items():
+            wanted = leave if n == len(row) - 1 else None
+            for name, segment, at_start, at_end in _candidates(angle, start, end, state, wanted):
+                near = abs(at_start[0] - state[0]) <= FITS * unit and abs(at_start[1] - state[1]) <= FITS * unit / angle
+                if not near or not _within_limits(problem, segment):
+                    continue
+                if wanted is not None and not (
+                    abs(at_end[0] - wanted[0]) <= FITS * unit and abs(at_end[1] - wanted[1]) <= FITS * unit / angle
+                ):
+                    continue
+                total = _joined_cost(problem, cost, segment)
+                key = (round(at_end[0] / unit, 7), round(at_end[1] * angle / unit, 7))
+                if key not in following or total < following[key][0]:
+                    following[key] = total, (*chosen, (name, segment))
+        paths = {(key[0] * unit, key[1] * unit / angle): value for key, value in following.items()}
+        if not paths:
+            return NoProgram(
+                f"no law fits segment {k} within the limits on velocity, acceleration and jerk", proven=False
+            )
+    _, chosen = min(paths.values(), key=lambda path: path[0])
+    for k, (name, segment) in zip(row, chosen, strict=True):
+        segments[k], names[k] = segment, name
+        ends[k] = _segment_ends(segment)
+    return None
+
+
+def _candidates(
+    angle: float, start: float, end: float, enter: tuple[float, float], leave: tuple[float, float] | None
+) -> list[tuple[str, Segment, tuple[float, float], tuple[float, float]]]:
+    """Named laws, and the polynomial through both ends' states; with v and a at start and end."""
+    found = []
+    for name in END_RATES:
+        if name in ("constant_acceleration", "constant_velocity"):
+            continue
+        first, last = law_ends(name, angle, start, end)
+        found.append((name, law_segment(LAWS[name], angle, start, end), first[1:], last[1:]))
+    leave = (0.0, 0.0) if leave is None else leave
+    if enter != (0.0, 0.0) or leave != (0.0, 0.0):
+        states = ((0.0, start, *enter), (angle, end, *leave))
+        conditions = [PolynomialCondition(at, i, x) for at, *state in states for i, x in enumerate(state)]
+        found.append(("polynomial", polynomial_segment(angle, conditions), enter, leave))
+    return found
+
+
+def _within_limits(problem: CamProblem, segment: Segment) -> bool:
+    limits = problem.limits
+    for name, order in ORDERS.items():
+        limit = getattr(limits, name)
+        if limit is not None and segment.extremes(order).largest > limit * (1.0 + FITS):
+            return False
+    return True
+
+
+def _joined_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
+    """The criterion over one segment more: the greater peak, or the sum of squares."""
+    name = problem.minimize
+    kind, _, of = name.partition("_")
+    at = np.linspace(0.0, segment.angle, SAMPLES)
+    motion = segment.pieces.motion(at)
+    if name == "size":
+        return max(cost, _need(problem, motion))
+    if name == "peak_contact_force":
+        load, speed = follower_load(problem)
+        return max(cost, float(np.ptp(load.force(motion, speed))))
+    if of == "torque":
+        values = np.abs(motion.v * motion.a)
+        return max(cost, float(values.max())) if kind == "peak" else cost + float(np.mean(values**2)) * segment.angle
+    if kind == "peak":
+        return max(cost, segment.extremes(ORDERS[of]).largest)
+    return cost + float(np.mean(motion[ORDERS[of]] ** 2)) * segment.angle
+
+
+def _need(problem: CamProblem, motion: Motion) -> float:
+    """The radius that a segment alone asks for, near enough to compare laws."""
+    if isinstance(problem.follower, TranslatingFlat):
+        return float(np.max(-motion.s - motion.a))
+    tangent = math.tan(math.radians(problem.limits.pressure_angle))
+    barrel = isinstance(problem.follower, BarrelRoller)
+    return float(np.max(np.abs(motion.v) / tangent - (0.0 if barrel else motion.s)))
+
+
+def _segment_ends(segment: Segment) -> tuple[State, State]:
+    first = segment.pieces.motion(0.0)
+    last = segment.pieces.motion(segment.angle, before=True)
+    return (
+        (float(first.s), float(first.v), float(first.a)),
+        (float(last.s), float(last.v), float(last.a)),
+    )
+
+
+def _runs(problem: CamProblem, segments: Sequence[Segment | None]) -> list[list[int]]:
+    """Rows of neighbouring open segments; one by one for the torque, which is convex for one move only."""
+    count = len(segments)
+    open_ = [k for k in range(count) if segments[k] is None]
+    if problem.minimize.endswith("torque"):
+        return [[k] for k in open_]
+    if len(open_) == count:
+        return [open_]
+    first = next(k for k in range(count) if segments[k] is not None)
+    rows: list[list[int]] = []
+    joined = False
+    for n in range(count):
+        k = (first + n) % count
+        if segments[k] is None:
+            if joined:
+                rows[-1].append(k)
+            else:
+                rows.append([k])
+        joined = segments[k] is None
+    return rows
+
+
+def _run(
+    problem: CamProblem,
+    heights: Sequence[tuple[float, float]],
+    ends: Sequence[tuple[State, State] | None],
+    segments: Sequence[Segment | None],
+    row: Sequence[int],
+) -> Run:
+    """A row of open segments as a run: what its neighbours and its statement fix."""
+    count = len(segments)
+    continuity = 3 if problem.continuity == "jerk" else 2
+    angles = [math.radians(problem.segments[k].angle) for k in row]
+    starts = np.concatenate([[0.0], np.cumsum(angles)])
+    total = float(starts[-1])
+    unit = problem.displacement_unit
+    conditions = [Condition.at(0.0, 0, heights[row[0]][0]), Condition.at(total, 0, heights[row[-1]][1])]
+    demands: list[Demand] = []
+    if len(row) == count:
+        conditions += [Condition(((total, i, 1.0), (0.0, i, -1.0)), 0.0) for i in range(1, continuity + 1)]
+        if _turns(heights, row[-1], row[0]):
+            conditions.append(Condition.at(0.0, 1, 0.0))
+    else:
+        for at, neighbour, side in ((0.0, row[0] - 1, 1), (total, (row[-1] + 1) % count, 0)):
+            pair = ends[neighbour]
+            state = (0.0, 0.0, 0.0) if pair is None else pair[side]
+            segment = segments[neighbour]
+            jerk = 0.0
+            if segment is not None:
+                jerk = float(segment.pieces.motion(segment.angle if side else 0.0, before=bool(side)).j)
+            values = (*state, jerk)
+            conditions += [Condition.at(at, i, values[i]) for i in range(1, continuity + 1)]
+    for n, k in enumerate(row):
+        begin, end = float(starts[n]), float(starts[n + 1])
+        if n:
+            conditions.append(Condition.at(begin, 0, heights[k][0]))
+            if _turns(heights, row[n - 1], k):
+                conditions.append(Condition.at(begin, 1, 0.0))
+        stated = problem.segments[k]
+        assert isinstance(stated, Move)
+        conditions += [Condition.at(begin + at, i, x) for at, i, x in problem.polynomial_conditions(stated)]
+        for band in stated.bands:
+            span = begin + math.radians(band.start), min(begin + math.radians(band.end), end)
+            if band.upper is not None:
+                demands.append(Demand((1.0,), band.upper * unit, (), *span))
+            if band.lower is not None:
+                demands.append(Demand((-1.0,), -band.lower * unit, (), *span))
+    run = Run(total, tuple(conditions), continuity, (), tuple(demands))
+    limits = tuple(
+        Limit(order, limit)
+        for name, order in ORDERS.items()
+        if (limit := getattr(problem.limits, name)) is not None and limit * total**order < LOOSE * run.lift
+    )
+    return replace(run, limits=limits)
+
+
+def _turns(heights: Sequence[tuple[float, float]], before: int, after: int) -> bool:
+    """Whether the follower turns back between two moves."""
+    return (heights[before][1] - heights[before][0]) * (heights[after][1] - heights[after][0]) < 0.0
+
+
+def _optimized(
+    problem: CamProblem,
+    heights: Sequence[tuple[float, float]],
+    ends: Sequence[tuple[State, State] | None],
+    segments: list[Segment | None],
+    rows: Sequence[Sequence[int]],
+    grids: Sequence[int],
+    teller: _Teller,
+) -> list[Best] | NoProgram:
+    """Solve the runs, and put their motions where the program is open."""
+    runs = [_run(problem, heights, ends, segments, row) for row in rows]
+    given = [segment for segment in segments if segment is not None]
+    kind, _, of = problem.minimize.partition("_")
+    found: list[Best | NoMotion]
+    if problem.minimize == "size":
+        found = [_smallest(problem, runs, given, grids, teller.of(0))]
+    elif problem.minimize == "peak_contact_force":
+        load, speed = follower_load(problem)
+        weights = load.spring_rate, load.damping * speed, load.mass * speed**2
+        loads = [_range_of(segment, lambda m: load.force(m, speed) - load.preload) for segment in given]
+        rest = (min(low for low, _ in loads), max(high for _, high in loads)) if loads else None
+        found = [best_force(runs, weights, _floor(problem), _preload(problem), rest, told=teller.of(0))]
+    elif of == "torque":
+        measure: Literal["peak", "rms"] = "peak" if kind == "peak" else "rms"
+        found = [best_torque(run, measure, told=teller.of(k)) for k, run in enumerate(runs)]
+    else:
+        order = ORDERS[of]
+        measure = "peak" if kind == "peak" else "rms"
+        found = [best_derivative(run, measure, order, told=teller.of(k)) for k, run in enumerate(runs)]
+    best = []
+    for each in found:
+        if isinstance(each, NoMotion):
+            if each.factor is None:
+                return NoProgram("no optimal motion was found within the limits and conditions", proven=False)
+            reason = f"no motion keeps the limits: they would have to be at least {each.factor:.6g} times as large"
+            return NoProgram(reason, proven=True)
+        best.append(each)
+    motions = [motion for each in best for motion in each.motions]
+    for row, motion in zip(rows, motions, strict=True):
+        at = 0.0
+        for k in row:
+            angle = math.radians(problem.segments[k].angle)
+            segments[k] = _cut(motion, at, at + angle, angle)
+            at += angle
+    return best
+
+
+def _cut(motion: KnotMotion, start: float, end: float, angle: float) -> Segment:
+    """The part of a motion between two of its knots, as a segment."""
+    first, last = (int(np.abs(motion.times - at).argmin()) for at in (start, end))
+    times = motion.times[first : last + 1] - motion.times[first]
+    times[-1] = angle
+    size = motion.states.shape[1]
+    rows = np.column_stack([motion.states[first:last], motion.control[first:last]])
+    factorials = np.array([math.factorial(k) for k in range(size + 1)], np.float64)
+    return knot_segment(times, rows / factorials)
+
+
+def _range_of(segment: Segment, function: Callable[[Motion], np.ndarray]) -> tuple[float, float]:
+    found = extremes(lambda at: function(segment.pieces.motion(at)), segment.pieces.start)
+    return found.least, found.greatest
+
+
+def _smallest(
+    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], told: Told
+) -> Best | NoMotion:
+    """Motion and size together, for a translating follower."""
+    limits = problem.limits
+    if isinstance(problem.follower, TranslatingFlat):
+        rest = None
+        if given:
+            low = min(_range_of(segment, lambda m: np.asarray(m.s + m.a))[0] for segment in given)
+            speeds = [_range_of(segment, lambda m: m.v) for segment in given]
+            rest = low, min(v for v, _ in speeds), max(v for _, v in speeds)
+        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest, told=told)
+    assert isinstance(problem.follower, TranslatingRoller)
+    rising = math.tan(math.radians(limits.pressure_angle))
+    falling = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
+    rest_rows = []
+    for segment in given:
+        for k, sign in ((rising, 1), (falling, -1)):
+            rest_rows.append((k, sign, _range_of(segment, _room(k, sign))[0]))
+    lowest = min(min(pair) for pair in problem.heights())
+    rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
+    offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
+    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, told=told)
+
+
+def _room(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:
+    """s tan φ ∓ v: what a pressure angle leaves."""
+    return lambda motion: np.asarray(tangent * motion.s - sign * motion.v)
+
+
+def _bound(
+    problem: CamProblem, program: Program, rows: Sequence[Sequence[int]], best: Sequence[Best], value: float
+) -> tuple[float | None, str]:
+    """The lower bound of the criterion over the whole program, and what it holds for."""
+    if not best:
+        automatic = any(isinstance(s, Move) and s.law == "auto" for s in problem.segments)
+        return None, "the best of the named laws" if automatic else "the laws are given"
+    scope = "all motions in the optimal segments, the other segments as they are"
+    cap = next((each.cap for each in best if each.cap is not None), None)
+    if cap is not None:
+        name = {2: "acceleration", 3: "jerk", 4: "fourth derivative"}[cap[0]]
+        scope += f", with a peak {name} of at most {cap[1]:.6g}"
+    name = problem.minimize
+    kind, _, of = name.partition("_")
+    if of == "torque" and (problem.limits.acceleration is not None or problem.limits.jerk is not None):
+        scope += ", whatever their acceleration and jerk: under the limits on these the least is higher than the bound"
+    if name in ("size", "peak_contact_force"):
+        return best[0].bound, scope
+    open_ = {k for row in rows for k in row}
+    given = [segment for k, segment in enumerate(program.segments) if k not in open_]
+
+    def measured(motion: Motion) -> np.ndarray:
+        return _product(motion) if of == "torque" else motion[ORDERS[of]]
+
+    if kind == "peak":
+        peaks = [max(map(abs, _range_of(segment, measured))) for segment in given]
+        return min(max([each.bound for each in best] + peaks), value), scope
+    square = sum(
+        each.bound**2 * sum(program.segments[k].angle for k in row) for each, row in zip(best, rows, strict=True)
+    )
+    square += sum(_integrated_square(segment.pieces, measured) for segment in given)
+    return min(math.sqrt(square / TURN), value), scope
+
+
+def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
+    """Least and greatest roller radius; None for a flat face."""
+    radius = getattr(problem.follower, "roller_radius", None)
+    if radius is None:
+        return None
+    return (radius.min, radius.max) if isinstance(radius, LengthRange) else (radius, radius)
+
+
+def least_face_radius(problem: CamProblem) -> float:
+    """Least radius of curvature of a cam under a flat face: the client's, or as little as is not an edge."""
+    heights = [height for pair in problem.heights() for height in pair]
+    travel = max(heights) - min(heights)
+    reach = getattr(problem.follower, "pivot_distance", 1.0)
+    return max(problem.limits.min_radius, EDGE * travel * reach)

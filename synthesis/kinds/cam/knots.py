@@ -1,0 +1,97 @@
+"""A motion by knots: the state at each knot, and a constant highest derivative between them.
+
+Between two knots, h apart, the state x = (s, s′, …) follows from the constant control u = dᵐs/dtᵐ by Taylor's formula
+
+    x_i(t + h) = Σ_{j ≥ i} x_j hʲ⁻ⁱ/(j−i)! + u hᵐ⁻ⁱ/(m−i)!
+
+which is exact, so that the motion is a piecewise polynomial of degree m with m − 1 continuous derivatives and its peaks
+are found exactly, not sampled.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.cam.piecewise import Piecewise
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KnotMotion:
+    """A motion on [times[0], times[-1]].
+
+    Parameters
+    ----------
+    times : float64, shape (n + 1,)
+        The knots.
+    states : float64, shape (n + 1, m)
+        s and its first m − 1 derivatives at the knots.
+    control : float64, shape (n,)
+        The m-th derivative between the knots.
+    """
+
+    times: Real
+    states: Real
+    control: Real
+
+    @cached_property
+    def displacement(self) -> Piecewise:
+        """s as a piecewise polynomial of degree m."""
+        m = self.states.shape[1]
+        h = np.diff(self.times)[:, None]
+        rows = np.column_stack([self.states[:-1], self.control])
+        powers = np.arange(m + 1)
+        factorials = np.array([math.factorial(k) for k in powers], np.float64)
+        return Piecewise(self.times, rows * h**powers / factorials)
+
+    def derivative(self, order: int) -> Piecewise:
+        """The derivative of an order, 0 for the displacement itself."""
+        curve = self.displacement
+        for _ in range(order):
+            curve = curve.derivative()
+        return curve
+
+    def combination(self, weights: tuple[float, ...]) -> Piecewise:
+        """Σ weights[i] · dⁱs/dtⁱ."""
+        m = self.states.shape[1]
+        total = np.zeros((len(self.control), m + 1))
+        for order, weight in enumerate(weights):
+            if weight:
+                coefficients = self.derivative(order).coefficients
+                total[:, : coefficients.shape[1]] += weight * coefficients
+        return Piecewise(self.times, total)
+
+
+def transition(step: Real, size: int) -> tuple[Real, Real]:
+    """Matrices of Taylor's formula for each step: state to state, shape (n, m, m), and control to state, (n, m)."""
+    n = len(step)
+    state = np.zeros((n, size, size))
+    control = np.empty((n, size))
+    for i in range(size):
+        for j in range(i, size):
+            state[:, i, j] = step ** (j - i) / math.factorial(j - i)
+        control[:, i] = step ** (size - i) / math.factorial(size - i)
+    return state, control
+
+
+def integrated(times: Real, start: Real, control: Real) -> KnotMotion:
+    """The motion that a start state and a control lead to.
+
+    Summed order by order from the highest, each a cumulative sum, so that the knots join to rounding.
+    """
+    size = len(start)
+    states = np.empty((len(times), size))
+    step = np.diff(times)
+    for i in range(size - 1, -1, -1):
+        gained = control * step ** (size - i) / math.factorial(size - i)
+        for j in range(i + 1, size):
+            gained = gained + states[:-1, j] * step ** (j - i) / math.factorial(j - i)
+        states[0, i] = start[i]
+        states[1:, i] = start[i] + np.cumsum(gained)
+    return KnotMotion(times, states, control)

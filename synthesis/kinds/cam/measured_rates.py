@@ -1,0 +1,160 @@
+"""Velocity, acceleration, jerk and stated conditions, measured on the finished profile.
+
+The contact search gives the displacement s at any cam angle, and the direction of the profile at the contact gives
+the velocity without differences. Acceleration and jerk are n-th differences over n + 1 angles a step h apart,
+
+    δⁿs/hⁿ = ∫ B(u) s⁽ⁿ⁾(θ + u) du,    B a B-spline of width n h, ∫ B = 1
+
+(Schumaker, *Spline Functions*, §4.3): a mean of the derivative itself, which never exceeds its peak, whatever the
+motion. A deviation ε of the displacement adds 2ⁿ ε/hⁿ at most. So a limit that is broken over more than a window's
+width is found; a spike narrower than that is not, and neither would any instrument on the finished cam find it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.cam.problem import CamProblem, Move
+from synthesis.model.answer import Check
+
+Real = NDArray[np.float64]
+Measure = Callable[[Real], tuple[Real, Real]]
+"""s and v at cam angles (radians), as the follower has them on the finished profile."""
+
+GRID = 320
+"""Equal steps of a segment at which its displacement is measured."""
+
+STRIDE = {"acceleration": 4, "jerk": 8}
+"""Steps between the angles of a difference: windows of a fortieth and of 3/40 of the segment. A deviation of 1e-7 of
+the lift moves a jerk by 2e-4 of the least that any motion has, an acceleration by 6e-4."""
+
+ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+
+PEAK_SLACK = 2e-3
+"""Relative slack of the limits on the motion: twice what deviations of the displacement do to the differences."""
+
+CONDITION_SLACK = {1: 1e-3, 2: 1e-2}
+"""Deviation of a measured velocity or acceleration from a condition, as a share of the segment's peak."""
+
+FINE, NEAR = 2, 2
+"""Steps between the angles of a difference at a condition on the acceleration, and around it: the value that is stated
+must lie among the means there and what both sides lead to, because an acceleration may bend at its condition."""
+
+ONE_SIDED = (2.0, -5.0, 4.0, -1.0)
+"""Second derivative at the first of four equally spaced values, exact for a cubic."""
+
+
+@dataclass(frozen=True)
+class _Open:
+    """An automatic or optimal segment, with its place and the grid of what was measured in it."""
+
+    index: int
+    segment: Move
+    start: float
+    span: float
+    heights: tuple[float, float]
+    s: Real
+    v: Real
+
+    def means(self, name: str) -> Real:
+        """Windowed means of the acceleration or the jerk."""
+        order, stride = ORDERS[name], STRIDE[name]
+        s, h = self.s, stride * self.span / GRID
+        count = len(s) - order * stride
+        total = sum(
+            (-1) ** (order - k) * math.comb(order, k) * s[k * stride : k * stride + count] for k in range(order + 1)
+        )
+        return np.asarray(total / h**order)
+
+    def peak(self, name: str) -> float:
+        """Greatest magnitude of a derivative."""
+        return float(np.abs(self.v if name == "velocity" else self.means(name)).max())
+
+
+def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: float) -> list[Check]:
+    """Limits, positions, conditions and bands of the automatic and optimal segments.
+
+    Parameters
+    ----------
+    problem : CamProblem
+        What was asked.
+    measure : callable
+        The follower on the finished profile.
+    lift : float
+        The program's travel, in radians for an arm.
+    reproduced : float
+        Share of the lift by which a displacement may be off.
+    """
+    parts = list(_open_segments(problem, measure))
+    if not parts:
+        return []
+    checks = []
+    for name in ORDERS:
+        limit = getattr(problem.limits, name)
+        if limit is not None:
+            peak = max(part.peak(name) for part in parts)
+            checks.append(
+                Check(name=f"peak_{name}", passed=peak <= limit * (1.0 + PEAK_SLACK), value=peak, limit=limit)
+            )
+    off = max(_displacement_deviation(problem, measure, part) for part in parts) / lift
+    checks.append(Check(name="meets_positions", passed=off <= reproduced, value=min(off, 1e9), limit=reproduced))
+    for order, name in ((1, "meets_velocities"), (2, "meets_accelerations")):
+        worst = [_rate_deviation(problem, measure, part, order) for part in parts]
+        stated = [value for value in worst if value is not None]
+        if stated:
+            slack = CONDITION_SLACK[order]
+            checks.append(Check(name=name, passed=max(stated) <= slack, value=min(max(stated), 1e9), limit=slack))
+    return checks
+
+
+def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
+    start = 0.0
+    for index, (segment, heights) in enumerate(zip(problem.segments, problem.heights(), strict=True)):
+        span = math.radians(segment.angle)
+        if isinstance(segment, Move) and segment.law in ("auto", "optimal"):
+            s, v = measure(start + span * np.arange(GRID + 1) / GRID)
+            yield _Open(index, segment, start, span, heights, s, v)
+        start += span
+
+
+def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) -> float:
+    """How far the measured displacement is from ends, conditions and bands."""
+    unit = problem.displacement_unit
+    stated = [(0.0, part.heights[0]), (part.span, part.heights[1])]
+    stated += [(t, x) for t, order, x in problem.polynomial_conditions(part.segment) if order == 0]
+    at, value = (np.array(column) for column in zip(*stated, strict=True))
+    off = float(np.abs(measure(part.start + at)[0] - value).max())
+    grid = part.span * np.arange(GRID + 1) / GRID
+    for band in part.segment.bands:
+        ends = np.radians([band.start, band.end])
+        inside = part.s[(grid >= ends[0]) & (grid <= ends[1])]
+        within = np.concatenate([inside, measure(part.start + ends)[0]])
+        if band.upper is not None:
+            off = max(off, float(within.max()) - band.upper * unit)
+        if band.lower is not None:
+            off = max(off, band.lower * unit - float(within.min()))
+    return off
+
+
+def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: int) -> float | None:
+    """How far a measured rate is from its conditions, as a share of the segment's peak; None without a condition."""
+    stated = [(t, x) for t, of, x in problem.polynomial_conditions(part.segment) if of == order]
+    if not stated:
+        return None
+    at, value = (np.array(column) for column in zip(*stated, strict=True))
+    if order == 1:
+        return float(np.abs(measure(part.start + at)[1] - value).max()) / part.peak("velocity")
+    step = part.span / GRID
+    reach = FINE * (len(ONE_SIDED) - 1)
+    s = {k: measure(part.start + at + k * step)[0] for k in range(-reach, reach + 1)}
+    means = [s[k - FINE] - 2.0 * s[k] + s[k + FINE] for k in range(-NEAR, NEAR + 1)]
+    for side in (-FINE, FINE):
+        means.append(np.sum([weight * s[side * k] for k, weight in enumerate(ONE_SIDED)], axis=0))
+    found = np.array(means) / (FINE * step) ** 2
+    off = np.maximum(np.maximum(found.min(axis=0) - value, value - found.max(axis=0)), 0.0)
+    return float(off.max()) / part.peak("acceleration")

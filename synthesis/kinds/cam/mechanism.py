@@ -1,0 +1,187 @@
+"""Cams between the analysis core and the answer: degrees and tables outside, radians and exact curves inside."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam import follower as core
+from kinematics.cam.barrel import BarrelCam
+from kinematics.cam.profile import Cam, even_angles
+from kinematics.cam.program import TURN, Program
+from synthesis.kinds.cam.design import (
+    BarrelCamMechanism,
+    BarrelFollower,
+    CamCurve,
+    CamFollower,
+    CamMechanism,
+    ProgramTable,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+APART = 1e-9
+"""Radians below which a joint and an equal step are one angle."""
+
+MOST = 5760
+"""Equal steps of a profile at most."""
+
+SPAN_OF_ROLLER = 5.0
+"""Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
+
+
+FINEST_PARTS = 8
+"""Parts that a step is divided in at once, at most."""
+
+STEPS_OF_MOVE = 12
+"""Steps of the profile within a segment that moves, at least."""
+
+
+def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
+    """Cam angles of a profile: equal steps and the joints of the segments, as close as short segments ask for.
+
+    A small roller asks for close points too: its radius spans five chords of the curve that it touches.
+    """
+    short = [
+        np.linspace(start, end, STEPS_OF_MOVE + 1)[:-1]
+        for start, end, segment in zip(program.joints[:-1], program.joints[1:], program.segments, strict=True)
+        if segment.pieces.polynomial.shape[1] > 1 and end - start < STEPS_OF_MOVE * TURN / count
+    ]
+    while True:
+        angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1], *short]))
+        angle = angle[np.append(True, np.diff(angle) > APART)]
+        chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
+        if chord * SPAN_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MOST:
+            return angle
+        count *= 2
+
+
+def refined(angle: Real, off: Real, allowed: float) -> Real:
+    """Steps divided where a deviation is more than half of what is allowed, and beside such a step.
+
+    The deviation falls with the fourth power of the step where the curvature is smooth; where it bends, with less, and
+    the next round divides again.
+    """
+    closed = np.append(angle, TURN + angle[0])
+    parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, FINEST_PARTS).astype(np.int64)
+    parts = np.maximum(parts, np.minimum(np.roll(parts, -1), 2))
+    parts = np.maximum(parts, np.minimum(np.roll(parts, 1), 2))
+    low, step = np.repeat(closed[:-1], parts), np.repeat(np.diff(closed) / parts, parts)
+    within = np.arange(len(low)) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.unique(np.mod(low + step * within, TURN))
+
+
+def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
+    """A cam as the answer has it, at given cam angles; with both walls of its groove, or one profile."""
+    motion = cam.program.motion(angle)
+    oscillating = isinstance(cam.follower, core.OscillatingRoller | core.OscillatingFlat)
+    unit = 180.0 / math.pi if oscillating else 1.0
+    degrees = np.degrees(angle).tolist()
+    roller = isinstance(cam.follower, core.TranslatingRoller | core.OscillatingRoller)
+    return CamMechanism(
+        follower=follower_model(cam.follower),
+        prime_radius=cam.size if roller else None,
+        base_radius=None if roller else cam.size,
+        rotation=cam.rotation,
+        profile=_curve(degrees, cam.profile(angle)),
+        outer_wall=_curve(degrees, cam.outer_wall(angle)) if groove else None,
+        pitch_curve=_curve(degrees, cam.pitch_curve(angle)),
+        program=ProgramTable(
+            angle=degrees,
+            s=(motion.s * unit).tolist(),
+            v=motion.v.tolist(),
+            a=motion.a.tolist(),
+            j=motion.j.tolist(),
+        ),
+    )
+
+
+def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: Real) -> BarrelCamMechanism:
+    """A barrel cam as the answer has it, at given cam angles."""
+    motion, degrees = barrel.program.motion(angle), np.degrees(angle).tolist()
+    return BarrelCamMechanism(
+        follower=BarrelFollower(roller_radius=barrel.roller_radius),
+        cylinder_radius=barrel.radius,
+        rotation=rotation,
+        lower_wall=_curve(degrees, barrel.wall(angle, -1)),
+        upper_wall=_curve(degrees, barrel.wall(angle, 1)),
+        pitch_curve=_curve(degrees, barrel.pitch_curve(angle)),
+        program=ProgramTable(
+            angle=degrees, s=motion.s.tolist(), v=motion.v.tolist(), a=motion.a.tolist(), j=motion.j.tolist()
+        ),
+    )
+
+
+def _curve(degrees: list[float], points: Complex) -> CamCurve:
+    return CamCurve(angle=degrees, x=points.real.tolist(), y=points.imag.tolist())
+
+
+def follower_model(follower: core.Follower) -> CamFollower:
+    """The follower as the answer has it."""
+    if isinstance(follower, core.TranslatingRoller):
+        return CamFollower(type="translating_roller", roller_radius=follower.roller_radius, offset=follower.offset)
+    if isinstance(follower, core.OscillatingRoller):
+        return CamFollower(
+            type="oscillating_roller",
+            roller_radius=follower.roller_radius,
+            arm=follower.arm,
+            pivot_distance=follower.pivot_distance,
+            sense=_sense(follower.sense),
+        )
+    if isinstance(follower, core.TranslatingFlat):
+        return CamFollower(type="translating_flat")
+    return CamFollower(
+        type="oscillating_flat",
+        pivot_distance=follower.pivot_distance,
+        face_offset=follower.face_offset,
+        sense=_sense(follower.sense),
+    )
+
+
+def core_follower(mechanism: CamMechanism) -> core.Follower:
+    """The follower of a mechanism, for the analysis core; from its dimensions alone.
+
+    Raises
+    ------
+    DimensionError
+        For dimensions that no follower can have.
+    """
+    follower = mechanism.follower
+    prime, base = mechanism.prime_radius or 0.0, mechanism.base_radius or 0.0
+    if follower.type == "translating_roller":
+        return core.TranslatingRoller(prime, follower.roller_radius or 0.0, follower.offset or 0.0)
+    if follower.type == "oscillating_roller":
+        return core.OscillatingRoller(
+            prime,
+            follower.roller_radius or 0.0,
+            follower.arm or 0.0,
+            follower.pivot_distance or 0.0,
+            follower.sense or 1,
+        )
+    if follower.type == "translating_flat":
+        return core.TranslatingFlat(base)
+    return core.OscillatingFlat(base, follower.pivot_distance or 0.0, follower.face_offset or 0.0, follower.sense or 1)
+
+
+def _sense(sense: int) -> Literal[1, -1]:
+    return 1 if sense == 1 else -1
+
+
+def points_of(curve: CamCurve) -> Complex:
+    """A curve as complex numbers."""
+    return np.array(curve.x) + 1j * np.array(curve.y)
+
+
+def profile_points(mechanism: CamMechanism) -> Complex:
+    """The profile as complex numbers."""
+    return points_of(mechanism.profile)
+
+
+def table_angles(program: ProgramTable) -> Real:
+    """Cam angles of a program's table, radians, within a turn."""
+    return np.mod(np.radians(program.angle), TURN)

@@ -1,0 +1,465 @@
+"""Motions that are best by a criterion, with a lower bound for all motions: the door to the convex programs.
+
+A run is what the client leaves open between two parts of a motion program that are given: one segment, or several in
+a row. What is known at its ends and within stands in conditions; limits and demands hold throughout. The criteria are
+
+- the peak or the root mean square of a derivative of s: a linear, or a quadratic program;
+- the peak of a contact force F = Σ w_i s⁽ⁱ⁾ + F₀ that must not fall below a floor: linear, the preload F₀ given or
+  free;
+- the prime radius √(d² + e²) of a translating roller follower under |v − e| ≤ tan φ (s + d), offset e given or free: a
+  second-order cone program; the base radius of a flat-faced one under R + s + a ≥ ρ and a face width: linear;
+- the peak or root mean square of the inertia torque v a (:mod:`synthesis.kinds.cam.torque`).
+
+The programs are solved on 400 steps, and on 2000 where the gap to the bound is then not small. Known limits (unit
+lift and angle, dwell to dwell): max |s⁽ⁿ⁾| ≥ (n − 1)! 4ⁿ⁻¹; rms a ≥ √12, rms j ≥ √720; least max |a| under |j| ≤ J is
+(J/4)(1 − √(1 − 32/J)); max |v a| ≥ 9/4.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.cam.dual import LowerBound, lower_bound
+from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.torque import least_torque
+from synthesis.numerics.convex import (
+    Block,
+    Condition,
+    ConvexProgram,
+    Demand,
+    Limit,
+    Solution,
+    solve,
+)
+
+Real = NDArray[np.float64]
+
+STEPS = (400, 2000)
+"""Steps of the first grid, and of the second where the first leaves a gap."""
+
+SMALL_GAP = 1e-3
+"""Share of the bound by which the value may exceed it on the first grid."""
+
+TORQUE_STEPS = 800
+"""Steps where no limit binds: the acceleration of least torque grows beyond all bounds at the ends."""
+
+TIGHTENED = 1e-7
+"""Share by which limits are narrowed for the solver, so that its own tolerance does not break them."""
+
+SAME_TIME = 1e-9
+"""Times closer than this share of the run are one."""
+
+
+Told = Callable[[int], None]
+"""Called with the number of steps before a program is solved."""
+
+
+def untold(steps: int) -> None:
+    """Nobody wants to know."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is open: an angle, and all that must hold in it. Radians from its start, derivatives per radian."""
+
+    angle: float
+    conditions: tuple[Condition, ...]
+    continuity: int
+    limits: tuple[Limit, ...] = ()
+    demands: tuple[Demand, ...] = ()
+
+    @property
+    def lift(self) -> float:
+        """The greatest distance between two stated positions; what the program is scaled by."""
+        stated = [c.value for c in self.conditions if len(c.terms) == 1 and c.terms[0][1] == 0]
+        return max(stated) - min(stated)
+
+
+@dataclass(frozen=True)
+class Best:
+    """The best motions found, one for each run, the criterion's exact value and its lower bound.
+
+    ``cap`` tells for which motions the bound holds: None for all, else (order, limit) for those whose derivative of
+    that order stays within the limit. ``scalars`` are preload, offset and the like, as the criterion has them.
+    """
+
+    motions: tuple[KnotMotion, ...]
+    value: float
+    bound: float
+    cap: tuple[int, float] | None = None
+    scalars: Real = field(default_factory=lambda: np.empty(0))
+
+
+@dataclass(frozen=True)
+class NoMotion:
+    """No motion was found. ``factor``, where it is known, is a proof: the limits times less than it are too low."""
+
+    factor: float | None
+
+
+def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int, *, told: Told = untold) -> Best | NoMotion:
+    """The motion of least peak or root mean square of a derivative."""
+    size = max(_order(run), order)
+
+    def program(steps: int) -> ConvexProgram:
+        block = _block(run, run.lift, size, steps)
+        others = tuple(limit for limit in block.limits if limit.order != order)
+        if measure == "rms":
+            return ConvexProgram((block,), "rms", order)
+        return ConvexProgram((replace(block, limits=(*others, Limit(order, 0.0, 1.0))),), "scalar", box=np.ones(1))
+
+    def value(solution: Solution) -> float:
+        curve = solution.motions[0].derivative(order)
+        return curve.peak() if measure == "peak" else curve.rms()
+
+    best = _solved((run,), program, value, run.lift / run.angle**order, run.lift, told=told)
+    limit = next((limit.constant for limit in run.limits if limit.order == order), math.inf)
+    if isinstance(best, Best) and measure == "peak" and best.value > limit:
+        return NoMotion(best.bound / limit if best.bound > limit and best.cap is None else None)
+    return best
+
+
+def best_torque(run: Run, measure: Literal["peak", "rms"], *, told: Told = untold) -> Best | NoMotion:
+    """The motion of least peak or root mean square of v a, what a mass takes of the shaft at constant speed."""
+    lift, angle = run.lift, run.angle
+    size = max(_order(run), 3)
+    limited = any(limit.order >= 2 for limit in run.limits)
+    block = _block(run, lift, size, STEPS[0])
+    if not limited:
+        x = np.linspace(0.0, 1.0, TORQUE_STEPS + 1)
+        block = replace(block, times=x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
+    start, end = (_stated(run, at, 0) / lift for at in (0.0, angle))
+    ends = tuple(_stated(run, at, 1) * angle / lift for at in (0.0, angle))
+    falls = end < start
+    if falls:
+        block = _mirrored(block)
+        ends = tuple(-v for v in ends)
+    told(len(block.times) - 1)
+    found = least_torque(block, measure, abs(end - start), (ends[0], ends[1]))
+    if found is None:
+        return _none((run,), lift)
+    motion = found.motion
+    if falls:
+        motion = KnotMotion(motion.times, -motion.states, -motion.control)
+    unit = lift**2 / angle**3
+    return Best((_physical(motion, run, lift),), found.value * unit, found.bound * unit)
+
+
+def best_force(
+    runs: Sequence[Run],
+    weights: tuple[float, ...],
+    floor: float,
+    preload: float | None,
+    rest: tuple[float, float] | None,
+    *,
+    told: Told = untold,
+) -> Best | NoMotion:
+    """The motions of least peak contact force Σ weights[i] s⁽ⁱ⁾ + preload, which stays at or above a floor.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        All open parts of the motion program.
+    weights : tuple of float
+        Spring rate, damping times speed, mass times its square.
+    floor : float
+        Least contact force allowed.
+    preload : float or None
+        None leaves it free: then it is the least that keeps the floor, and ``scalars`` holds it.
+    rest : tuple of two floats or None
+        Least and greatest Σ weights[i] s⁽ⁱ⁾ on the parts that are given, if there are any.
+    """
+    lift = max(run.lift for run in runs)
+    unit = max(abs(w) * lift / min(run.angle for run in runs) ** i for i, w in enumerate(weights))
+    known = 0.0 if preload is None else preload
+    free = (1.0,) if preload is None else ()
+    size = max(*(_order(run) for run in runs), 3)
+
+    def program(steps: int) -> ConvexProgram:
+        blocks = []
+        for run in runs:
+            shares = tuple(w * lift / run.angle**i / unit for i, w in enumerate(weights))
+            above = Demand(shares, -known / unit, (-1.0, *free))
+            below = Demand(tuple(-w for w in shares), (known - floor) / unit, (0.0, *(-f for f in free)))
+            block = _block(run, lift, size, steps)
+            blocks.append(replace(block, demands=(*block.demands, above, below)))
+        rows, right = [], []
+        if rest is not None:
+            rows = [[-1.0, *free], [0.0, *(-f for f in free)]]
+            right = [-(rest[1] + known) / unit, (rest[0] + known - floor) / unit]
+        box = np.array([1.0, *(1e3 * f for f in free)])
+        return ConvexProgram(tuple(blocks), "scalar", rows=np.array(rows), right=np.array(right), box=box)
+
+    def value(solution: Solution) -> float:
+        lows, highs = [], []
+        for run, motion in zip(runs, solution.motions, strict=True):
+            force = motion.combination(tuple(w * lift / run.angle**i / unit for i, w in enumerate(weights)))
+            lows.append(force.minimum()[0])
+            highs.append(force.maximum()[0])
+        if rest is not None:
+            lows.append(rest[0] / unit)
+            highs.append(rest[1] / unit)
+        return max(highs) + (known / unit if preload is not None else floor / unit - min(lows))
+
+    return _solved(runs, program, value, unit, lift, unit, told=told)
+
+
+def best_roller_size(
+    runs: Sequence[Run],
+    tangents: Sequence[tuple[float, float]],
+    offset: float | None,
+    rest: Sequence[tuple[float, int, float]],
+    grids: Sequence[int] = STEPS,
+    *,
+    told: Told = untold,
+) -> Best | NoMotion:
+    """The motions of least prime radius of a translating roller follower under a pressure angle.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        All open parts of the motion program.
+    tangents : sequence of two floats
+        For each run tan φ that is allowed while rising and while falling. Where the follower rests at its lowest,
+        |e| ≤ tan φ d for both, so that v − e ≤ tan φ (s + d) needs to be asked with the rise's limit only, and
+        e − v with the fall's.
+    offset : float or None
+        The follower's offset e; None leaves it free. ``scalars`` holds d, and e where it is free.
+    rest : sequence of (tan φ, sign, least of s tan φ − sign v)
+        Of the given parts of the program: sign (v − e) ≤ tan φ (s + d) there.
+    grids : sequence of int
+        Steps of the first grid and of those that follow while a gap is left.
+    """
+    unit = max(run.lift for run in runs)
+    known = 0.0 if offset is None else offset / unit
+    free = (1.0,) if offset is None else ()
+    size = max(*(_order(run) for run in runs), 3)
+
+    def program(steps: int) -> ConvexProgram:
+        blocks = []
+        for run, (rising, falling) in zip(runs, tangents, strict=True):
+            speed = 1.0 / run.angle
+            up = Demand((-rising, speed), known, (-rising, *(-f for f in free)))
+            down = Demand((-falling, -speed), -known, (-falling, *free))
+            block = _block(run, unit, size, steps)
+            blocks.append(replace(block, demands=(*block.demands, up, down)))
+        rows = [[-1.0, *(0.0 for _ in free)]]
+        right = [0.0]
+        for tangent, sign, room in rest:
+            rows.append([-tangent, *(-sign * f for f in free)])
+            right.append(room / unit + sign * known)
+        objective: Literal["scalar", "norm"] = "scalar" if offset is not None else "norm"
+        return ConvexProgram(
+            tuple(blocks), objective, rows=np.array(rows), right=np.array(right), box=np.full(1 + len(free), 1e4)
+        )
+
+    def value(solution: Solution) -> float:
+        return float(np.linalg.norm(solution.scalars))
+
+    best = _solved(runs, program, value, unit, unit, unit, grids, told=told)
+    if isinstance(best, Best) and offset is not None:
+        return replace(best, value=math.hypot(best.value, offset), bound=math.hypot(best.bound, offset))
+    return best
+
+
+def best_flat_size(
+    runs: Sequence[Run],
+    least_radius: float,
+    width: float | None,
+    rest: tuple[float, float, float] | None,
+    *,
+    told: Told = untold,
+) -> Best | NoMotion:
+    """The motions of least base radius of a translating flat-faced follower.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        All open parts of the motion program.
+    least_radius : float
+        Least radius of curvature of the cam, R + s + a.
+    width : float or None
+        Face width that the contact may sweep: greatest less least v.
+    rest : tuple of three floats or None
+        Least s + a, least v and greatest v of the given parts.
+    """
+    unit = max(run.lift for run in runs)
+    size = max(*(_order(run) for run in runs), 3)
+
+    def program(steps: int) -> ConvexProgram:
+        blocks = []
+        for run in runs:
+            speed = 1.0 / run.angle
+            demands = [Demand((-1.0, 0.0, -(speed**2)), -least_radius / unit, (-1.0,))]
+            if width is not None:
+                demands += [Demand((0.0, speed), 0.0, (0.0, -1.0)), Demand((0.0, -speed), 0.0, (0.0, 0.0, 1.0))]
+            block = _block(run, unit, size, steps)
+            blocks.append(replace(block, demands=(*block.demands, *demands)))
+        count = 1 if width is None else 3
+        rows, right = [], []
+        if width is not None:
+            rows.append([0.0, 1.0, -1.0])
+            right.append(width / unit * (1.0 - TIGHTENED))
+        if rest is not None:
+            rows.append([-1.0, 0.0, 0.0][:count])
+            right.append((rest[0] - least_radius) / unit)
+            if width is not None:
+                rows += [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]
+                right += [rest[1] / unit, -rest[2] / unit]
+        # v vanishes somewhere in a turn, so that both its extremes lie within the width.
+        box = np.array([1.0, *(2 * [width / unit] if width is not None else [])])
+        return ConvexProgram(
+            tuple(blocks), "scalar", rows=np.array(rows).reshape(-1, count), right=np.array(right), box=box
+        )
+
+    def value(solution: Solution) -> float:
+        least = [
+            motion.combination((1.0, 0.0, run.angle**-2)).minimum()[0]
+            for run, motion in zip(runs, solution.motions, strict=True)
+        ]
+        if rest is not None:
+            least.append(rest[0] / unit)
+        return least_radius / unit - min(least)
+
+    return _solved(runs, program, value, unit, unit, unit, told=told)
+
+
+def _solved(
+    runs: Sequence[Run],
+    program: Callable[[int], ConvexProgram],
+    value: Callable[[Solution], float],
+    worth: float,
+    lift: float,
+    scalar_worth: float = 1.0,
+    grids: Sequence[int] = STEPS,
+    *,
+    told: Told,
+) -> Best | NoMotion:
+    """Solve on the first grid, and on the second where there is no solution or a gap; back to the client's units."""
+    best: tuple[Solution, float, LowerBound] | None = None
+    for steps in grids:
+        told(steps)
+        statement = program(steps)
+        solution = solve(statement)
+        if solution is None:
+            continue
+        reached, bound = value(solution), lower_bound(statement, solution)
+        if best is not None and best[2].value > bound.value and best[2].cap == bound.cap:
+            bound = best[2]
+        best = solution, reached, bound
+        if reached <= bound.value * (1.0 + SMALL_GAP):
+            break
+    if best is None:
+        return _none(runs, lift)
+    solution, reached, bound = best
+    cap = bound.cap
+    if cap is not None:
+        cap = cap[0], cap[1] * lift / min(run.angle for run in runs) ** cap[0]
+    motions = tuple(_physical(motion, run, lift) for motion, run in zip(solution.motions, runs, strict=True))
+    # The bound cannot exceed what was reached but by rounding, which must not be sold as a bound.
+    return Best(motions, reached * worth, min(bound.value, reached) * worth, cap, solution.scalars * scalar_worth)
+
+
+def _none(runs: Sequence[Run], lift: float) -> NoMotion:
+    """How far the limits are too low: a lower bound of the least common factor that lets each run have a motion."""
+    factors = []
+    for run in runs:
+        if not run.limits:
+            continue
+        block = _block(run, lift, _order(run), STEPS[0])
+        scaled = tuple(Limit(limit.order, 0.0, limit.constant) for limit in block.limits)
+        statement = ConvexProgram((replace(block, limits=scaled),), "scalar", box=np.ones(1))
+        solution = solve(statement)
+        if solution is not None:
+            bound = lower_bound(statement, solution)
+            if bound.cap is None:
+                factors.append(bound.value * (1.0 - TIGHTENED))
+    factor = max(factors, default=0.0)
+    return NoMotion(factor if factor > 1.0 else None)
+
+
+def _order(run: Run) -> int:
+    """Order of the control: one above what must be continuous or is stated, and that of the highest limit at least."""
+    stated = max((order for condition in run.conditions for _, order, _ in condition.terms), default=0)
+    return max([run.continuity + 1, stated + 1, 2] + [limit.order for limit in run.limits])
+
+
+def _block(run: Run, lift: float, size: int, steps: int) -> Block:
+    """A run as a block of a convex program: time and displacement scaled to one."""
+    angle = run.angle
+    conditions = tuple(
+        Condition(
+            tuple((at / angle, order, k * lift / angle**order / _worth(c, lift, angle)) for at, order, k in c.terms),
+            c.value / _worth(c, lift, angle),
+        )
+        for c in run.conditions
+    )
+    limits = tuple(
+        Limit(limit.order, limit.constant * angle**limit.order / lift * (1.0 - TIGHTENED)) for limit in run.limits
+    )
+    demands = tuple(
+        Demand(
+            tuple(weight / angle**order for order, weight in enumerate(demand.weights)),
+            demand.right / lift,
+            (),
+            demand.start / angle,
+            demand.end / angle,
+        )
+        for demand in run.demands
+    )
+    marks = {0.0, 1.0}
+    marks |= {at for condition in conditions for at, _, _ in condition.terms}
+    marks |= {at for demand in demands for at in (demand.start, demand.end)}
+    return Block(_grid(sorted(marks), steps), size, conditions, limits, demands)
+
+
+def _worth(condition: Condition, lift: float, angle: float) -> float:
+    """Unit of a condition: that of its highest order."""
+    return lift / angle ** max(order for _, order, _ in condition.terms)
+
+
+def _grid(marks: Sequence[float], steps: int) -> Real:
+    """Equal steps between marks, a multiple of four each, so that limits known to switch at quarters fall on knots."""
+    kept = [marks[0]]
+    for mark in marks[1:]:
+        if mark - kept[-1] > SAME_TIME:
+            kept.append(mark)
+    kept[-1] = marks[-1]
+    parts = [
+        np.linspace(left, right, 4 * max(2, round(0.25 * steps * (right - left))) + 1)[:-1]
+        for left, right in pairwise(kept)
+    ]
+    return np.concatenate([*parts, kept[-1:]])
+
+
+def _physical(motion: KnotMotion, run: Run, lift: float) -> KnotMotion:
+    """A scaled motion in the run's angle and length unit."""
+    orders = np.arange(motion.states.shape[1])
+    return KnotMotion(
+        motion.times * run.angle,
+        motion.states * (lift / run.angle**orders),
+        motion.control * (lift / run.angle ** len(orders)),
+    )
+
+
+def _mirrored(block: Block) -> Block:
+    """The block of −s: a fall as a rise."""
+    conditions = tuple(replace(condition, value=-condition.value) for condition in block.conditions)
+    demands = tuple(replace(d, weights=tuple(-w for w in d.weights)) for d in block.demands)
+    return replace(block, conditions=conditions, demands=demands)
+
+
+def _stated(run: Run, at: float, order: int) -> float:
+    """The value that a run's conditions state."""
+    for condition in run.conditions:
+        (time, stated, _), *others = condition.terms
+        if not others and stated == order and abs(time - at) <= SAME_TIME * run.angle:
+            return condition.value
+    return 0.0

@@ -1,0 +1,364 @@
+"""The smallest cam that carries a motion program under limits on pressure angle, curvature and face width.
+
+Formulas are this module's own and not those of the analysis core that verifies its cams. θ is the cam angle, k the
+tangent of the greatest pressure angle (rise and fall may have their own), ρ the least radius of curvature of the
+pitch curve.
+
+Translating roller, x = d + s with d² = R² − e²: tan φ = (v − e)/x, so that d ≥ |v − e|/k − s, and
+
+    κ = (x² + (v − e)(2v − e) − a x)/(x² + (v − e)²)^{3/2},  |κ| ≤ 1/ρ
+
+(Norton 8.31; Rao 5.4). Oscillating roller of arm L and pivot distance C, with μ = 1 ∓ v and ψ = ψ0 + s:
+tan φ = ±(C cos ψ − L μ)/(C sin ψ), so that with cos γ = L μ cos φ/C each cam angle allows an interval,
+|γ − φ| ≤ ψ ≤ min(φ + γ, 2π − γ − φ).
+
+Translating face: R ≥ ρ − s − a, and the contact sweeps from least to greatest v. Oscillating face with offset f:
+ρ = C sin ψ (1 − v²/μ²) + C cos ψ a/μ³ − f, again an interval of ψ at each cam angle.
+
+Where every cam angle allows an interval, the smallest radius is the greatest lower end; otherwise it is found by
+exchange (:mod:`synthesis.kinds.cam.critical`). A free offset, arm or pivot is searched; without curvature the prime
+radius is a convex function of the offset, and its least value is the global one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from kinematics.cam.pieces import Motion
+from kinematics.cam.program import Program
+from synthesis.kinds.cam.critical import critical_motion, smallest_allowed
+
+Real = NDArray[np.float64]
+
+LARGEST = 1e4
+"""Radii are looked for up to this many times the follower's travel and the given lengths."""
+
+MARGIN = 1e-9
+"""Share by which a radius at a limit is enlarged, so that the limit holds when it is measured on the finished cam."""
+
+COARSE = 48
+"""Values of a free dimension from which its search starts."""
+
+NONE = 1e30
+"""Stands for a radius where there is none: finite, so that the search can calculate with it."""
+
+CLOSER = 1e-10
+"""Relative accuracy of a searched dimension: the radius is flat there, to the square of it."""
+
+
+@dataclass(frozen=True)
+class RollerLimits:
+    """What a roller's cam must keep.
+
+    ``rise`` and ``fall`` are the greatest pressure angles (radians) for v ≥ 0 and v ≤ 0; ``pitch_radius`` is the
+    least |radius of curvature| of the pitch curve, 0 without a limit; ``least`` is the smallest prime radius that
+    hub and roller leave room for.
+    """
+
+    rise: float
+    fall: float
+    pitch_radius: float
+    least: float
+
+    @property
+    def angles(self) -> tuple[tuple[int, float], ...]:
+        """Sign of v and pressure angle."""
+        return (1, self.rise), (-1, self.fall)
+
+
+@dataclass(frozen=True)
+class Size:
+    """The smallest radius found, and the dimension that was free where one was.
+
+    ``proven`` tells that no smaller radius exists, to rounding.
+    """
+
+    radius: float
+    proven: bool
+    free: float | None = None
+
+
+def _on(sign: int, v: Real) -> NDArray[np.bool_]:
+    """Where a limit for rises (1, dwells included) or falls (−1) counts."""
+    return v >= 0.0 if sign > 0 else v <= 0.0
+
+
+def translating_roller(program: Program, offset: float, limits: RollerLimits) -> Size | None:
+    """The smallest prime radius of a translating roller follower at an offset; None where none is sound."""
+    d = _least_height(program, offset, limits)
+    if limits.pitch_radius > 0.0:
+        found = smallest_allowed(
+            program, _translating_curvature(offset, limits.pitch_radius), d, d + _reach(program, offset, limits)
+        )
+        if found is None:
+            return None
+        d = found
+    return Size(math.hypot(d * (1.0 + MARGIN), offset), proven=True)
+
+
+def free_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[float, float]) -> Size | None:
+    """The smallest prime radius of a translating roller follower over its offset.
+
+    By pressure angle alone d is a convex function of the offset, and so is the radius. If curvature allows the best
+    offset's radius, that is the global least; else the offset is searched from a grid and the answer is not proven.
+    """
+    low, high = range_of_offset
+    by_angle = replace(limits, pitch_radius=0.0)
+    motion = critical_motion(program, *_angle_functions(limits))
+
+    def radius(offset: float) -> float:
+        return math.hypot(_least_height_at(motion, offset, by_angle, program), offset)
+
+    best = _minimized(radius, low, high)
+    # Exactly, at the offset found and with its own worst points.
+    alone = translating_roller(program, best, by_angle)
+    size = translating_roller(program, best, limits)
+    if alone is None:
+        return None
+    if size is not None and size.radius <= alone.radius * (1.0 + 2.0 * MARGIN):
+        return Size(size.radius, True, best)
+    return _searched(lambda e: translating_roller(program, e, limits), low, high)
+
+
+def _angle_functions(limits: RollerLimits) -> list[Callable[[Motion], Real]]:
+    """±v/k − s for each limit: |v − e|/k − s differs from them by a constant."""
+    functions: list[Callable[[Motion], Real]] = [lambda motion: motion.s]
+    for _, angle in limits.angles:
+        functions += [_needed_height(sign / math.tan(angle)) for sign in (1.0, -1.0)]
+    return functions
+
+
+def _needed_height(share: float) -> Callable[[Motion], Real]:
+    """share · v − s."""
+    return lambda motion: share * motion.v - motion.s
+
+
+def _least_height(program: Program, offset: float, limits: RollerLimits) -> float:
+    return _least_height_at(critical_motion(program, *_angle_functions(limits)), offset, limits, program)
+
+
+def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, program: Program) -> float:
+    """Least d by pressure angle, by the prime circle's own least, and such that the trace point passes no centre."""
+    least = math.sqrt(max(limits.least**2 - offset**2, 0.0))
+    needed = [least, float(-motion.s.min()) + 1e-6 * program.lift]
+    for sign, angle in limits.angles:
+        on = _on(sign, motion.v)
+        if on.any():
+            needed.append(float((np.abs(motion.v - offset) / math.tan(angle) - motion.s)[on].max()))
+    return max(needed)
+
+
+def _translating_curvature(offset: float, radius: float) -> Callable[[Motion, Real], Real]:
+    """|κ| ρ − 1 as a function of motion and d."""
+
+    def excess(motion: Motion, d: Real) -> Real:
+        x, w = motion.s + d, motion.v - offset
+        square = x * x + w * w
+        kappa = (x * x + w * (w + motion.v) - motion.a * x) / square**1.5
+        return np.asarray(np.abs(kappa) * radius - 1.0)
+
+    return excess
+
+
+def _reach(program: Program, length: float, limits: RollerLimits) -> float:
+    peaks = program.peaks
+    size = peaks[0].largest + peaks[1].largest + peaks[2].largest + abs(length) + limits.pitch_radius + limits.least
+    return LARGEST * size
+
+
+def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, limits: RollerLimits) -> Size | None:
+    """The smallest prime radius of an oscillating roller follower; None where no start angle is sound.
+
+    Pressure angle allows an interval of start angles at each cam angle. Within the common interval curvature is
+    found by exchange.
+    """
+    s = program.peaks[0]
+    low, high = max(0.0, -s.least) + 1e-9, math.pi - max(s.greatest, 0.0) - 1e-9
+    functions: list[Callable[[Motion], Real]] = []
+    for _, angle in limits.angles:
+        functions += [_start_needed(sign, angle, arm, pivot, sense) for sign in (1.0, -1.0)]
+    motion = critical_motion(program, *functions, lambda m: m.v)
+    for sign, angle in limits.angles:
+        on = _on(sign, motion.v)
+        if not on.any():
+            continue
+        share = arm * (1.0 - sense * motion.v[on]) * math.cos(angle) / pivot
+        if np.abs(share).max() > 1.0:
+            return None
+        gamma = np.arccos(share)
+        low = max(low, float((np.abs(gamma - angle) - motion.s[on]).max()))
+        high = min(high, float((np.minimum(angle + gamma, 2.0 * math.pi - gamma - angle) - motion.s[on]).min()))
+    least = _start_angle(arm, pivot, max(limits.least, abs(arm - pivot)))
+    if least is None:
+        return None
+    start: float | None = max(low, least)
+    assert start is not None
+    if start > high:
+        return None
+    if limits.pitch_radius > 0.0:
+        start = smallest_allowed(program, _oscillating_curvature(arm, pivot, sense, limits.pitch_radius), start, high)
+        if start is None:
+            return None
+    start = min(start * (1.0 + MARGIN), 0.5 * (start + high))
+    # Rather than by the law of cosines, which loses digits where arm and pivot distance are nearly equal.
+    radius = math.hypot(arm - pivot, 2.0 * math.sqrt(arm * pivot) * math.sin(0.5 * start))
+    return Size(radius, proven=True)
+
+
+def free_pivot(
+    program: Program, arm: float, range_of_pivot: tuple[float, float], sense: int, limits: RollerLimits
+) -> Size | None:
+    """The smallest prime radius over the pivot's distance; searched from a grid, so that it is not proven."""
+    return _searched(lambda c: oscillating_roller(program, arm, c, sense, limits), *range_of_pivot)
+
+
+def _start_needed(sign: float, angle: float, arm: float, pivot: float, sense: int) -> Callable[[Motion], Real]:
+    """±γ − s: what bounds the start angle but for a constant."""
+    return lambda motion: sign * _gamma(motion.v, angle, arm, pivot, sense) - motion.s
+
+
+def _gamma(v: Real, angle: float, arm: float, pivot: float, sense: int) -> Real:
+    return np.arccos(np.clip(arm * (1.0 - sense * v) * math.cos(angle) / pivot, -1.0, 1.0))
+
+
+def _start_angle(arm: float, pivot: float, radius: float) -> float | None:
+    """ψ0 of a prime radius; None beyond reach."""
+    share = (radius**2 - (arm - pivot) ** 2) / (4.0 * arm * pivot)
+    return 2.0 * math.asin(math.sqrt(max(share, 0.0))) if share < 1.0 else None
+
+
+def _oscillating_curvature(arm: float, pivot: float, sense: int, radius: float) -> Callable[[Motion, Real], Real]:
+    """|κ| ρ − 1 as a function of motion and ψ0, from z = e^{iθ}(C − L e^{∓iψ})."""
+
+    def excess(motion: Motion, start: Real) -> Real:
+        rate = 1.0 - sense * motion.v
+        swung = arm * np.exp(-1j * sense * (start + motion.s))
+        first = 1j * (pivot - rate * swung)
+        second = -pivot + (rate**2 + 1j * sense * motion.a) * swung
+        kappa = (np.conj(first) * second).imag / np.abs(first) ** 3
+        return np.asarray(np.abs(kappa) * radius - 1.0)
+
+    return excess
+
+
+def translating_flat(program: Program, least_radius: float, least: float) -> Size:
+    """The smallest base radius of a translating flat-faced follower: R + s + a ≥ ρ everywhere."""
+    motion = critical_motion(program, lambda m: m.s + m.a, lambda m: m.s)
+    needed = least_radius - float((motion.s + motion.a).min())
+    standing = 1e-6 * program.lift - float(motion.s.min())
+    radius = max(needed, least, standing)
+    return Size(radius + MARGIN * max(radius, program.lift), proven=True)
+
+
+def face_sweep(program: Program) -> float:
+    """Length that the contact sweeps on a translating face: greatest less least v, whatever the base radius."""
+    v = program.peaks[1]
+    return v.greatest - v.least
+
+
+def oscillating_flat(
+    program: Program,
+    pivot: float,
+    face_offset: float,
+    sense: int,
+    least_radius: float,
+    least: float,
+    width: float | None,
+) -> Size | None:
+    """The smallest base radius of an oscillating flat-faced follower; None where no start angle is sound."""
+    s, v = program.peaks[:2]
+    if not (v.greatest if sense == 1 else -v.least) < 1.0:
+        return None
+
+    def parts(m: Motion) -> tuple[Real, Real]:
+        rate = 1.0 - sense * m.v
+        return pivot * (1.0 - (m.v / rate) ** 2), pivot * m.a / rate**3
+
+    def lower(m: Motion) -> Real:
+        across, along = parts(m)
+        share = (least_radius + face_offset) / np.hypot(across, along)
+        return np.arcsin(np.clip(share, -1.0, 1.0)) - np.arctan2(along, across) - m.s
+
+    def upper(m: Motion) -> Real:
+        across, along = parts(m)
+        share = (least_radius + face_offset) / np.hypot(across, along)
+        return math.pi - np.arcsin(np.clip(share, -1.0, 1.0)) - np.arctan2(along, across) - m.s
+
+    motion = critical_motion(program, lower, upper, lambda m: np.hypot(*parts(m)))
+    across, along = parts(motion)
+    if (least_radius + face_offset > np.hypot(across, along)).any():
+        return None
+    reach = (least + face_offset) / pivot
+    if reach >= 1.0:
+        return None
+    low = max(float(lower(motion).max()), math.asin(max(reach, 0.0)))
+    low = max(low, math.asin(min(1.0, max(face_offset, 0.0) / pivot)) - s.least + 1e-9)
+    high = min(float(upper(motion).min()), 0.5 * math.pi - s.greatest - 1e-9)
+    if low > high:
+        return None
+    if width is not None:
+        found = _narrow_enough(program, pivot, sense, width, low, high)
+        if found is None:
+            return None
+        low = found
+    start = min(low * (1.0 + MARGIN), 0.5 * (low + high))
+    return Size(pivot * math.sin(start) - face_offset, proven=True)
+
+
+def _narrow_enough(program: Program, pivot: float, sense: int, width: float, low: float, high: float) -> float | None:
+    """The smallest start angle whose contact sweeps no more than a width: C cos ψ/μ at any two cam angles.
+
+    For two angles with stretches a, b and displacements the sweep is a sinusoid of ψ0; the set of start angles that
+    a pair allows is found at closely spaced start angles with exact extremes, and its first end by bisection.
+    """
+
+    def sweep(start: float) -> float:
+        motion = critical_motion(program, lambda m: np.cos(start + m.s) / (1.0 - sense * m.v))
+        reach = pivot * np.cos(start + motion.s) / (1.0 - sense * motion.v)
+        return float(reach.max() - reach.min())
+
+    before = low
+    for start in np.linspace(low, high, COARSE + 1):
+        if sweep(float(start)) <= width:
+            if start == low:
+                return low
+            bad, good = before, float(start)
+            for _ in range(50):
+                middle = 0.5 * (bad + good)
+                bad, good = (bad, middle) if sweep(middle) <= width else (middle, good)
+            return good
+        before = float(start)
+    return None
+
+
+def _minimized(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a convex function is least."""
+    found = minimize_scalar(function, bounds=(low, high), method="bounded", options={"xatol": CLOSER * (high - low)})
+    return min((low, float(found.x), high), key=function)
+
+
+def _searched(size: Callable[[float], Size | None], low: float, high: float) -> Size | None:
+    """The least radius over a dimension: a grid, and the three best valleys of it to the bottom."""
+    cache: dict[float, float] = {}
+
+    def radius(value: float) -> float:
+        value = float(value)
+        if value not in cache:
+            found = size(value)
+            cache[value] = NONE if found is None else found.radius
+        return cache[value]
+
+    grid = [float(value) for value in np.linspace(low, high, COARSE + 1)]
+    values = [radius(value) for value in grid]
+    valleys = [k for k in range(len(grid)) if values[k] < NONE and values[k] == min(values[max(k - 1, 0) : k + 2])]
+    for k in sorted(valleys, key=lambda k: values[k])[:3]:
+        left, right = grid[max(k - 1, 0)], grid[min(k + 1, COARSE)]
+        minimize_scalar(radius, bounds=(left, right), method="bounded", options={"xatol": 1e-7 * (high - low)})
+    best = min(cache, key=lambda value: cache[value])
+    return Size(cache[best], False, best) if cache[best] < NONE else None

@@ -1,0 +1,323 @@
+"""Cams: the best motion program, the smallest sound cam that carries it, and its verification."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from kinematics.cam import follower as core
+from kinematics.cam.extremes import extremes
+from kinematics.cam.profile import Cam
+from kinematics.cam.program import Program
+from kinematics.errors import DimensionError
+from synthesis.kinds.cam.answer import (
+    forces_of,
+    joints_of,
+    none_of,
+    optimality_of,
+    result_of,
+    segments_of,
+)
+from synthesis.kinds.cam.barrel import solve_barrel
+from synthesis.kinds.cam.composition import (
+    Composition,
+    NoProgram,
+    compose,
+    least_face_radius,
+    roller_radius_range,
+    root_mean_square,
+)
+from synthesis.kinds.cam.design import (
+    CamDesign,
+    CamMetrics,
+    CamResult,
+)
+from synthesis.kinds.cam.mechanism import (
+    cam_mechanism,
+    profile_angles,
+    refined,
+)
+from synthesis.kinds.cam.optimal import STEPS
+from synthesis.kinds.cam.problem import (
+    BarrelRoller,
+    CamProblem,
+    LengthRange,
+    OscillatingFlat,
+    OscillatingRoller,
+    TranslatingFlat,
+    TranslatingRoller,
+)
+from synthesis.kinds.cam.sizing import (
+    RollerLimits,
+    Size,
+    free_offset,
+    free_pivot,
+    oscillating_flat,
+    oscillating_roller,
+    translating_flat,
+    translating_roller,
+)
+from synthesis.kinds.cam.verification import (
+    MEASURED_SLACK,
+    REPRODUCED,
+    Measured,
+    pitch_radius,
+    verify,
+)
+from synthesis.model.kind import Progress
+from synthesis.model.statement import Contradiction, ContradictionError
+
+FINEST = 12_000
+"""Points of a profile at most. Where a motion changes its acceleration within less than a step, points are put closer
+until the profile reproduces it; beyond this number the design fails its verification."""
+
+SHAPE = {"curvature_ratio", "min_radius", "convex"}
+"""Checks of curvature, which a profile of too few points can fail although its cam does not."""
+
+UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
+"""Checks that more points do not mend."""
+
+REFINEMENTS = 8
+"""Times that points are put closer at most."""
+
+SMOOTHER = (6.0, 8.0, 11.0, 16.0)
+"""Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
+
+JERK_SHARE = 25.0
+"""Peak jerk that goes with them: the acceleration may change fully within an eighth of the angle of a segment."""
+
+NEAR_BOUND = 0.01
+"""A cam within this share of the bound is small enough."""
+
+NO_UNDERCUT = 1.02
+"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 the cam has a cusp."""
+
+LEAST_BASE = 1e-3
+"""Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
+
+
+def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
+    """Solve a cam problem."""
+    progress(0.05, "composing the motion program")
+    composed = compose(problem, progress=progress, reach=(0.05, 0.4))
+    if isinstance(composed, NoProgram):
+        return none_of(problem, composed.reason, composed.proven, "motion_limits")
+    composed = _smoothed(problem, composed, progress)
+    if not problem.accept_discontinuity and not composed.program.obeys_fundamental_law:
+        joint = next(joint for joint in composed.program.continuity if not all(joint.continuous[:3]))
+        where = f"/segments/{joint.segments[1]}"
+        raise ContradictionError(Contradiction(where, "the motion is not continuous there; see accept_discontinuity"))
+    progress(0.5, "sizing the cam")
+    if isinstance(problem.follower, BarrelRoller):
+        return solve_barrel(problem, problem.follower, composed, progress)
+    sized = _sized(problem, composed.program)
+    if sized is None:
+        proven = not isinstance(getattr(problem.follower, "pivot_distance", None), LengthRange)
+        proven = proven and getattr(problem.follower, "offset", None) != "free" and composed.bound is None
+        # Where an arm's face is too wide is found on a grid of start angles.
+        proven = proven and (problem.limits.face_width is None or not isinstance(problem.follower, OscillatingFlat))
+        reason = "no cam of any size carries the program within the limits on pressure angle, curvature and face width"
+        return none_of(problem, reason, proven, "size")
+    cam, size = sized
+    progress(0.7, "verifying")
+    curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
+    laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
+    angle = max(laid, key=len)
+    mechanism = cam_mechanism(cam, angle, problem.closure == "form")
+    verification, measured = verify(problem, mechanism)
+    for _ in range(REFINEMENTS):
+        if measured is None or not np.isfinite(measured.off).all():
+            break
+        failed = {check.name for check in verification.checks if not check.passed}
+        if failed & UNSOUND:
+            break
+        if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
+            finer = refined(angle, measured.off, REPRODUCED)
+        elif failed & SHAPE and not _shape_fails(problem, cam):
+            finer = refined(angle, np.ones_like(angle), REPRODUCED)
+        else:
+            break
+        if len(finer) > FINEST:
+            break
+        angle = finer
+        progress(0.8, f"verifying with {len(angle)} points")
+        mechanism = cam_mechanism(cam, angle, problem.closure == "form")
+        verification, measured = verify(problem, mechanism)
+    if measured is None:
+        return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
+    design = CamDesign(
+        mechanism=mechanism,
+        segments=segments_of(problem, composed),
+        joints=joints_of(problem, composed.program),
+        optimality=optimality_of(problem, composed, cam.size),
+        verification=verification,
+        metrics=_metrics(problem, cam, measured),
+    )
+    progress(1.0, "verified")
+    return result_of(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
+
+
+def _not_laid_on(cam: Cam) -> str:
+    if cam.program.smoothness < 2:
+        return "where the displacement or the velocity jumps the profile breaks off; choose laws that join"
+    if cam.roller_radius <= 0.0:
+        return "the follower cannot be laid against the profile"
+    return (
+        f"the contact of a roller of radius {cam.roller_radius:.6g} on a cam of prime radius {cam.size:.6g} is not "
+        "resolved by any number of points that a profile may have; take a larger roller or a slower motion"
+    )
+
+
+def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) -> Composition:
+    """For the least size: the motion whose cam is smallest when curvature counts as well.
+
+    The convex program knows pressure angle, not the curvature of a roller's pitch curve, and the motion of least
+    size is abrupt where nothing limits its acceleration. So it is solved again under limits on acceleration and
+    jerk, and the smallest of the cams is taken. The bound stays that of all motions.
+    """
+    if problem.minimize != "size" or composed.bound is None or roller_radius_range(problem) is None:
+        return composed
+    stated = problem.limits
+    unlimited = stated.acceleration is None and stated.jerk is None
+    best, least = composed, math.inf if unlimited else _radius(problem, composed)
+    span = min(s.angle for s in composed.program.segments if s.pieces.count > 1)
+    for n, share in enumerate(SMOOTHER):
+        if least <= composed.bound * (1.0 + NEAR_BOUND):
+            break
+        progress(0.4 + 0.1 * n / len(SMOOTHER), "trading size by pressure angle against size by curvature")
+        a = share * composed.program.lift / span**2
+        j = JERK_SHARE * a / span
+        limits = stated.model_copy(
+            update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
+        )
+        reach = 0.4 + 0.1 * n / len(SMOOTHER), 0.4 + 0.1 * (n + 1) / len(SMOOTHER)
+        other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1], progress, reach)
+        if isinstance(other, Composition):
+            radius = _radius(problem, other)
+            if radius < least:
+                best, least = replace(other, bound=composed.bound, scope=composed.scope), radius
+    return best
+
+
+def _radius(problem: CamProblem, composed: Composition) -> float:
+    sized = _sized(problem, composed.program)
+    return math.inf if sized is None else sized[0].size
+
+
+def _shape_fails(problem: CamProblem, cam: Cam) -> bool:
+    """Whether the exact curves break a limit on curvature: then more points of the profile would not help."""
+    limits = problem.limits
+    if cam.roller_radius > 0.0:
+        ratio = max(limits.curvature_ratio, NO_UNDERCUT)
+        return cam.pitch_curvature_extremes.largest * ratio * cam.roller_radius > 1.0 + MEASURED_SLACK
+    return cam.radius_extremes.least < least_face_radius(problem) * (1.0 - MEASURED_SLACK)
+
+
+def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
+    """The smallest cam, or the one whose radius is stated; None where no radius is sound."""
+    follower, limits = problem.follower, problem.limits
+    rollers = roller_radius_range(problem)
+    try:
+        if rollers is None:
+            return _flat_cam(problem, program)
+        least = rollers[0] + max(limits.hub_radius, LEAST_BASE * program.lift)
+        rise = math.radians(limits.pressure_angle)
+        fall = math.radians(limits.pressure_angle_fall or limits.pressure_angle)
+        roller_limits = RollerLimits(rise, fall, max(limits.curvature_ratio, NO_UNDERCUT) * rollers[0], least)
+        size: Size | None
+        made: core.Roller
+        if isinstance(follower, TranslatingRoller):
+            if follower.prime_radius is not None:
+                size = Size(follower.prime_radius, True)
+            elif follower.offset == "free":
+                centred = translating_roller(program, 0.0, roller_limits)
+                widest = centred.radius if centred is not None else program.lift * 10.0
+                size = free_offset(program, roller_limits, (-widest, widest))
+            else:
+                size = translating_roller(program, float(follower.offset), roller_limits)
+            if size is None:
+                return None
+            offset = size.free if follower.offset == "free" else float(follower.offset)
+            made = core.TranslatingRoller(size.radius, rollers[0], offset or 0.0)
+        else:
+            assert isinstance(follower, OscillatingRoller)
+            pivot = follower.pivot_distance
+            if follower.prime_radius is not None:
+                size = Size(follower.prime_radius, True)
+            elif isinstance(pivot, LengthRange):
+                size = free_pivot(program, follower.arm, (pivot.min, pivot.max), follower.sense, roller_limits)
+            else:
+                size = oscillating_roller(program, follower.arm, pivot, follower.sense, roller_limits)
+            if size is None:
+                return None
+            distance = size.free if isinstance(pivot, LengthRange) else pivot
+            assert distance is not None
+            made = core.OscillatingRoller(size.radius, rollers[0], follower.arm, distance, follower.sense)
+        return _largest_roller(Cam(program, made, problem.rotation), rollers[1], problem), size
+    except DimensionError:
+        return None
+
+
+def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
+    follower, limits = problem.follower, problem.limits
+    least = max(limits.hub_radius, LEAST_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
+    size: Size | None
+    made: core.Flat
+    if isinstance(follower, TranslatingFlat):
+        size = Size(follower.base_radius, True) if follower.base_radius else None
+        size = size or translating_flat(program, least_face_radius(problem), least)
+        made = core.TranslatingFlat(size.radius)
+    else:
+        assert isinstance(follower, OscillatingFlat)
+        pivot, face, sense = follower.pivot_distance, follower.face_offset, follower.sense
+        size = Size(follower.base_radius, True) if follower.base_radius else None
+        size = size or oscillating_flat(
+            program, pivot, face, sense, least_face_radius(problem), least, limits.face_width
+        )
+        if size is None:
+            return None
+        made = core.OscillatingFlat(size.radius, pivot, face, sense)
+    return Cam(program, made, problem.rotation), size
+
+
+def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
+    """The cam with the largest roller that curvature and hub allow: contact stress falls with it."""
+    follower = cam.follower
+    assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
+    if largest <= follower.roller_radius:
+        return cam
+    found = cam.pitch_curvature_extremes
+    steepest = max(found.largest, 1e-300)
+    allowed = 1.0 / steepest / max(problem.limits.curvature_ratio, NO_UNDERCUT)
+    hub = max(problem.limits.hub_radius, LEAST_BASE * cam.program.lift)
+    radius = max(min(largest, allowed, follower.prime_radius - hub), follower.roller_radius)
+    return replace(cam, follower=replace(follower, roller_radius=radius))
+
+
+def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
+    program = cam.program
+    roller = cam.roller_radius
+    _, v, a, j = program.peaks
+    angles = {}
+    for name, where in (("rise", measured.rising), ("fall", ~measured.rising)):
+        angles[name] = math.degrees(float(np.nanmax(measured.pressure_angle[where], initial=0.0))) if roller else None
+    return CamMetrics(
+        size=measured.radius,
+        lift=program.lift / problem.displacement_unit,
+        max_pressure_angle_rise=angles["rise"],
+        max_pressure_angle_fall=angles["fall"],
+        min_convex_radius=measured.convex_radius,
+        min_concave_radius=None if math.isinf(measured.concave_radius) else measured.concave_radius,
+        curvature_ratio=pitch_radius(measured, roller) / roller if roller else None,
+        face_width=None if roller else measured.sweep,
+        peak_velocity=v.largest,
+        peak_acceleration=a.largest,
+        peak_jerk=j.largest,
+        rms_acceleration=root_mean_square(program, lambda motion: motion.a),
+        peak_inertia_torque=extremes(
+            lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks
+        ).largest,
+        forces=forces_of(problem, program),
+    )

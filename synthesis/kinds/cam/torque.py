@@ -1,0 +1,184 @@
+"""The motion of least inertia torque.
+
+The torque that a mass takes is proportional to v a = dE/dt with E = v²/2, and in E the problem is convex: the lift
+∫ √(2E) dt is a concave function of E, and a peak or mean square of dE/dt is convex (Norton §8.7 compares the torques
+of the laws; the substitution is that of time-optimal control of robots, Verscheure et al., IEEE Trans. Autom.
+Control 54 (2009) 2318, doi:10.1109/TAC.2009.2028959). The second-order cone program gives the velocity v̄ of the
+best motion. Two things follow:
+
+- a bound for all motions. √(2E) ≤ E/v̄ + v̄/2 for any v̄ > 0, so that any motion of lift h has
+  h ≤ ∫ (E/v̄ + v̄/2) dt, and with W(t) = ∫ₜ 1/v̄ and any number α
+
+      h − ½∫ v̄ − E(0) W(0) + α (E(1) − E(0)) ≤ ∫ (W + α) Ė dt ≤ max |Ė| ∫ |W + α| dt,  and ≤ rms(Ė) · rms(W + α);
+
+- the motion itself, which must have a continuous acceleration as well: programs over states at knots in which v a is
+  replaced by v̄ a, with v held to v̄ from above. Where acceleration or jerk is limited, v̄ cannot be kept, and v a
+  is replaced by its tangent at the motion before. The bound knows nothing of those limits, so that a gap remains then.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.piecewise import Piecewise
+from synthesis.numerics.convex import (
+    Block,
+    BlockModel,
+    minimized,
+    modeling,
+)
+
+Real = NDArray[np.float64]
+
+PASSES = 4
+"""Programs at most."""
+
+ABOVE = 1e-3
+"""Share by which v may exceed v̄: it makes up for what is lost where the acceleration cannot follow at once."""
+
+ABRUPT = 0.1
+"""Where v a changes within a step by more than this share of its peak, the next pass has smaller steps."""
+
+PARTS = 6
+"""Of a step that is made smaller."""
+
+LITTLE = 1e-4
+"""A pass that gains less than this share is the last."""
+
+
+@dataclass(frozen=True)
+class LeastTorque:
+    """A motion, its exact peak or root mean square of v a, and a lower bound of it for all motions."""
+
+    motion: KnotMotion
+    value: float
+    bound: float
+
+
+def torque(motion: KnotMotion) -> Piecewise:
+    """v a of a motion, exactly."""
+    v, a = motion.derivative(1).coefficients, motion.derivative(2).coefficients
+    product = np.zeros((len(v), v.shape[1] + a.shape[1] - 1))
+    for k in range(a.shape[1]):
+        product[:, k : k + v.shape[1]] += a[:, k : k + 1] * v
+    return Piecewise(motion.times, product)
+
+
+def least_torque(
+    block: Block, measure: Literal["peak", "rms"], lift: float, ends: tuple[float, float]
+) -> LeastTorque | None:
+    """The motion of least peak or root mean square of v a.
+
+    Parameters
+    ----------
+    block : Block
+        Grid over 0 ≤ t ≤ 1, conditions and limits of the motion.
+    measure : {"peak", "rms"}
+        What of v a is made least.
+    lift : float
+        Distance between the first and the last position, positive.
+    ends : tuple of two floats
+        Velocities at the ends.
+
+    Returns
+    -------
+    LeastTorque or None
+        None where no motion meets the conditions and limits on this grid.
+    """
+    velocity = _best_velocity(block.times, measure, lift, ends)
+    if velocity is None:
+        return None
+    bound = _bound(block.times, velocity, measure, lift, ends)
+    limited = any(limit.order >= 2 for limit in block.limits)
+    best: KnotMotion | None = None
+    value = np.inf
+    motion = _linearized(block, measure, velocity, None, None if limited else velocity)
+    for _ in range(PASSES):
+        if motion is None:
+            break
+        product = torque(motion)
+        reached = product.peak() if measure == "peak" else product.rms()
+        gained = value - reached
+        if reached < value:
+            best, value = motion, reached
+        if gained < LITTLE * value:
+            break
+        finer = _refined(block.times, product)
+        block = replace(block, times=finer)
+        v = np.maximum(motion.derivative(1)(finer), 0.0)
+        motion = (
+            _linearized(block, measure, v, motion.derivative(2)(finer), None)
+            if limited
+            else _linearized(block, measure, v, None, v)
+        )
+    return None if best is None else LeastTorque(best, float(value), bound)
+
+
+def _refined(times: Real, product: Piecewise) -> Real:
+    """The grid with smaller steps where v a changes abruptly."""
+    change = np.abs(product.coefficients.sum(axis=1) - product.coefficients[:, 0])
+    abrupt = np.flatnonzero(change > ABRUPT * product.peak())
+    parts = [times[k] + np.diff(times)[k] * np.arange(1, PARTS) / PARTS for k in abrupt]
+    return np.sort(np.concatenate([times, *parts]))
+
+
+def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, float]) -> Real | None:
+    """v̄ at the knots: the cone program in E, lift at least as demanded."""
+    cp = modeling()
+
+    step = np.diff(times)
+    energy, speed = cp.Variable(len(times), nonneg=True), cp.Variable(len(times))
+    rate = cp.multiply(1.0 / step, cp.diff(energy))
+    constraints = [
+        energy[0] == 0.5 * ends[0] ** 2,
+        energy[-1] == 0.5 * ends[1] ** 2,
+        speed <= cp.sqrt(2.0 * energy),
+        0.5 * step @ (speed[1:] + speed[:-1]) >= lift,
+    ]
+    cost = cp.norm(rate, "inf") if measure == "peak" else cp.sum_squares(cp.multiply(np.sqrt(step), rate))
+    if not minimized(cost, constraints):
+        return None
+    return np.sqrt(2.0 * np.maximum(np.asarray(energy.value, np.float64), 0.0))
+
+
+def _bound(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[float, float]) -> float:
+    """The bound above, for v̄ constant on each step and the best α."""
+    step = np.diff(times)
+    mean = np.maximum(0.5 * (velocity[1:] + velocity[:-1]), 1e-9 * velocity.max())
+    at_left = np.cumsum((step / mean)[::-1])[::-1]
+    first, last = 0.5 * ends[0] ** 2, 0.5 * ends[1] ** 2
+    known = lift - 0.5 * float(mean @ step) - first * float(at_left[0])
+
+    def proved(alpha: float) -> float:
+        weight = Piecewise(times, np.column_stack([at_left + alpha, -step / mean]))
+        size = weight.convex_integral(np.abs) if measure == "peak" else weight.rms()
+        return (known + alpha * (last - first)) / size
+
+    found = minimize_scalar(lambda alpha: -proved(alpha), bounds=(-float(at_left[0]), 0.0), method="bounded")
+    return max(proved(float(found.x)), 0.0)
+
+
+def _linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Real | None) -> KnotMotion | None:
+    """The best motion with v a replaced by its tangent at (v, a); where a is None, by v times the new acceleration."""
+    cp = modeling()
+
+    model = BlockModel(block, None)
+    product: Any = cp.multiply(v * model.scale[2], model.states[:, 2])
+    if a is not None:
+        product = product + cp.multiply(a * model.scale[1], model.states[:, 1]) - v * a
+    if measure == "peak":
+        cost = cp.norm(product, "inf")
+    else:
+        root = np.sqrt(np.diff(block.times) / 6.0)
+        parts = product[1:], product[:-1], product[1:] + product[:-1]
+        cost = sum(cp.sum_squares(cp.multiply(root, part)) for part in parts)
+    constraints = list(model.constraints)
+    if ceiling is not None:
+        constraints.append(model.states[:, 1] * model.scale[1] <= (1.0 + ABOVE) * ceiling)
+    return model.motion() if minimized(cost, constraints) else None

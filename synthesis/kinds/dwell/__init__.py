@@ -1,0 +1,24 @@
+"""Dwells: sixbars whose output rests while the crank turns on."""
+
+from __future__ import annotations
+
+from synthesis.kinds.dwell.design import DwellResult
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: DwellProblem, progress: Progress) -> DwellResult:
+    from synthesis.kinds.dwell.solver import solve_dwell
+
+    return solve_dwell(problem, progress)
+
+
+def _warm_up() -> None:
+    from synthesis.kinds.dwell.solver import warm_up
+
+    warm_up()
+
+
+KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up)

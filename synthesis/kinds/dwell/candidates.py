@@ -1,0 +1,246 @@
+"""Starts for dwell sixbars: many coupler curves, their arcs and lines, and outputs that rest on them.
+
+Fourbars are drawn at random among the crank-rockers, half of them symmetric (coupler = rocker = B P), whose curves have
+arcs of equal radius in pairs. The pieces that are closest to arcs or lines get outputs in all directions; each of these
+is driven through the turn on a grid, and the most promising are refined.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage import OPEN, Fourbar, coupler_points
+from synthesis.kinds.dwell.arcs import arcs, lines
+from synthesis.kinds.dwell.outputs import CYCLE, Kind
+from synthesis.kinds.dwell.scoring import (
+    ROCKER,
+    SLIDER,
+    SLOT,
+    judge,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+DRAWN = 4000
+"""Fourbars that are drawn, of the symmetric and of the general ones each."""
+
+PIECES = 300
+"""Pieces of curves that get outputs."""
+
+DIRECTIONS, REACHES = 24, 10
+"""Directions of an output from where its pin rests, and its distances."""
+
+LONG = math.radians(60.0)
+"""Pieces for two dwells are at least this long: shorter ones lie near arcs everywhere, and tell nothing."""
+
+FEWEST = 4
+"""Samples of a piece at least: three always lie on a circle."""
+
+GOOD, ALIKE, APART = 0.03, 0.06, 0.15
+"""Pieces for two dwells: farthest from an arc or line, and most that their radii or angles are wrong, least distance of
+the arcs' centres; shares of the curve's extent."""
+
+MOST_PAIRS, JUDGED = 1_000_000, 60_000
+"""Pairs of pieces that are looked at, and pairs that get an output."""
+
+
+class Start(NamedTuple):
+    """A shape of :mod:`outputs`, the sign of its output's assembly, and the end of the way of each dwell."""
+
+    shape: Real
+    sign: int
+    ends: tuple[int, ...]
+    score: float
+
+
+class _Outputs(NamedTuple):
+    """Outputs to be tried: row of the curve, first samples of the dwells, and up to four numbers of the output."""
+
+    rows: Integers
+    first: Integers
+    second: Integers
+    numbers: Real
+
+
+def starts(
+    kind: Kind, dwells: int, dwell: float, way: float, transmission: float, rng: np.random.Generator, most: int
+) -> list[Start]:
+    """The most promising shapes, each of another fourbar; dwell and way in radians, the way NaN for a slider."""
+    shapes = _drawn(rng, transmission)
+    linkage = Fourbar.from_lengths(
+        np.ones(len(shapes)), shapes[:, 0], shapes[:, 1], shapes[:, 2], shapes[:, 3] + 1j * shapes[:, 4]
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, CYCLE, endpoint=False)
+    curves = np.ascontiguousarray(coupler_points(linkage, turn, OPEN).p)
+    looked_at = dwell if dwells == 1 else max(dwell, LONG)
+    length = max(FEWEST, round(looked_at / (2.0 * np.pi) * CYCLE) + 1)
+    tried = (_of_lines if kind == "slot" else _of_arcs)(curves, length, dwells, kind, way)
+    if not len(tried.rows):
+        return []
+    number = {"rocker": ROCKER, "slider": SLIDER, "slot": SLOT}[kind]
+    scores, signs, ends = (
+        np.empty(len(tried.rows)),
+        np.empty(len(tried.rows), np.int64),
+        np.empty((len(tried.rows), 2), np.int64),
+    )
+    judge(number, curves, *tried, length, dwells, way, math.sin(transmission), scores, signs, ends)
+    found: list[Start] = []
+    used: set[int] = set()
+    for n in np.argsort(scores):
+        row = int(tried.rows[n])
+        if len(found) == most or not np.isfinite(scores[n]):
+            break
+        if row in used:
+            continue
+        used.add(row)
+        angles = turn[[tried.first[n], tried.second[n]][:dwells]]
+        # The piece is a little longer or shorter than the dwell: both have one middle.
+        angles = angles + 0.5 * ((length - 1) * 2.0 * np.pi / CYCLE - dwell)
+        numbers = tried.numbers[n, : {"rocker": 4, "slider": 3, "slot": 2}[kind]]
+        shape = np.concatenate([shapes[row], numbers, angles])
+        found.append(Start(shape, int(signs[n]), tuple(ends[n, :dwells].tolist()), float(scores[n])))
+    return found
+
+
+def _drawn(rng: np.random.Generator, transmission: float) -> Real:
+    """Crank-rockers with a crank of 1: b, c, d, and P in the coupler's frame."""
+    count = 12 * DRAWN
+    b, c, d = np.exp(rng.uniform(math.log(1.2), math.log(6.0), (3, count)))
+    c = np.where(np.arange(count) % 2 == 0, b, c)
+    longest, total = np.maximum(np.maximum(b, c), d), 1.0 + b + c + d
+    with np.errstate(invalid="ignore"):
+        cosines = np.stack([(b * b + c * c - (d + k) ** 2) / (2.0 * b * c) for k in (-1.0, 1.0)])
+    sound = (2.0 * (longest + 1.0) < total - 0.1) & (np.abs(cosines).max(axis=0) < math.cos(transmission))
+    rows = np.flatnonzero(sound)
+    rows = np.sort(np.concatenate([rows[rows % 2 == 0][:DRAWN], rows[rows % 2 == 1][:DRAWN]]))
+    b, c, d = b[rows], c[rows], d[rows]
+    free = 1.5 * np.maximum(b, d) * np.sqrt(rng.random(len(rows))) * np.exp(2j * np.pi * rng.random(len(rows)))
+    p = np.where(b == c, b + b * np.exp(2j * np.pi * rng.random(len(rows))), free)
+    return np.stack([b, c, d, p.real, p.imag], axis=1)
+
+
+def _extent(curves: Complex) -> Real:
+    return np.asarray(np.hypot(np.ptp(curves.real, axis=1), np.ptp(curves.imag, axis=1)))
+
+
+def _of_arcs(curves: Complex, length: int, dwells: int, kind: Kind, way: float) -> _Outputs:
+    """Outputs whose pin rests in the centres of arcs."""
+    centres, radii, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
+    arcs(curves, length, centres, radii, off)
+    extent = _extent(curves)
+    share = np.where((radii > 0.2 * extent[:, None]) & (radii < 4.0 * extent[:, None]), off / extent[:, None], np.inf)
+    if dwells == 2:
+        return _of_two_arcs(centres, radii, share, extent, length, kind, way)
+    first = share.argmin(axis=1)
+    best = share[np.arange(len(curves)), first]
+    rows = np.argsort(best)[:PIECES]
+    rows = rows[np.isfinite(best[rows])]
+    first = first[rows]
+    centre, radius = centres[rows, first], radii[rows, first]
+    if kind == "slider":
+        angle = np.tile(np.linspace(0.0, np.pi, DIRECTIONS, endpoint=False), len(rows))
+        rows, first, centre, radius = (np.repeat(part, DIRECTIONS) for part in (rows, first, centre, radius))
+        offset = (centre * np.exp(-1j * angle)).imag
+        return _Outputs(rows, first, first, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
+    reach = np.geomspace(0.25, 2.5, REACHES)
+    direction = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+    each = REACHES * DIRECTIONS
+    arm = np.tile((reach[:, None] * direction).ravel(), len(rows)) * np.repeat(extent[rows], each)
+    rows, first, centre, radius = (np.repeat(part, each) for part in (rows, first, centre, radius))
+    pivot = centre + arm
+    return _Outputs(rows, first, first, np.stack([radius, pivot.real, pivot.imag, np.abs(arm)], axis=1))
+
+
+def _of_two_arcs(
+    centres: Complex, radii: Real, share: Real, extent: Real, length: int, kind: Kind, way: float
+) -> _Outputs:
+    """Outputs whose pin rests in the centres of two arcs of nearly one radius."""
+    rows, first, second = _best_pairs(centres, radii, share, extent, length, 0.0)
+    one, other = centres[rows, first], centres[rows, second]
+    radius = 0.5 * (radii[rows, first] + radii[rows, second])
+    chord = other - one
+    if kind == "slider":
+        angle = np.angle(chord)
+        offset = (0.5 * (one + other) * np.exp(-1j * angle)).imag
+        return _Outputs(rows, first, second, np.stack([radius, offset, angle, 0.0 * angle], axis=1))
+    sides = []
+    for side in (1j, -1j):
+        pivot = 0.5 * (one + other) + side * chord / (2.0 * math.tan(0.5 * way))
+        sides.append(np.stack([radius, pivot.real, pivot.imag, np.abs(one - pivot)], axis=1))
+    return _Outputs(np.tile(rows, 2), np.tile(first, 2), np.tile(second, 2), np.concatenate(sides))
+
+
+def _best_pairs(
+    places: Complex, radii: Real, share: Real, extent: Real, length: int, way: float
+) -> tuple[Integers, Integers, Integers]:
+    """Row, first and second piece of the best pairs."""
+    found, score = np.empty((3, MOST_PAIRS), np.int64), np.empty(MOST_PAIRS)
+    count = _pairs(places, radii, share, extent, length, way, found, score)
+    best = np.argsort(score[:count])[:JUDGED]
+    return found[0, best], found[1, best], found[2, best]
+
+
+def _of_lines(curves: Complex, length: int, dwells: int, kind: Kind, way: float) -> _Outputs:
+    """Slotted outputs along lines: their pivots lie on the line, or where two cross at the angle of the swing."""
+    points, angles, off = np.empty_like(curves), np.empty(curves.shape), np.empty(curves.shape)
+    lines(curves, length, points, angles, off)
+    extent = _extent(curves)
+    share = off / extent[:, None]
+    if dwells == 1:
+        first = share.argmin(axis=1)
+        best = share[np.arange(len(curves)), first]
+        rows = np.argsort(best)[: 4 * PIECES]
+        first = first[rows]
+        away = np.concatenate([-np.geomspace(0.15, 4.0, 2 * REACHES), np.geomspace(0.15, 4.0, 2 * REACHES)])
+        pivot = points[rows, first][:, None] + (extent[rows, None] * away * np.exp(1j * angles[rows, first])[:, None])
+        rows, first = np.repeat(rows, len(away)), np.repeat(first, len(away))
+        pivot = pivot.ravel()
+        none = np.zeros(len(pivot))
+        return _Outputs(rows, first, first, np.stack([pivot.real, pivot.imag, none, none], axis=1))
+    rows, first, second = _best_pairs(points, angles, share, extent, length, way)
+    one, other = np.exp(1j * angles[rows, first]), np.exp(1j * angles[rows, second])
+    apart = points[rows, second] - points[rows, first]
+    pivot = points[rows, first] + one * (apart * other.conj()).imag / (one * other.conj()).imag
+    none = np.zeros(len(pivot))
+    return _Outputs(rows, first, second, np.stack([pivot.real, pivot.imag, none, none], axis=1))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _pairs(
+    places: Complex, radii: Real, share: Real, extent: Real, length: int, way: float, found: Integers, score: Real
+) -> int:
+    """All pairs of pieces of a curve, clear of each other, that may rest an output twice; how many were found.
+
+    For arcs ``places`` are their centres, which must lie apart, and the radii should be equal. For lines, with ``way``
+    the angle at which they should cross, ``radii`` are their angles. Filled are row, first and second piece, and a
+    score.
+    """
+    n, count = share.shape[1], 0
+    for row in range(len(share)):
+        for i in range(n):
+            if not share[row, i] < GOOD:
+                continue
+            for j in range(i + length, min(n, i + n - length + 1)):
+                if not share[row, j] < GOOD:
+                    continue
+                if way == 0.0:
+                    wrong = abs(radii[row, i] - radii[row, j]) / extent[row]
+                    if wrong > ALIKE or abs(places[row, i] - places[row, j]) <= APART * extent[row]:
+                        continue
+                else:
+                    # Lines have no direction: they cross at an angle and its supplement.
+                    crossing = abs(radii[row, i] - radii[row, j]) % math.pi
+                    wrong = 0.3 * min(abs(crossing - way), abs(math.pi - crossing - way))
+                if wrong > ALIKE or count == len(score):
+                    continue
+                found[0, count], found[1, count], found[2, count] = row, i, j
+                score[count] = max(share[row, i], share[row, j]) + wrong
+                count += 1
+    return count

@@ -1,0 +1,189 @@
+"""How promising outputs of a dwell sixbar are: each driven through the turn on a grid, in compiled loops.
+
+A rocker has the numbers R = P D, O6 (x, y), O6 D; a slider R, the line's distance from O2 to its left and its angle; a
+slotted link O6 (x, y). Directions are handled as unit vectors and as half tangents, so that no arctangent is taken of
+the many outputs that come to nothing.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.dwell.outputs import NEAREST
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+ROCKER, SLIDER, SLOT = range(3)
+"""Kinds of output, as the loops know them."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def judge(
+    kind: int,
+    curves: Complex,
+    rows: Integers,
+    first: Integers,
+    second: Integers,
+    numbers: Real,
+    length: int,
+    dwells: int,
+    way: float,
+    least: float,
+    scores: Real,
+    signs: Integers,
+    ends: Integers,
+) -> None:
+    """Drive every output through the turn and score it: the way during the dwells, and what it lacks."""
+    n = curves.shape[1]
+    out, ux, uy = np.empty(n), np.empty(n), np.empty(n)
+    for k in range(len(rows)):
+        curve = curves[rows[k]]
+        scores[k], signs[k] = np.inf, 1
+        a, b, c, d = numbers[k]
+        if kind == ROCKER:
+            signs[k] = _rest_sign(curve, first[k], length, a, complex(b, c), d)
+            sine = _rocker_turn(curve, a, b, c, d, signs[k], ux, uy)
+        elif kind == SLIDER:
+            signs[k] = _slide_sign(curve, first[k], length, a, b, c)
+            sine = _slider_turn(curve, a, b, c, signs[k], out)
+        else:
+            sine = _slot_turn(curve, a, b, ux, uy)
+        if not sine > 0.0:
+            continue
+        if kind != SLIDER:
+            _half_tangents(ux, uy, out)
+        low, high = _level(kind, out.min()), _level(kind, out.max())
+        span = high - low
+        if not span > 0.0:
+            continue
+        rest, ending = 0.0, 0.0
+        for dwell in range(dwells):
+            begin = first[k] if dwell == 0 else second[k]
+            least_out, most_out, mean = np.inf, -np.inf, 0.0
+            for m in range(length):
+                value = out[(begin + m) % n]
+                least_out, most_out = min(least_out, value), max(most_out, value)
+                mean += _level(kind, value) / length
+            rest = max(rest, (_level(kind, most_out) - _level(kind, least_out)) / span)
+            ends[k, dwell] = 1 if high - mean < mean - low else -1
+            ending = max(ending, min(high - mean, mean - low) / span)
+        if dwells == 2 and ends[k, 0] == ends[k, 1]:
+            continue
+        scores[k] = rest + 0.5 * ending + 0.5 * max(0.0, 1.5 * least - sine)
+        if kind == SLIDER:
+            extent = 0.0
+            for m in range(n):
+                extent = max(extent, abs(curve[m] - curve[0]))
+            scores[k] += 0.05 * max(0.0, math.log(2.0 * extent / span))
+        else:
+            scores[k] += 0.3 * abs(math.log(span / way))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rocker_turn(
+    curve: Complex, link: float, x: float, y: float, rocker: float, sign: int, ux: Real, uy: Real
+) -> float:
+    """Direction of a rocker at every sample; the least sine of its transmission angle, 0 where it is not reached."""
+    nearest, farthest = np.inf, 0.0
+    for m in range(len(curve)):
+        dx, dy = curve[m].real - x, curve[m].imag - y
+        square = dx * dx + dy * dy
+        nearest, farthest = min(nearest, square), max(farthest, square)
+        if not (rocker - link) ** 2 < square < (rocker + link) ** 2:
+            return 0.0
+        r = math.sqrt(square)
+        cosine = (rocker * rocker + square - link * link) / (2.0 * rocker * r)
+        leaning = sign * math.sqrt(max(1.0 - cosine * cosine, 0.0))
+        ux[m], uy[m] = (dx * cosine - dy * leaning) / r, (dx * leaning + dy * cosine) / r
+    ends = rocker * rocker + link * link - nearest, rocker * rocker + link * link - farthest
+    pin = max(abs(ends[0]), abs(ends[1])) / (2.0 * rocker * link)
+    return math.sqrt(max(1.0 - pin * pin, 0.0))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _slider_turn(curve: Complex, link: float, offset: float, angle: float, sign: int, out: Real) -> float:
+    """Place of a slider at every sample; the least sine of its transmission angle, 0 where it is not reached."""
+    along_x, along_y = math.cos(angle), math.sin(angle)
+    least = 1.0
+    for m in range(len(curve)):
+        across = (curve[m].imag * along_x - curve[m].real * along_y - offset) / link
+        square = 1.0 - across * across
+        if not square > 0.0:
+            return 0.0
+        sine = math.sqrt(square)
+        least = min(least, sine)
+        out[m] = curve[m].real * along_x + curve[m].imag * along_y + sign * link * sine
+    return least
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _slot_turn(curve: Complex, x: float, y: float, ux: Real, uy: Real) -> float:
+    """Direction of a slotted link at every sample; 1, or 0 where P comes too near to its pivot."""
+    for m in range(len(curve)):
+        dx, dy = curve[m].real - x, curve[m].imag - y
+        r = math.sqrt(dx * dx + dy * dy)
+        if not r >= NEAREST:
+            return 0.0
+        ux[m], uy[m] = dx / r, dy / r
+    return 1.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _half_tangents(ux: Real, uy: Real, out: Real) -> None:
+    """Tangents of half the angles from the mean direction: they grow with the angles, and cost no arctangent."""
+    x, y = ux.sum(), uy.sum()
+    size = math.sqrt(x * x + y * y)
+    for m in range(len(ux)):
+        out[m] = (uy[m] * x - ux[m] * y) / (size + ux[m] * x + uy[m] * y)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _level(kind: int, value: float) -> float:
+    """The output of a number of ``out``: an angle of its half tangent, or a slider's place."""
+    return value if kind == SLIDER else 2.0 * math.atan(value)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _slide_sign(curve: Complex, begin: int, length: int, link: float, offset: float, angle: float) -> int:
+    """The assembly in which a slider moves least while P runs through a piece."""
+    along_x, along_y = math.cos(angle), math.sin(angle)
+    n = len(curve)
+    best, chosen = np.inf, 1
+    for sign in (1, -1):
+        low, high = np.inf, -np.inf
+        for m in range(length):
+            z = curve[(begin + m) % n]
+            across = z.imag * along_x - z.real * along_y - offset
+            along = z.real * along_x + z.imag * along_y
+            value = along + sign * math.sqrt(max(link * link - across * across, 0.0))
+            low, high = min(low, value), max(high, value)
+        if high - low < best:
+            best, chosen = high - low, sign
+    return chosen
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _rest_sign(curve: Complex, begin: int, length: int, link: float, pivot: complex, rocker: float) -> int:
+    """The assembly in which a rocker's pin moves least while P runs through a piece."""
+    n = len(curve)
+    best, chosen = np.inf, 1
+    for sign in (1, -1):
+        farthest, origin = 0.0, 0j
+        for m in range(length):
+            arm = curve[(begin + m) % n] - pivot
+            r = abs(arm)
+            cosine = (rocker * rocker + r * r - link * link) / (2.0 * rocker * r)
+            cosine = min(max(cosine, -1.0), 1.0)
+            pin = arm / r * complex(cosine, sign * math.sqrt(1.0 - cosine * cosine))
+            if m == 0:
+                origin = pin
+            farthest = max(farthest, abs(pin - origin))
+        if farthest < best:
+            best, chosen = farthest, sign
+    return chosen

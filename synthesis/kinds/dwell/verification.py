@@ -1,0 +1,221 @@
+"""Verification of a dwell sixbar: the crank is driven through a whole turn, and the output's rests are looked for.
+
+A dwell is where the output moves least while the crank turns by the demanded angle; of two, one is looked for near each
+end of the output's way. Nothing is known of where they should be.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from synthesis.kinds.dwell.design import (
+    DwellDesign,
+    DwellMechanism,
+    DwellMetrics,
+    Rest,
+)
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import at_most, constraint_checks
+from synthesis.proof.closer import (
+    extremes_of,
+    least_of,
+    sine_at,
+)
+
+Real = NDArray[np.float64]
+
+GRID = 2880
+"""Crank angles of the turn: every eighth of a degree."""
+
+WAY_MET = 1e-6
+"""How far swing or stroke may be from the demanded one, as a share of it."""
+
+CLOSED = 1e-9
+"""How far a joint may be from its place after a turn, as a share of the mechanism's size."""
+
+NO_TOGGLE = 1e-6
+"""The least sine of a transmission angle at which the mechanism still moves one way."""
+
+END = 0.05
+"""How far a dwell's mean may be from the end of the way, as a share of it."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class _Rest(NamedTuple):
+    start: int
+    level: float
+    jitter: float
+    width: float
+    off_end: float
+
+
+def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign | None:
+    """Drive a sixbar through a turn of its crank and measure the dwells that a problem asks for.
+
+    Parameters
+    ----------
+    problem : DwellProblem
+        What was asked.
+    design : DwellMechanism
+        Dimensions.
+
+    Returns
+    -------
+    DwellDesign or None
+        None where the dimensions are no mechanism whose crank turns through.
+    """
+    try:
+        mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None  # ValidationError: a length beyond what any statement may hold
+    inputs = float(mechanism.reference_input) + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
+    motion = drive(mechanism, inputs, order=2)
+    if not motion.smooth.all():
+        return None
+    joints = np.concatenate([jet[0] for jet in motion.joints.values()])
+    size = math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0))
+    slides = design.type == "dwell_slider"
+
+    def output(found: MechanismMotion) -> Real:
+        return np.asarray(found.slides["D"][0] if slides else np.degrees(found.angles["output"][0]))
+
+    values = output(motion)
+    turned = abs(float(values[-1] - values[0]))
+    closed = all(abs(jet[0, -1] - jet[0, 0]) <= CLOSED * size for jet in motion.joints.values())
+    low, high = extremes_of(mechanism, inputs, values, output)
+    way = high - low
+    least = {
+        link: math.degrees(math.asin(min(least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)), 1.0)))
+        for link in motion.sines
+    }
+    turns = closed and turned <= 0.5 * way and min(least.values()) > math.degrees(NO_TOGGLE)
+    rests = _rests(values[:-1], problem, low, high)
+    if not rests:
+        return None
+    _, rate, second = motion.slides["D"] if slides else motion.angles["output"]
+    a, b, o4, o2 = (complex(mechanism.joints[name]) for name in ("A", "B", "O4", "O2"))
+    barker = barker_class(Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4)))
+    lengths = _lengths(mechanism)
+    task = problem.way if slides else 2.0 * abs(a - o2)
+    least_sine = math.sin(math.radians(min(least.values())))
+    metrics = DwellMetrics(
+        way=way,
+        jitter=max(rest.jitter for rest in rests),
+        peak_velocity=float(np.abs(rate).max()),
+        peak_acceleration=float(np.abs(second).max()),
+        grashof=barker.motion,
+        barker=barker.code,
+        min_transmission_angle=min(least.values()),
+        transmission_angles=least,
+        same_branch=turns,
+        full_rotation=turns,
+        link_ratio=max(lengths) / min(lengths),
+        size=size,
+        quality=quality(least_sine, max(lengths) / task, max(lengths) / min(lengths)),
+    )
+    targets = [
+        Rest(
+            index=k,
+            input_angle=math.degrees(float(inputs[rest.start])),
+            level=rest.level,
+            jitter=rest.jitter,
+            width=rest.width,
+            off_end=rest.off_end,
+        )
+        for k, rest in enumerate(rests)
+    ]
+    checks = _checks(problem, mechanism, metrics, targets, lengths)
+    return DwellDesign(
+        mechanism=design,
+        targets=targets,
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _checks(
+    problem: DwellProblem, mechanism: Mechanism, metrics: DwellMetrics, targets: list[Rest], lengths: list[float]
+) -> list[Check]:
+    off = abs(metrics.way - problem.way) / problem.way
+    checks = [
+        Check(name="crank_turns", passed=metrics.full_rotation),
+        Check(name="way", passed=off <= WAY_MET, value=off, limit=WAY_MET),
+    ]
+    for rest in targets:
+        checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed))
+        checks.append(at_most(f"dwell_{rest.index + 1}_at_end", rest.off_end, END))
+    if len(targets) == 2:
+        apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)
+        checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
+    pins = [complex(mechanism.joints[name]) for name in ("A", "B")]
+    pivots = [complex(mechanism.joints[name]) for name in mechanism.links[GROUND]]
+    return [*checks, *constraint_checks(problem.constraints, lengths, pivots, pins, metrics)]
+
+
+def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:
+    """The dwells of periodic values: one, or one near each end, the one that begins first at the front."""
+    window = math.ceil(problem.dwell_angle / 360.0 * GRID - 1e-9) + 1
+    jitter, mean = _ranges(values, window), _means(values, window)
+    middle = 0.5 * (low + high)
+    found = []
+    for near in (mean > middle, mean <= middle):
+        if near.any():
+            start = int(np.where(near, jitter, np.inf).argmin())
+            off = min(high - mean[start], mean[start] - low) / (high - low)
+            held = np.take(values, np.arange(start, start + window), mode="wrap")
+            level = 0.5 * float(held.max() + held.min())
+            width = _width(values, start, window, problem.allowed)
+            found.append(_Rest(start, level, float(jitter[start]), width, float(off)))
+    if problem.count == 1:
+        return [min(found, key=lambda rest: rest.jitter)]
+    return sorted(found, key=lambda rest: rest.start) if len(found) == 2 else []
+
+
+def _ranges(values: Real, window: int) -> Real:
+    """Greatest less least of each ``window`` values from an index on, around the turn."""
+    top, foot = (f(values, window, mode="wrap") for f in (maximum_filter1d, minimum_filter1d))
+    return np.asarray(np.roll(top - foot, -(window // 2)))
+
+
+def _means(values: Real, window: int) -> Real:
+    return np.asarray(np.roll(uniform_filter1d(values, window, mode="wrap"), -(window // 2)))
+
+
+def _width(values: Real, start: int, window: int, tolerance: float) -> float:
+    """The greatest rotation, degrees, about a dwell's middle over which the output stays within the tolerance."""
+    middle = start + window // 2
+
+    def holds(width: int) -> bool:
+        starts = np.arange(middle - width + 1, middle + 1)
+        return bool(np.take(_ranges(values, width), starts, mode="wrap").min() <= tolerance)
+
+    low, high = 1, GRID
+    while high - low > 1:
+        tried = (low + high) // 2
+        low, high = (tried, high) if holds(tried) else (low, tried)
+    return (low - 1) * 360.0 / GRID
+
+
+def _lengths(mechanism: Mechanism) -> list[float]:
+    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5 and an output rocker."""
+    place = {name: complex(z) for name, z in mechanism.joints.items()}
+    pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D")]
+    return [abs(place[one] - place[other]) for one, other in pairs if one in place and other in place]

@@ -1,0 +1,24 @@
+"""Function generation: precision points, least squares and minimax."""
+
+from __future__ import annotations
+
+from synthesis.kinds.function.design import FunctionResult
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+    from synthesis.kinds.function.solver import solve_function
+
+    return solve_function(problem, progress)
+
+
+def _warm_up() -> None:
+    from synthesis.kinds.function.solver import warm_up
+
+    warm_up()
+
+
+KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up)

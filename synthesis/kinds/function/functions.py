@@ -1,0 +1,182 @@
+"""The functions that a client may name, and what they are over their interval. No expression is ever evaluated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from synthesis.model.statement import (
+    Contradiction,
+    Interval,
+    Number,
+    PositiveNumber,
+    Statement,
+)
+
+Real = NDArray[np.float64]
+
+NO_CHANGE = 1e-9
+"""A function whose values differ by less than this share of their size is constant to the digits that are left."""
+
+AT_POLE = 1e-9
+"""An interval that ends this near to a pole, as a share of a period (or of its own size), reaches it."""
+
+SCANNED = 4001
+"""Places at which a function is looked at for its least and greatest value."""
+
+
+class TablePoint(Statement):
+    """A row of a table."""
+
+    x: Number
+    y: Number
+
+
+class FunctionStatement(Statement):
+    """A function by its name, over an interval of x.
+
+    ``linear`` y = x, ``power`` y = x^exponent, ``exponential`` y = base^x, ``logarithm`` y = log x (its base changes
+    the scale of y only), ``sine``, ``cosine`` and ``tangent`` with x in degrees, ``reciprocal`` y = 1/x, ``table`` a
+    smooth curve through given points that rises and falls no more often than they do.
+    """
+
+    name: Literal[
+        "linear", "power", "exponential", "logarithm", "sine", "cosine", "tangent", "reciprocal", "table"
+    ]  # fmt: skip
+    x: Interval | None = Field(default=None, description="From the first value of x to the last; of a table the whole.")
+    exponent: Number | None = Field(default=None, description="Of `power`.")
+    base: PositiveNumber | None = Field(default=None, description="Of `exponential`, e where it is left out.")
+    points: Annotated[list[TablePoint], Field(min_length=3, max_length=500)] | None = Field(
+        default=None, description="Of `table`, with rising x."
+    )
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The interval of x; of a table without one all that it covers."""
+        if self.x is not None:
+            return self.x
+        assert self.points is not None
+        return self.points[0].x, self.points[-1].x
+
+    def values(self, x: Real) -> Real:
+        """y at x, NaN or infinite where there is none."""
+        with np.errstate(all="ignore"):
+            if self.name == "linear":
+                return np.array(x, np.float64)
+            if self.name == "power":
+                return np.asarray(np.power(x, self.exponent or 0.0), np.float64)
+            if self.name == "exponential":
+                return np.exp(math.log(self.base or math.e) * x)
+            if self.name == "logarithm":
+                return np.log10(x)
+            if self.name in ("sine", "cosine", "tangent"):
+                return {"sine": np.sin, "cosine": np.cos, "tangent": np.tan}[self.name](np.radians(x))
+            if self.name == "reciprocal":
+                return np.asarray(1.0 / x)
+            return self._interpolated(x)
+
+    def _interpolated(self, x: Real) -> Real:
+        # Only who states a table waits for the import.
+        from scipy.interpolate import PchipInterpolator
+
+        assert self.points is not None
+        table = PchipInterpolator([point.x for point in self.points], [point.y for point in self.points])
+        return np.asarray(table(x), np.float64)
+
+    def extent(self) -> tuple[float, float]:
+        """Least and greatest value over the interval."""
+        x = np.linspace(*self.interval, SCANNED)
+        if self.points is not None:
+            low, high = self.interval
+            x = np.concatenate([x, [point.x for point in self.points if low <= point.x <= high]])
+        elif self.name in ("sine", "cosine"):
+            turns = 90.0 * np.arange(math.ceil(self.interval[0] / 90.0), math.floor(self.interval[1] / 90.0) + 1)
+            x = np.concatenate([x, turns[:SCANNED]])
+        elif self.name == "power" and self.interval[0] < 0.0 < self.interval[1]:
+            x = np.append(x, 0.0)
+        y = self.values(x)
+        return float(y.min()), float(y.max())
+
+    def share(self, x: Real) -> Real:
+        """How far the output has gone at x, as a share of its range: 0 at the first x, first growing.
+
+        It ends at 1 where the function only rises or only falls; else the range is from its least to its greatest.
+        """
+        low, high = self.extent()
+        first = float(self.values(np.array([self.interval[0]]))[0])
+        return (self.values(x) - first) / (self.direction * (high - low))
+
+    @property
+    def direction(self) -> float:
+        """1 where y first grows, −1 where it first falls."""
+        y = self.values(np.linspace(*self.interval, SCANNED))
+        moved = y - y[0]
+        away = np.flatnonzero(np.abs(moved) > NO_CHANGE * np.abs(moved).max())
+        return float(np.sign(moved[away[0]])) if len(away) else 1.0
+
+    def faults(self) -> Iterator[Contradiction]:
+        """What makes the statement no function over an interval, with paths below it."""
+        yield from self._fields()
+        if self.name == "table" and self.points is not None:
+            for k, (one, other) in enumerate(zip(self.points, self.points[1:], strict=False), start=1):
+                if not other.x > one.x:
+                    yield Contradiction(f"/points/{k}/x", "x must rise from row to row of a table")
+                    return
+            low, high = self.interval
+            if low < self.points[0].x or high > self.points[-1].x:
+                yield Contradiction("/x", "the table does not cover this interval")
+                return
+        elif self.x is None:
+            yield Contradiction("/x", "state the interval of x")
+            return
+        poles = list(self._poles())
+        if poles or (self.name == "power" and self.exponent is None):
+            yield from poles
+            return
+        low, high = self.interval
+        if high - low <= 1e-12 * max(abs(low), abs(high)):
+            yield Contradiction("/x", "the interval is too short for its size")
+            return
+        with np.errstate(all="ignore"):
+            least, greatest = self.extent()
+        if not (math.isfinite(least) and math.isfinite(greatest)):
+            yield Contradiction("/x", f"{self.name} is not finite over this interval")
+        elif greatest - least <= NO_CHANGE * max(abs(least), abs(greatest)):
+            yield Contradiction("/x", f"{self.name} is constant over this interval, to the digits that are left")
+
+    def _fields(self) -> Iterator[Contradiction]:
+        for field, name in (("exponent", "power"), ("points", "table")):
+            given = getattr(self, field) is not None
+            if given != (self.name == name):
+                detail = f"belongs to {name}" if given else f"{name} needs it"
+                yield Contradiction(f"/{field}", detail)
+        if self.base is not None and self.name not in ("exponential", "logarithm"):
+            yield Contradiction("/base", "belongs to exponential and logarithm")
+        if self.base == 1.0:
+            yield Contradiction("/base", "a base of 1 makes the function constant")
+        if self.name == "power" and self.exponent == 0.0:
+            yield Contradiction("/exponent", "an exponent of 0 makes the function constant")
+
+    def _poles(self) -> Iterator[Contradiction]:
+        """Where the function is not defined, or has no bound."""
+        low, high = self.interval
+        near = AT_POLE * max(abs(low), abs(high))
+        touches_zero = low <= near and high >= -near
+        if self.name == "logarithm" and low <= near:
+            yield Contradiction("/x", "the logarithm needs an interval above 0")
+        elif self.name == "reciprocal" and touches_zero:
+            yield Contradiction("/x", "1/x has no value at 0, which lies in the interval")
+        elif self.name == "tangent":
+            first = math.ceil((low - 90.0) / 180.0 - AT_POLE)
+            if 90.0 + 180.0 * first <= high + 180.0 * AT_POLE:
+                yield Contradiction("/x", f"the tangent has no value at {90 + 180 * first}°, in the interval")
+        elif self.name == "power" and self.exponent is not None:
+            if self.exponent < 0.0 and touches_zero:
+                yield Contradiction("/x", "a negative power has no value at 0, which lies in the interval")
+            elif low < 0.0 and self.exponent != round(self.exponent):
+                yield Contradiction("/x", "a power that is not whole needs an interval that is not below 0")

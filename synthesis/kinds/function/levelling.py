@@ -1,0 +1,171 @@
+"""Precision points moved until the extremes of the error between them are level.
+
+The linkages that follow a function well lie in narrow curved valleys of their dimensions, along which a descent creeps.
+The places where the error vanishes are better coordinates: through n of them there are few linkages, all known in
+closed form (:mod:`synthesis.kinds.function.precision`), and each extreme hangs mostly on its own two neighbours. With
+h_i the greatest errors in the n + 1 parts of the range, the n equations ln h_i = ln h_{i+1} are solved by Newton's
+method in the places, many linkages at once. Where the error of the best linkage alternates, as it does where no limit
+is reached, it is level.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.precision import exact_points
+from synthesis.kinds.function.structural_error import Generators
+from synthesis.kinds.function.task import FunctionTask
+
+Real = NDArray[np.float64]
+
+ROUNDS = 10
+
+DIFFERENCE = 1e-3
+"""Of a place's angle t, u = (1 − cos t)/2, for a derivative."""
+
+FARTHEST = 0.3
+"""A place moves by this share of the way to its neighbours at most."""
+
+LEVEL = 1e-4
+"""Extremes that agree to this are level."""
+
+GRID = 241
+
+SPREADS, COPIES, FAMILIES = (0.3, 0.1, 0.03, 0.01), 15, 4
+"""Where scales are open: how far they are moved at a time (in logarithms), to how many values, and of how many."""
+
+
+def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, Real]:
+    """Linkages with level extremes, each from one whose error vanishes at as many places as can be met.
+
+    Parameters
+    ----------
+    task : FunctionTask
+        Of a function.
+    generators, signs : float, shapes (k, 7) and (k,)
+        Where to begin.
+
+    Returns
+    -------
+    generators, signs : float, shapes (m, 7) and (m,)
+        Those that were reached, the best that each start met on its way; m ≤ k.
+    """
+    function = task.problem.function
+    count = 3 + sum(zero is None for zero in task.zeros)
+    if function is None or not len(generators):
+        return generators[:0], signs[:0]
+    low, high = function.interval
+    angles = np.linspace(0.0, math.pi, GRID)
+    shares = 0.5 - 0.5 * np.cos(angles)
+    grid = Generators(task.problem.slides, shares, function.share(low + (high - low) * shares))
+    places, begun = _zeros(grid.errors(generators, signs), angles, count)
+    generators, signs = generators[begun], signs[begun]
+    reached, theirs, places, least = _level(task, grid, angles, generators, signs, places)
+    columns = np.flatnonzero(task.free[5:]) + 5
+    for spread in SPREADS if len(columns) and len(reached) else ():
+        # The best with their scales moved, from the places that they meet.
+        chosen = np.argsort(least / np.abs(reached[:, 6]) if task.free[6] else least)[:FAMILIES]
+        copies, again = np.repeat(reached[chosen], COPIES, axis=0), np.repeat(places[chosen], COPIES, axis=0)
+        factors = np.exp(spread * np.linspace(-1.0, 1.0, COPIES))
+        for n, column in enumerate(columns):
+            # Of two open scales the second is moved in another order, so that both are moved apart from each other.
+            order = np.roll(factors[::-1], n * (COPIES // 3)) if n else factors
+            copies[:, column] = _allowed(task, int(column) - 5, copies[:, column] * np.tile(order, len(chosen)))
+        more = _level(task, grid, angles, copies, np.repeat(theirs[chosen], COPIES), again)
+        reached, theirs = np.concatenate([reached, more[0]]), np.concatenate([theirs, more[1]])
+        places, least = np.concatenate([places, more[2]]), np.concatenate([least, more[3]])
+    return reached, theirs
+
+
+def _allowed(task: FunctionTask, side: int, scales: Real) -> Real:
+    """Scales moved into their limits, each of its own sign's."""
+    for low, high in task.scales[side]:
+        same = scales * low > 0.0
+        scales = np.where(same, np.clip(scales, low, high), scales)
+    return scales
+
+
+def _level(
+    task: FunctionTask, grid: Generators, angles: Real, generators: Real, signs: Real, places: Real
+) -> tuple[Real, Real, Real, Real]:
+    """Generators and signs that were reached from places (k, count), with their places and greatest errors."""
+    function = task.problem.function
+    assert function is not None
+    low, high = function.interval
+    count = places.shape[1]
+    met = places.copy()
+    best, least = generators.copy(), np.full(len(generators), np.inf)
+    for _ in range(ROUNDS):
+        if not len(generators):
+            break
+        moved = np.concatenate([places[:, None], places[:, None] + DIFFERENCE * np.eye(count)], axis=1)
+        sets = moved.reshape(-1, count)
+        u = 0.5 - 0.5 * np.cos(sets)
+        y = function.share(low + (high - low) * u)
+        around = np.repeat(generators, count + 1, axis=0)
+        found = _nearest(task, around, around[:, 5:6] * u, around[:, 6:7] * y)
+        errors = np.abs(grid.errors(found, np.repeat(signs, count + 1)))
+        heights = _heights(errors, angles, sets).reshape(len(generators), count + 1, count + 1)
+        found = found.reshape(len(generators), count + 1, 7)
+        greatest = heights[:, 0].max(axis=1)
+        better = np.isfinite(greatest) & (greatest < least)
+        best[better], least[better], met[better] = found[better, 0], greatest[better], places[better]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            unlevel = np.diff(np.log(heights), axis=2)
+        on = np.isfinite(unlevel).all(axis=(1, 2)) & (np.abs(unlevel[:, 0]).max(axis=1) > LEVEL)
+        if not on.any():
+            break
+        slopes = np.swapaxes(unlevel[:, 1:] - unlevel[:, :1], 1, 2) / DIFFERENCE
+        step = np.zeros_like(places)
+        step[on] = -np.einsum("kij,kj->ki", np.linalg.pinv(slopes[on]), unlevel[on, 0])
+        ends = np.concatenate([-places[:, :1], places, 2.0 * math.pi - places[:, -1:]], axis=1)
+        room = FARTHEST * np.minimum(np.diff(ends)[:, :-1], np.diff(ends)[:, 1:])
+        with np.errstate(divide="ignore"):
+            # Places that have come together have no room; what rests needs none.
+            too_far = np.divide(np.abs(step), room, out=np.zeros_like(step), where=step != 0.0).max(axis=1)
+        places = places + step / np.maximum(too_far, 1.0)[:, None]
+        generators = np.where(on[:, None], found[:, 0], generators)
+    reached = np.isfinite(least)
+    return best[reached], signs[reached], met[reached], least[reached]
+
+
+def _zeros(errors: Real, angles: Real, count: int) -> tuple[Real, NDArray[np.int64]]:
+    """Where errors vanish, as angles (m, count), of those that do so at that many places, and which those are.
+
+    One that vanishes at more places stands twice: with the first of them and with the last.
+    """
+    finite = np.asarray(np.isfinite(errors).all(axis=1))
+    crossed = np.asarray(np.diff(np.sign(np.where(finite[:, None], errors, 1.0)), axis=1) != 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = errors[:, :-1] / (errors[:, :-1] - errors[:, 1:])
+    at = np.where(crossed, angles[:-1] + (angles[1] - angles[0]) * shares, np.inf)
+    first = np.sort(at, axis=1)[:, :count]
+    last = np.sort(np.where(crossed, at, -np.inf), axis=1)[:, -count:]
+    total = crossed.sum(axis=1)
+    begun = np.concatenate([np.flatnonzero(total >= count), np.flatnonzero(total > count)])
+    return np.concatenate([first[total >= count], last[total > count]]), begun
+
+
+def _nearest(task: FunctionTask, around: Real, inputs: Real, outputs: Real) -> Real:
+    """Of the linkages through sets of places the one nearest to a generator each; NaN where there is none."""
+    found = task.closure.dimensions(exact_points(task.closure, inputs, outputs, task.zeros))
+    apart = found - around[:, None, :5]
+    angles = [3] if task.problem.slides else [3, 4]
+    apart[..., angles] -= math.tau * np.round(apart[..., angles] / math.tau)
+    apart[..., :2] /= around[:, None, :2]
+    apart[..., 2] /= np.abs(around[:, None, 2]) + 0.1
+    distance = np.abs(apart).max(axis=2)
+    distance = np.where(np.isfinite(distance), distance, np.inf)
+    chosen = found[np.arange(len(found)), distance.argmin(axis=1)]
+    return np.concatenate([chosen, around[:, 5:]], axis=1)
+
+
+def _heights(errors: Real, angles: Real, places: Real) -> Real:
+    """Greatest errors between the places, shape (k, places + 1); NaN where there are none."""
+    errors = np.where(np.isfinite(errors), errors, np.inf)
+    part = (angles[None, :, None] > places[:, None, :]).sum(axis=2)
+    heights = np.stack([np.where(part == j, errors, 0.0).max(axis=1) for j in range(places.shape[1] + 1)], axis=1)
+    return np.where(np.isfinite(heights) & (heights > 0.0), heights, np.nan)

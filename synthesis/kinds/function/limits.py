@@ -1,0 +1,175 @@
+"""The client's limits on a function generator as inequalities, with derivatives by its steps.
+
+In logarithms of the lengths a limit on a ratio of links is linear. The transmission angle and Grashof's condition are
+not; they are linearized where the generator stands.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.structural_error import STEPS
+from synthesis.kinds.function.task import FunctionTask
+
+Real = NDArray[np.float64]
+
+WITHOUT_END = 1e5
+"""Link ratio, or a slider-crank's lengths in ranges of its slider, at which a search stops where no limit is given:
+errors then change in digits that nobody makes."""
+
+LOOKED_AT = 25
+"""Places of the range at which the transmission angle is kept."""
+
+INSIDE = 1e-7
+"""Relative distance that is kept from every limit, so that rounding does not break it."""
+
+TURNING = 1e-4
+"""What a crank turns through with, in lengths of the shortest link: less would be a change point."""
+
+
+class Limits:
+    """Inequalities g(generator) ≤ 0 of a task."""
+
+    def __init__(self, task: FunctionTask) -> None:
+        problem, demanded = task.problem, task.problem.constraints
+        self.slides = problem.slides
+        ratio = WITHOUT_END if demanded.max_link_ratio is None else min(demanded.max_link_ratio, WITHOUT_END)
+        lengths = demanded.link_length
+        low, high = (0.0, math.inf) if lengths is None else (lengths.min, lengths.max or math.inf)
+        self.shortest, self.longest = 0.0, math.inf
+        if self.slides:
+            self.shortest, self.longest = low / task.unit, min(high / task.unit, WITHOUT_END)
+        elif problem.fixed_pivots is not None:
+            ground = abs(complex(*problem.fixed_pivots.output) - complex(*problem.fixed_pivots.input))
+            self.shortest, self.longest = low / ground, high / ground
+        elif low > 0.0 and math.isfinite(high):
+            ratio = min(ratio, high / low)
+        self.ratio = ratio / (1.0 + INSIDE)
+        least = demanded.min_transmission_angle
+        self.cosine = None if least is None else math.cos(math.radians(least)) - INSIDE
+        inputs = task.sample_inputs
+        self.places = np.linspace(float(inputs.min()), float(inputs.max()), LOOKED_AT)
+        self.shortest_link = {"crank_rocker": 1, "double_crank": 0, "double_rocker": 2}.get(demanded.grashof)
+        if self.slides:
+            self.shortest_link = None
+        self.turns_through = demanded.full_rotation
+
+    def contained(self, generators: Real) -> Real:
+        """Generators (k, 7) with their lengths moved into the limits of ratio and size."""
+        found = generators.copy()
+        columns = [0, 1] if self.slides else [0, 1, 2]
+        logs = np.log(found[:, columns])
+        if not self.slides:
+            logs = np.concatenate([np.zeros((len(logs), 1)), logs], axis=1)
+        middle = 0.5 * (logs.max(axis=1, keepdims=True) + logs.min(axis=1, keepdims=True))
+        half = 0.5 * math.log(self.ratio)
+        logs = np.clip(logs, middle - half, middle + half)
+        if not self.slides:
+            logs = logs[:, 1:] - logs[:, :1]
+        found[:, columns] = np.clip(np.exp(logs), self.shortest * (1.0 + INSIDE), self.longest / (1.0 + INSIDE))
+        if self.slides:
+            found[:, 2] = np.clip(found[:, 2], -self.longest, self.longest)
+        return found
+
+    def turning(self, generators: Real) -> NDArray[np.bool_]:
+        """Which of many generators have the link turning through that is to, with some room; shape (k,)."""
+        a, b, c = generators[:, :3].T
+        if self.slides:
+            return np.asarray(a + np.abs(c) < b)
+        lengths = np.stack([np.ones_like(a), a, b, c])
+        shortest, total = lengths.argmin(axis=0), lengths.sum(axis=0)
+        excess = lengths.min(axis=0) + lengths.max(axis=0) - 0.5 * total
+        wanted = [0, 1] if self.shortest_link is None else [self.shortest_link]
+        return np.asarray((excess < -TURNING * lengths.min(axis=0)) & np.isin(shortest, wanted))
+
+    def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
+        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, 7)."""
+        rows = [*self._ratios(generator), *self._grashof(generator)]
+        g = np.array([value for value, _ in rows])
+        slopes = np.array([slope for _, slope in rows]).reshape(-1, STEPS)
+        if self.cosine is None:
+            return g, slopes
+        cosines, turned = self._transmission(generator, derivatives)
+        g = np.concatenate([g, cosines - self.cosine, -cosines - self.cosine])
+        return g, np.concatenate([slopes, turned, -turned])
+
+    def transmission(self, generators: Real) -> Real:
+        """Least |sine| of the transmission angle over the range, shape (k,)."""
+        cosines = self._cosines(*(generators[:, j, None] for j in range(6)))
+        return np.asarray(np.sqrt(np.maximum(1.0 - np.abs(cosines).max(axis=1) ** 2, 0.0)))
+
+    def _cosines(self, a: Real, b: Real, c: Real, start: Real, _zero: Real, k: Real) -> Real:
+        theta = start + k * self.places
+        if self.slides:
+            return np.asarray((c - a * np.sin(theta)) / b)
+        f2 = 1.0 + a * a - 2.0 * a * np.cos(theta)
+        return np.asarray((b * b + c * c - f2) / (2.0 * b * c))
+
+    def _transmission(self, generator: Real, derivatives: bool) -> tuple[Real, Real]:
+        a, b, c, start, zero, k = (np.asarray(generator[j]) for j in range(6))
+        cosines = self._cosines(a, b, c, start, zero, k)
+        slopes = np.zeros((len(cosines), STEPS))
+        if derivatives:
+            theta = start + k * self.places
+            if self.slides:
+                slopes[:, 0], slopes[:, 1], slopes[:, 2] = -a * np.sin(theta) / b, -cosines, 1.0 / b
+                slopes[:, 3] = -a * np.cos(theta) / b
+            else:
+                slopes[:, 0] = -(2.0 * a * a - 2.0 * a * np.cos(theta)) / (2.0 * b * c)
+                slopes[:, 1], slopes[:, 2] = b / c - cosines, c / b - cosines
+                slopes[:, 3] = -2.0 * a * np.sin(theta) / (2.0 * b * c)
+            slopes[:, 5] = slopes[:, 3] * k * self.places
+        return cosines, slopes
+
+    def _ratios(self, generator: Real) -> list[tuple[float, Real]]:
+        """Rows (value, slopes) of ratios and lengths."""
+        names = [0, 1] if self.slides else [0, 1, 2]
+        logs = [(math.log(generator[j]), _unit(j)) for j in names]
+        rows = []
+        for log, slope in logs:
+            if self.shortest > 0.0:
+                rows.append((math.log(self.shortest * (1.0 + INSIDE)) - log, -slope))
+            if math.isfinite(self.longest):
+                rows.append((log - math.log(self.longest / (1.0 + INSIDE)), slope))
+        if self.slides:
+            rows += [(sign * generator[2] / self.longest - 1.0, sign * _unit(2) / self.longest) for sign in (1.0, -1.0)]
+        else:
+            logs.append((0.0, np.zeros(STEPS)))
+        most = math.log(self.ratio)
+        rows += [(one - other - most, s - t) for one, s in logs for other, t in logs if s is not t]
+        return rows
+
+    def _grashof(self, generator: Real) -> list[tuple[float, Real]]:
+        """The shortest link and any other together are no longer than the other two: it turns through."""
+        if self.slides:
+            if not self.turns_through:
+                return []
+            a, b, e = (float(x) for x in generator[:3])
+            slope = a * _unit(0) - b * _unit(1)
+            return [((a + sign * e - b) / b + TURNING, (slope + sign * _unit(2)) / b) for sign in (1.0, -1.0)]
+        lengths = [1.0, *(float(x) for x in generator[:3])]
+        short = self.shortest_link
+        if short is None:
+            if not self.turns_through:
+                return []
+            short = 1 if lengths[1] < 1.0 else 0
+        slopes = [np.zeros(STEPS), *(lengths[j + 1] * _unit(j) for j in range(3))]
+        total, total_slope = sum(lengths), np.sum(slopes, axis=0)
+        # In units of the shortest link, which may be short beside the others.
+        unit = lengths[short]
+        rows = []
+        for j in range(4):
+            if j != short:
+                pair, slope = lengths[short] + lengths[j], slopes[short] + slopes[j]
+                excess = (2.0 * pair - total) / unit
+                rows.append((excess + TURNING, (2.0 * slope - total_slope - excess * slopes[short]) / unit))
+        return rows
+
+
+def _unit(j: int) -> Real:
+    row = np.zeros(STEPS)
+    row[j] = 1.0
+    return row

@@ -1,0 +1,202 @@
+"""Linkages that meet pairs exactly: points of the closure's cubic that satisfy the equations of the pairs.
+
+Pairs and given zeros are r linear equations in P⁶. What they leave is a point, a line or more; on a line the cubic has
+three roots, real or not. Where more is left, random lines in it cut the cubic in random members of the family.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.closure import UNKNOWNS, Closure
+from synthesis.kinds.function.structural_error import STEPS, Generators
+
+Real = NDArray[np.float64]
+
+NEARLY_REAL = 1e-6
+"""Imaginary part, relative, below which a root counts as real until it has been refined: a double root of data with 16
+digits shows eight of them."""
+
+INDEPENDENT = 1e-11
+"""Singular value of the equations, relative to the largest, above which they count as independent."""
+
+APART = 1e-6
+"""Roots of the cubic that are nearer, as angles of their line's points, are not told apart with certainty."""
+
+POLISHES, LONGEST = 6, 0.5
+"""Steps of Newton's method on the structural errors themselves, which meet the pairs to the last digits, and the most
+that a step changes."""
+
+
+class Exact(NamedTuple):
+    """All linkages of finitely many.
+
+    Attributes
+    ----------
+    dimensions : float, shape (k, 5)
+        Real linkages; see :class:`synthesis.kinds.function.closure.Closure`.
+    degenerate : int
+        Real points of the cubic with a link of no or of infinite length.
+    proved : bool
+        The equations are independent and the roots are simple, so that there are no others.
+    """
+
+    dimensions: Real
+    degenerate: int
+    proved: bool
+
+
+def equations(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
+    """Unit rows of the given zeros and of pairs, shape (..., r, 7)."""
+    rows = closure.rows(inputs, outputs)
+    given = closure.zero_rows(zeros)
+    given = np.broadcast_to(given, (*rows.shape[:-2], *given.shape))
+    rows = np.concatenate([given, rows], axis=-2)
+    return np.asarray(rows / np.linalg.norm(rows, axis=-1, keepdims=True))
+
+
+def left_over(rows: Real) -> tuple[Real, Real]:
+    """Basis of what the equations leave, shape (..., 7 − r, 7), and how independent they are."""
+    _, s, vh = np.linalg.svd(rows)
+    return vh[..., rows.shape[-2] :, :], np.asarray(s[..., -1] / s[..., 0])
+
+
+def _left_at_least(rows: Real) -> Real:
+    """Basis of what every one of many sets of equations leaves, more where they are not independent."""
+    _, s, vh = np.linalg.svd(rows)
+    rank = int((s > INDEPENDENT * s[..., :1]).sum(axis=-1).max())
+    return np.asarray(vh[..., min(rank, UNKNOWNS - 1) :, :])
+
+
+def on_lines(closure: Closure, one: Real, other: Real) -> tuple[Real, NDArray[np.bool_]]:
+    """Points of the cubic on lines through two orthogonal unit vectors each.
+
+    Returns
+    -------
+    points : float, shape (..., 3, 7)
+        NaN in place of complex ones.
+    simple : bool, shape (...,)
+        The three are apart from one another.
+    """
+    # Of four ways to turn the basis that one is taken in which the cubic is most clearly of the third degree.
+    turns = np.arange(4.0) * (np.pi / 4.0)
+    turned = np.cos(turns)[:, None] * one[..., None, :] + np.sin(turns)[:, None] * other[..., None, :]
+    best = np.abs(closure.cubic(turned)).argmax(axis=-1)
+    cos, sin = np.cos(turns[best])[..., None], np.sin(turns[best])[..., None]
+    one, other = cos * one + sin * other, cos * other - sin * one
+    first, last = closure.cubic(one), closure.cubic(other)
+    plus, minus = closure.cubic(one + other), closure.cubic(one - other)
+    second, third = 0.5 * (plus - minus) - last, 0.5 * (plus + minus) - first
+    companion = np.zeros((*first.shape, 3, 3))
+    companion[..., 1, 0] = companion[..., 2, 1] = 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for k, coefficient in enumerate((last, third, second)):
+            companion[..., k, 2] = -coefficient / first
+    sound = np.asarray(np.isfinite(companion).all(axis=(-1, -2)))
+    roots = np.linalg.eigvals(np.where(sound[..., None, None], companion, 0.0)).astype(np.complex128)
+    spread = np.sqrt(1.0 + np.abs(roots) ** 2)
+    real = np.asarray((np.abs(roots.imag) <= NEARLY_REAL * spread) & sound[..., None])
+    gaps = np.abs(roots[..., [0, 1, 2]] - roots[..., [1, 2, 0]]) / (spread[..., [0, 1, 2]] * spread[..., [1, 2, 0]])
+    x = np.where(real, roots.real, np.nan)[..., None]
+    points = x * one[..., None, :] + other[..., None, :]
+    return points / np.linalg.norm(points, axis=-1, keepdims=True), np.asarray(sound & (gaps > APART).all(axis=-1))
+
+
+def exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Exact:
+    """All linkages through as many pairs as leave nothing free: 3, and one more for each open zero.
+
+    Parameters
+    ----------
+    closure : Closure
+        The type of linkage.
+    inputs, outputs : float, shape (n,)
+        Pairs, radians and radians or units of the slider's range.
+    zeros : pair of float or None
+        Where the links stand at the value 0; None where that is open.
+    """
+    basis, independent = left_over(equations(closure, inputs, outputs, zeros))
+    linear = None not in zeros
+    if linear:
+        points, simple = basis, True
+    else:
+        points, apart = on_lines(closure, basis[0], basis[1])
+        points, simple = points[np.isfinite(points[:, 0])], bool(apart)
+    found = closure.dimensions(points)
+    sound = np.isfinite(found[:, 0])
+    proved = simple and bool(independent > INDEPENDENT)
+    return Exact(found[sound], int(np.count_nonzero(~sound)), proved)
+
+
+def many_exact(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
+    """Linkages through many sets of pairs, shape (m, n) each; all that are real together, with their set's index.
+
+    Returns
+    -------
+    found : float, shape (k, 6)
+        Dimensions, and the index of the set.
+    """
+    found = closure.dimensions(exact_points(closure, inputs, outputs, zeros))
+    index = np.broadcast_to(np.arange(len(found), dtype=np.float64)[:, None, None], (*found.shape[:2], 1))
+    found = np.concatenate([found, index], axis=-1).reshape(-1, 6)
+    return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def exact_points(closure: Closure, inputs: Real, outputs: Real, zeros: tuple[float | None, float | None]) -> Real:
+    """Points of the cubic through many sets of pairs, shape (m, n) each: shape (m, 3 or 1, 7), NaN where not real."""
+    basis, _ = left_over(equations(closure, inputs, outputs, zeros))
+    return basis[:, :1] if None not in zeros else on_lines(closure, basis[:, 0], basis[:, 1])[0]
+
+
+def family(
+    closure: Closure,
+    inputs: Real,
+    outputs: Real,
+    zeros: tuple[float | None, float | None],
+    rng: np.random.Generator,
+) -> Real:
+    """Random linkages through sets of fewer pairs, shape (m, n) each: results as of :func:`many_exact`."""
+    basis = _left_at_least(equations(closure, inputs, outputs, zeros))
+    count, left = basis.shape[:2]
+    if None not in zeros:
+        points = (rng.normal(size=(count, 1, left)) @ basis).reshape(count, 1, UNKNOWNS)
+        points = points / np.linalg.norm(points, axis=-1, keepdims=True)
+    else:
+        frames, _ = np.linalg.qr(rng.normal(size=(count, left, 2)))
+        one, other = (np.einsum("mk,mkj->mj", frames[:, :, j], basis) for j in (0, 1))
+        points, _ = on_lines(closure, one, other)
+    found = closure.dimensions(points)
+    index = np.broadcast_to(np.arange(count, dtype=np.float64)[:, None, None], (*found.shape[:2], 1))
+    found = np.concatenate([found, index], axis=-1).reshape(-1, 6)
+    return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def polished(generators: Generators, dimensions: Real, free: NDArray[np.bool_]) -> Real:
+    """A generator moved by Newton's method, least steps first, to meet its places to the last digits.
+
+    Parameters
+    ----------
+    generators : Generators
+        The pairs.
+    dimensions : float, shape (7,)
+        A generator that meets them nearly, each in the assembly that it keeps.
+    free : bool, shape (7,)
+        Which of its numbers may move.
+    """
+    signs = generators.signs(dimensions[None])
+    least, best = np.inf, dimensions
+    for _ in range(POLISHES):
+        errors = generators.errors(dimensions[None], signs)[0]
+        size = float(np.abs(errors).max()) if np.isfinite(errors).all() else np.inf
+        if not size < least:
+            break
+        least, best = size, dimensions
+        jacobian = generators.derivatives(dimensions, errors)[:, free]
+        if not np.isfinite(jacobian).all():
+            break
+        step = np.zeros(STEPS)
+        step[free] = np.clip(-np.linalg.lstsq(jacobian, errors, rcond=None)[0], -LONGEST, LONGEST)
+        dimensions = generators.stepped(dimensions, step)
+    return best

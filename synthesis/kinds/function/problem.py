@@ -1,0 +1,344 @@
+"""Function generation: a linkage whose output follows its input by a function or by pairs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import ConfigDict, Field
+
+from synthesis.kinds.function.functions import FunctionStatement, Real
+from synthesis.model.linkage_statement import Constraints, LinkageProblem
+from synthesis.model.statement import (
+    ABSURD,
+    Contradiction,
+    Count,
+    Flag,
+    Interval,
+    Number,
+    Point,
+    PositiveNumber,
+    Statement,
+)
+
+FULL_TURN = 360.0
+
+MOST_TURNED = 359.0
+"""Degrees that an input or output turns at most: at a full turn the first value would meet the last."""
+
+LEAST_TURNED = 0.01
+"""Degrees below which a range is no motion."""
+
+EQUAL_INPUTS = 1e-6
+"""Inputs that differ by less, degrees, are one: no linkage tells them apart."""
+
+EXACT_PAIRS = 3
+"""Pairs that a linkage meets with everything but its three proportions given; each open zero or scale adds one."""
+
+MOST_EXACT = 7
+
+
+class Pair(Statement):
+    """A value of the input, degrees, and the value of the output that belongs to it: degrees, or length units."""
+
+    input: Number
+    output: Number
+
+
+class Zeros(Statement):
+    """Where the links stand at the value 0: angles from the line O2 → O4, or from the slide's direction, degrees.
+
+    Of a slider the position along its line, from the foot of the fixed pivot, in length units. Null leaves it open.
+    """
+
+    input: Number | None = None
+    output: Number | None = None
+
+
+class Scales(Statement):
+    """How far the link turns (or the slider moves) for one unit of the value. Null leaves it open."""
+
+    input: PositiveNumber | None = None
+    output: PositiveNumber | None = None
+
+
+class GroundPivots(Statement):
+    """The fixed pivots O2 (input) and O4 (output)."""
+
+    input: Point
+    output: Point
+
+
+class FunctionConstraints(Constraints):
+    """Constraints of a linkage; the link ratio is limited unless it is set to null.
+
+    Many functions have no best linkage: the longer its links, the smaller the error. The limit is a part of the task.
+    """
+
+    max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
+        default=100.0, description="Longest link over shortest link, at most; null for no limit."
+    )
+
+
+def _one_way(values: Real) -> bool:
+    steps = np.diff(values)
+    return bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+
+
+class FunctionProblem(LinkageProblem):
+    """Function generation: the output of a fourbar or slider-crank follows its input.
+
+    Pairs of input and output, or a function over an interval with the ranges through which input and output turn. A
+    linkage meets 2 to 5 pairs exactly, 6 or 7 where scales are open; or it follows them, or the whole function, with
+    the least mean square or the least greatest structural error, which is measured on the finished linkage.
+    """
+
+    model_config = ConfigDict(
+        title="Function generation",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "function",
+                    "function": {"name": "power", "exponent": 1.5, "x": [1.0, 4.0]},
+                    "input_range": 90.0,
+                    "output_range": 90.0,
+                    "criterion": "minimax",
+                    "constraints": {"max_link_ratio": 10.0, "min_transmission_angle": 30.0},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "function",
+                    "pairs": [
+                        {"input": 40.0, "output": 70.0},
+                        {"input": 45.0, "output": 76.0},
+                        {"input": 60.0, "output": 90.0},
+                    ],
+                },
+                {
+                    "kind": "function",
+                    "mechanism": "slider_crank",
+                    "function": {"name": "logarithm", "x": [1.0, 10.0]},
+                    "input_range": 80.0,
+                    "output_range": 50.0,
+                    "precision_points": 4,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["function"]
+    pairs: Annotated[list[Pair], Field(min_length=2, max_length=200)] | None = None
+    function: FunctionStatement | None = None
+    input_range: Number | tuple[Number, Number] | None = Field(
+        default=None,
+        description="Degrees through which the input turns while x runs over its interval, counter-clockwise positive; "
+        "or its values at both ends; null leaves it open.",
+    )
+    output_range: Number | tuple[Number, Number] | None = Field(
+        default=None,
+        description="The same for the output: degrees, or length units of a slider. It is positive where the output "
+        "begins to turn counter-clockwise, whether y grows or falls; null leaves it open, and its direction too.",
+    )
+    either_direction: Flag = Field(default=False, description="Also try the output going the other way.")
+    range_limits: Interval = Field(default=(30.0, 150.0), description="Of ranges that are left open, degrees.")
+    scales: Scales | None = Field(
+        default=None,
+        description="Of pairs; left out they are 1 where at most five pairs are met exactly, for six the output's is "
+        "open and for seven both are.",
+    )
+    scale_limits: Interval = Field(default=(0.25, 4.0), description="Of scales that are left open.")
+    zeros: Zeros | None = Field(
+        default=None,
+        description="Left out, two or three pairs are angles from the ground line, of a link or its extension; "
+        "otherwise both zeros are open.",
+    )
+    precision_points: Annotated[Count, Field(ge=2, le=MOST_EXACT)] | None = Field(
+        default=None, description="Points of the function that are met exactly."
+    )
+    spacing: Literal["chebyshev", "equal"] = Field(default="chebyshev", description="Of the precision points.")
+    mechanism: Literal["fourbar", "slider_crank"] = "fourbar"
+    criterion: Literal["precision", "least_squares", "minimax"] | None = Field(
+        default=None,
+        description="Left out: `precision` where precision points are asked for, or there are no more pairs than can "
+        "be met; else `minimax`.",
+    )
+    fixed_pivots: GroundPivots | None = Field(
+        default=None,
+        description="Of a fourbar, and of a slider-crank with `output` a point towards which the slide points. Left "
+        "out: O2 at the origin and the ground line along +x, in a size that keeps the limits of length.",
+    )
+    constraints: FunctionConstraints = FunctionConstraints()
+
+    @property
+    def aim(self) -> Literal["precision", "least_squares", "minimax"]:
+        """The criterion, also where it is left out."""
+        if self.criterion is not None:
+            return self.criterion
+        if self.pairs is not None:
+            return "precision" if len(self.pairs) <= self.most_exact else "minimax"
+        return "precision" if self.precision_points is not None else "minimax"
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output is a slider."""
+        return self.mechanism == "slider_crank"
+
+    @property
+    def from_ground(self) -> bool:
+        """Whether pairs are angles from the ground line by default, of a link or its extension."""
+        return self.zeros is None and self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
+
+    @property
+    def stated_zeros(self) -> tuple[float | None, float | None]:
+        """Zeros of input and output, None where they are open."""
+        if self.from_ground:
+            return 0.0, 0.0
+        return (None, None) if self.zeros is None else (self.zeros.input, self.zeros.output)
+
+    @property
+    def most_exact(self) -> int:
+        """Pairs that can be met at most: proportions, zeros and scales that are open."""
+        zeros = 2 if self.zeros is None else [self.zeros.input, self.zeros.output].count(None)
+        if self.function is not None:
+            free = [self.input_range, self.output_range].count(None)
+        elif self.scales is not None:
+            free = [self.scales.input, self.scales.output].count(None)
+        else:
+            free = 1 if self.slides else 2
+        return EXACT_PAIRS + zeros + free
+
+    def span(self, side: Literal["input", "output"]) -> float | None:
+        """The range of a side, degrees or length units, signed; None where it is open."""
+        stated = self.input_range if side == "input" else self.output_range
+        if isinstance(stated, tuple):
+            return stated[1] - stated[0]
+        return stated
+
+    def first_value(self, side: Literal["input", "output"]) -> float:
+        """The value that a zero of the side is counted from at the beginning: 0 unless values of the ends are given."""
+        stated = self.input_range if side == "input" else self.output_range
+        return stated[0] if isinstance(stated, tuple) else 0.0
+
+    @property
+    def scale_choice(self) -> tuple[float | None, float | None]:
+        """Scales of pairs, None where they are open."""
+        if self.scales is not None:
+            return self.scales.input, self.scales.output
+        if self.aim != "precision" or self.pairs is None:
+            return 1.0, 1.0
+        zeros = sum(zero is None for zero in self.stated_zeros)
+        beyond = len(self.pairs) - EXACT_PAIRS - zeros
+        if beyond <= 0:
+            return 1.0, 1.0
+        if self.slides:
+            return None, 1.0
+        return (1.0, None) if beyond == 1 else (None, None)
+
+    @property
+    def values(self) -> Real:
+        """The pairs as numbers, shape (n, 2), where angles go on from 360 with 0 without the jump.
+
+        Inputs go the shorter way from pair to pair if that is one way round, and angles of the output in any case.
+        """
+        assert self.pairs is not None
+        values = np.array([[pair.input, pair.output] for pair in self.pairs])
+        onward = np.unwrap(values[:, 0], period=FULL_TURN)
+        if not _one_way(values[:, 0]) and _one_way(onward):
+            values[:, 0] = onward
+        if not self.slides:
+            values[:, 1] = np.unwrap(values[:, 1], period=FULL_TURN)
+        return values
+
+    def open_scale(self, side: int) -> tuple[float, float]:
+        """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""
+        low, high = self.scale_limits
+        most = MOST_TURNED / float(np.ptp(self.values[:, side]))
+        return low, max(min(high, most), low)
+
+    @property
+    def precision_shares(self) -> Real:
+        """Places of the precision points, as shares of the interval of x."""
+        n = self.precision_points or EXACT_PAIRS + 2
+        if self.spacing == "equal":
+            return np.linspace(0.0, 1.0, n)
+        return np.asarray(0.5 - 0.5 * np.cos((2.0 * np.arange(n) + 1.0) * math.pi / (2.0 * n)))
+
+    def contradictions(self) -> list[Contradiction]:
+        """Faults of pairs, function and ranges, and demands that exclude one another."""
+        found = [*self._asked(), *self._zeros_and_scales(), *self.constraints.contradictions()]
+        if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:
+            found.append(Contradiction("/fixed_pivots/output", "equal to the input's pivot; no ground link is left"))
+        if self.range_limits[0] < LEAST_TURNED or self.range_limits[1] > MOST_TURNED:
+            detail = f"must lie between {LEAST_TURNED} and {MOST_TURNED} degrees"
+            found.append(Contradiction("/range_limits", detail))
+        if self.scale_limits[0] <= 0.0:
+            found.append(Contradiction("/scale_limits", "a scale is positive"))
+        return found
+
+    def _asked(self) -> Iterator[Contradiction]:
+        if (self.pairs is None) == (self.function is None):
+            where = "/pairs" if self.pairs is None else "/function"
+            yield Contradiction(where, "state either pairs or a function")
+            return
+        if self.pairs is not None:
+            for field in ("input_range", "output_range", "precision_points"):
+                if getattr(self, field) is not None:
+                    yield Contradiction(f"/{field}", "belongs to a function; pairs have their own")
+            yield from self._faults_of_pairs(self.pairs)
+            return
+        assert self.function is not None
+        if self.scales is not None:
+            yield Contradiction("/scales", "belongs to pairs; a function has ranges")
+        if self.criterion not in (None, "precision") and self.precision_points is not None:
+            yield Contradiction("/precision_points", f"{self.criterion} looks at the whole range and meets no points")
+        faults = list(self.function.faults())
+        yield from (Contradiction(f"/function{fault.path}", fault.detail) for fault in faults)
+        if not faults:
+            yield from self._faults_of_ranges()
+
+    def _faults_of_pairs(self, pairs: list[Pair]) -> Iterator[Contradiction]:
+        turned = [float(value) for value in self.values[:, 0]]
+        for k, later in enumerate(turned):
+            for j, earlier in enumerate(turned[:k]):
+                if abs(math.remainder(later - earlier, FULL_TURN)) <= EQUAL_INPUTS:
+                    yield Contradiction(f"/pairs/{k}/input", f"equal to that of pair {j}; inputs must differ")
+                    return
+        if max(turned) - min(turned) > MOST_TURNED:
+            yield Contradiction("/pairs", "the inputs cover a full turn or more")
+            return
+        steps = np.sign(np.diff(turned))
+        wrong = np.flatnonzero(steps != steps[0])
+        if self.constraints.in_order and len(wrong):
+            detail = "inputs must rise, or fall, from pair to pair, or in_order be false"
+            yield Contradiction(f"/pairs/{wrong[0] + 1}/input", detail)
+        moved = [float(value) for value in self.values[:, 1]]
+        if not self.slides and max(moved) - min(moved) > MOST_TURNED:
+            yield Contradiction("/pairs", "the outputs cover a full turn or more")
+        if max(moved) - min(moved) <= EQUAL_INPUTS * (max(map(abs, moved)) if self.slides else 1.0):
+            yield Contradiction("/pairs", "the output does not move")
+        if self.aim == "precision" and len(pairs) > self.most_exact:
+            detail = f"at most {self.most_exact} pairs can be met with what is left open; ask for another criterion"
+            yield Contradiction("/pairs", detail)
+
+    def _faults_of_ranges(self) -> Iterator[Contradiction]:
+        for side in ("input", "output"):
+            span = self.span("input" if side == "input" else "output")
+            if span is None:
+                continue
+            turns = side == "input" or not self.slides
+            if turns and not LEAST_TURNED <= abs(span) <= MOST_TURNED:
+                detail = f"a range is between {LEAST_TURNED} and {MOST_TURNED} degrees"
+                yield Contradiction(f"/{side}_range", detail)
+            elif span == 0.0:
+                yield Contradiction(f"/{side}_range", "the output does not move")
+        if self.slides and self.output_range is None:
+            yield Contradiction("/output_range", "a slider's range sets the size of the linkage and must be given")
+        if self.aim == "precision" and (self.precision_points or 0) > self.most_exact:
+            detail = f"at most {self.most_exact} points can be met; leave zeros or ranges open"
+            yield Contradiction("/precision_points", detail)
+
+    def _zeros_and_scales(self) -> Iterator[Contradiction]:
+        if self.scales is not None and self.slides and self.scales.output is None:
+            yield Contradiction("/scales/output", "a slider's scale only changes the size of the linkage; state it")

@@ -1,0 +1,193 @@
+"""More pairs than proportions and zeros can meet: one or two scales are open.
+
+A scale stands inside of cosines, so that its equations are no polynomials. For given scales the first six equations
+leave one point v of P⁶ (:mod:`synthesis.kinds.function.closure`), an analytic function of the scales; what is left of
+the equations, and the cubic, must vanish there. For one scale this is a function of one number over an interval: it is
+interpolated by Chebyshev polynomials, whose roots are eigenvalues (Boyd, SIAM J. Numer. Anal. 40 (2002) 1666,
+doi:10.1137/S0036142901398325). For two scales the sign changes of both conditions on a grid are refined.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.closure import Closure
+from synthesis.kinds.function.precision import equations, left_over
+
+Real = NDArray[np.float64]
+Zeros = tuple[float | None, float | None]
+
+SIX = 6
+
+DEGREE, DEPTH = 32, 10
+"""Degree of the interpolation on a piece of the interval, and how often a piece is halved until that is enough."""
+
+RESOLVED, ROUNDING = 1e-9, 4e-15
+"""Last coefficients of the interpolation, relative to the largest, at which it has converged; and what rounding leaves
+of them, over the independence of the equations."""
+
+UNCLEAR = 1e-3
+"""Roots this near to each other or to the real axis, in half-lengths of their piece, are not told apart with certainty:
+the root of the interpolation's error, with room."""
+
+GRID = 120
+"""Scales a side, logarithmically spaced, where two are open."""
+
+DIFFERENCE, NEWTON_STEPS, LONGEST_STEP = 1e-5, 8, 0.05
+"""Of the refinement of two scales: difference in the logarithm, steps, and their greatest length."""
+
+
+class Scaled(NamedTuple):
+    """Linkages with the scales at which they meet all pairs.
+
+    Attributes
+    ----------
+    dimensions : float, shape (k, 7)
+        Five dimensions and both scales.
+    degenerate : int
+        Solutions with a link of no or of infinite length.
+    proved : bool
+        There are no others with scales between the limits.
+    """
+
+    dimensions: Real
+    degenerate: int
+    proved: bool
+
+
+class Scaling:
+    """Pairs whose scales are open.
+
+    Parameters
+    ----------
+    closure : Closure
+        The type of linkage.
+    inputs, outputs : float, shape (n,)
+        Pairs, to be multiplied by the scales; of a side with a given zero from the value 0, else from the first.
+    zeros : pair of float or None
+        Given zeros, radians, or in units of the slider's range.
+    """
+
+    def __init__(self, closure: Closure, inputs: Real, outputs: Real, zeros: Zeros) -> None:
+        self.closure, self.inputs, self.outputs, self.zeros = closure, inputs, outputs, zeros
+
+    def conditions(self, k: Real, scale: Real) -> tuple[Real, Real, Real]:
+        """What must vanish, shape (..., conditions); the point v; how well it is determined."""
+        rows = equations(self.closure, k[..., None] * self.inputs, scale[..., None] * self.outputs, self.zeros)
+        basis, independent = left_over(rows[..., :SIX, :])
+        v = basis[..., 0, :]
+        # The sign of v that makes it the generalized cross product of the rows, which is analytic.
+        whole = np.concatenate([rows[..., :SIX, :], v[..., None, :]], axis=-2)
+        v = v * np.where(np.linalg.det(whole) >= 0.0, 1.0, -1.0)[..., None]
+        values = np.einsum("...rj,...j->...r", rows[..., SIX:, :], v)
+        if None in self.zeros:
+            values = np.concatenate([values, self.closure.cubic(v)[..., None]], axis=-1)
+        return values, v, independent
+
+
+def one_scale(pairs: Scaling, limits: tuple[float, float], side: int, other: float) -> Scaled:
+    """All linkages with the scale of one side open between limits, the other's given.
+
+    Parameters
+    ----------
+    pairs : Scaling
+        One pair more than is met with all scales given.
+    limits : pair of float
+        Of the open scale, both of one sign.
+    side : 0 or 1
+        Input or output.
+    other : float
+        The other side's scale.
+    """
+
+    def at(x: Real) -> tuple[Real, Real, Real]:
+        given = np.full_like(x, other)
+        return pairs.conditions(*((x, given) if side == 0 else (given, x)))
+
+    roots, proved = _roots(lambda x: (at(x)[0][:, 0], at(x)[2]), limits)
+    if not len(roots):
+        return Scaled(np.empty((0, 7)), 0, proved)
+    found = pairs.closure.dimensions(at(roots)[1])
+    both = (roots, np.full_like(roots, other))
+    found = np.column_stack([found, *(both if side == 0 else both[::-1])])
+    sound = np.isfinite(found[:, 0])
+    return Scaled(found[sound], int(np.count_nonzero(~sound)), proved)
+
+
+def _roots(function: Callable[[Real], tuple[Real, Real]], limits: tuple[float, float]) -> tuple[Real, bool]:
+    """All roots in an interval of a function that comes with the independence of its equations.
+
+    Returns
+    -------
+    roots : float, shape (k,)
+    proved : bool
+        Every piece is resolved and no root is unclear.
+    """
+    nodes = chebyshev.chebpts1(DEGREE + 1)
+    transform = 2.0 / len(nodes) * np.cos(np.outer(np.arange(len(nodes)), np.arccos(nodes)))
+    transform[0] *= 0.5
+    pieces, found, proved = [(*limits, 0)], [], True
+    while pieces:
+        low, high, depth = pieces.pop()
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        values, independent = function(middle + half * nodes)
+        series = transform @ values
+        allowed = max(RESOLVED, ROUNDING / max(float(independent.min()), 1e-300))
+        resolved = float(np.abs(series[-3:]).max()) <= allowed * float(np.abs(series).max())
+        if not resolved and depth < DEPTH:
+            pieces += [(low, middle, depth + 1), (middle, high, depth + 1)]
+            continue
+        large = np.flatnonzero(np.abs(series) > 0.1 * allowed * np.abs(series).max())
+        roots = chebyshev.chebroots(series[: max(int(large[-1]), 1) + 1]) if len(large) else np.empty(0)
+        roots = roots[(np.abs(roots.real) <= 1.0 + UNCLEAR) & (np.abs(roots.imag) <= UNCLEAR)]
+        proved &= resolved and not np.any(roots.imag != 0.0) and bool(np.all(np.diff(np.sort(roots.real)) > UNCLEAR))
+        found.append(middle + half * np.clip(roots.real, -1.0, 1.0))
+    return np.unique(np.concatenate(found)), proved
+
+
+def two_scales(
+    pairs: Scaling, input_limits: tuple[float, float], output_limits: tuple[float, float], extra: Real
+) -> Real:
+    """Linkages near which both conditions vanish, with both scales open: to be refined; shape (k, 7).
+
+    Parameters
+    ----------
+    pairs : Scaling
+        Two pairs more than are met with all scales given.
+    input_limits, output_limits : pair of float
+        Of the scales; both of one sign.
+    extra : float, shape (m, 2)
+        Scales that are looked at too.
+    """
+    k, scale = (
+        math.copysign(1.0, low) * np.geomspace(abs(low), abs(high), GRID) for low, high in (input_limits, output_limits)
+    )
+    at = np.stack(np.meshgrid(k, scale, indexing="ij"), axis=-1)
+    values, _, _ = pairs.conditions(at[..., 0], at[..., 1])
+    positive = values > 0.0
+    corners = np.stack([positive[:-1, :-1], positive[1:, :-1], positive[:-1, 1:], positive[1:, 1:]])
+    crossed = np.all(corners.any(axis=0) & ~corners.all(axis=0), axis=-1)
+    i, j = np.nonzero(crossed)
+    starts = np.sqrt(at[i, j] * at[i + 1, j + 1]) * np.sign(at[i, j])
+    both = np.concatenate([_refined(pairs, starts), extra])
+    found = np.column_stack([pairs.closure.dimensions(pairs.conditions(both[:, 0], both[:, 1])[1]), both])
+    return np.asarray(found[np.isfinite(found).all(axis=1)])
+
+
+def _refined(pairs: Scaling, scales: Real) -> Real:
+    """Newton's method in the logarithms of both scales, by differences, from many places at once; shape (k, 2)."""
+    ahead = np.exp(DIFFERENCE * np.eye(2))
+    for _ in range(NEWTON_STEPS):
+        moved = [scales * factor for factor in (ahead[0], 1.0 / ahead[0], ahead[1], 1.0 / ahead[1])]
+        here = pairs.conditions(scales[:, 0], scales[:, 1])[0]
+        there = [pairs.conditions(m[:, 0], m[:, 1])[0] for m in moved]
+        jacobian = np.stack([there[0] - there[1], there[2] - there[3]], axis=-1) / (2.0 * DIFFERENCE)
+        step = -np.einsum("kij,kj->ki", np.linalg.pinv(jacobian), here)
+        scales = scales * np.exp(np.clip(step, -LONGEST_STEP, LONGEST_STEP))
+    return scales

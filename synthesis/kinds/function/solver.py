@@ -1,0 +1,380 @@
+"""Function generation: exact linkages where pairs or precision points are to be met, else the best approximations.
+
+How many pairs there are against what is open decides the way: as many as proportions and open zeros (and one scale)
+have finitely many solutions, all of which are found; fewer have a family, which is searched; for two scales beyond that
+a grid of scales is searched. Every linkage is verified by driving it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.approximation import approximations
+from synthesis.kinds.function.design import FunctionDesign, FunctionResult
+from synthesis.kinds.function.limits import Limits
+from synthesis.kinds.function.precision import (
+    exact,
+    family,
+    many_exact,
+    polished,
+)
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.scales import (
+    Scaling,
+    one_scale,
+    two_scales,
+)
+from synthesis.kinds.function.task import (
+    FunctionTask,
+    built,
+    function_task,
+)
+from synthesis.kinds.function.verification import verify_function
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+
+Real = NDArray[np.float64]
+
+DRAWN = 4000
+"""Members drawn of a family."""
+
+SLICES = 40
+"""Values of one scale at which the other is solved for, where both are open and only one is needed."""
+
+TRIED = 6
+"""Members of a family that are verified at most, for each design wanted."""
+
+APART = 0.1
+"""Members of a family differ by this much in the logarithm of a length or in an angle."""
+
+SAME = 1e-7
+"""Solutions whose numbers agree to this, relative, are one."""
+
+USABLE = math.sin(math.radians(30.0))
+"""Sine of the transmission angle below which a member of a family is offered only where none reaches it."""
+
+UNCHANGED = 1e-7
+"""Scales this near to 1 leave the pairs as they are."""
+
+_REASONS = {
+    "reaches_targets": "residual",
+    "same_circuit": "circuit_defect",
+    "covers_range": "branch_defect",
+    "same_branch": "branch_defect",
+    "visits_in_order": "order_defect",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+    "dials": "reversed_link",
+}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+_NUMERICAL = {"residual", "cannot_be_driven"}
+"""Reasons that say what could not be shown, not what cannot be."""
+
+
+def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+    """Solve a problem of function generation."""
+    task = function_task(problem)
+    progress(0.0, "stated")
+    rng = np.random.default_rng(problem.seed)
+    harvest = _Harvest(task)
+    if problem.aim != "precision":
+        found = approximations(task, rng, progress)
+        for one in found.optima:
+            harvest.verify(one.generator, one.sign)
+        progress(1.0, "verified")
+        return harvest.approximated(found.judged, found.improved)
+    missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
+    open_scales = int(task.free[5]) + int(task.free[6])
+    if missing == -2 or (missing == -1 and open_scales == 2):
+        _with_two_scales(task, harvest, missing, progress)
+        return harvest.searched("two_scales")
+    if missing == -1:
+        proved = _with_one_scale(task, harvest)
+        return harvest.determined(proved, "one_scale")
+    if missing == 0 and open_scales == 0:
+        proved = _determined(task, harvest)
+        if harvest.passed or proved:
+            return harvest.determined(proved, "exact")
+        # Pairs of a linkage that moves as others do, a parallelogram's for example, do not determine it.
+    _family(task, harvest, rng, progress)
+    return harvest.searched("family")
+
+
+def warm_up() -> None:
+    """Load what the solver and its verification need."""
+    for spec in (_WARM_FOURBAR, _WARM_SLIDER):
+        solve_function(FunctionProblem.model_validate(spec), lambda fraction, message: None)
+
+
+def _choices(task: FunctionTask) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    return [(first, second) for first in task.scales[0] for second in task.scales[1]]
+
+
+def _determined(task: FunctionTask, harvest: _Harvest) -> bool:
+    """All linkages where nothing is open; returns whether it is proved that there are no others."""
+    proved = True
+    for (k, _), (scale, _) in _choices(task):
+        found = exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
+        proved &= found.proved
+        harvest.degenerate(found.degenerate)
+        for dimensions in found.dimensions:
+            harvest.polish_and_verify(np.concatenate([dimensions, [k, scale]]))
+    return proved
+
+
+def _with_one_scale(task: FunctionTask, harvest: _Harvest) -> bool:
+    """All linkages where one scale must be found, and only one is open."""
+    side = 0 if task.free[5] else 1
+    pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
+    proved = True
+    for choice in _choices(task):
+        found = one_scale(pairs, choice[side], side, choice[1 - side][0])
+        proved &= found.proved
+        harvest.degenerate(found.degenerate)
+        for generator in found.dimensions:
+            harvest.polish_and_verify(generator)
+    return proved
+
+
+def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progress: Progress) -> None:
+    """Linkages where both scales are open: both must be found, or one for each value of the other."""
+    pairs = Scaling(task.closure, task.inputs, task.outputs, task.zeros)
+    as_stated = np.ones((1 if task.problem.pairs is not None else 0, 2))
+    choices = _choices(task)
+    for n, (first, second) in enumerate(choices):
+        progress(n / len(choices), "scales")
+        if missing == -2:
+            for generator in two_scales(pairs, first, second, as_stated):
+                harvest.polish_and_verify(generator)
+        else:
+            for k in np.geomspace(*first, SLICES) if first[0] > 0.0 else np.linspace(*first, SLICES):
+                for generator in one_scale(pairs, second, 1, float(k)).dimensions:
+                    harvest.polish_and_verify(generator, scales_given=True)
+
+
+def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress) -> None:
+    """The best members of a family that differ from one another."""
+    generators = _members(task, rng)
+    limits = Limits(task)
+    progress(0.3, f"{len(generators)} members of the family")
+    signs = task.points().signs(generators)
+    one_assembly = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
+    generators, signs = generators[one_assembly], signs[one_assembly, 0]
+    harvest.screened("circuit_defect", int(np.count_nonzero(~one_assembly)))
+    sine = limits.transmission(generators)
+    worth = _worth(task, limits, generators, signs, sine)
+    sound = np.isfinite(worth)
+    harvest.screened("branch_defect", int(np.count_nonzero(~sound)))
+    order = np.argsort(worth)
+    order = order[np.isfinite(worth[order])]
+    features = np.column_stack([np.log(np.abs(generators[:, :3]) + 1e-12), generators[:, 3:5]])
+    chosen: list[int] = []
+    tried = 0
+    most = TRIED * task.problem.max_designs
+    for j in order[:2000]:
+        if tried == most or len(harvest.passed) >= task.problem.max_designs:
+            break
+        if chosen and np.abs(features[chosen] - features[j]).max(axis=1).min() < APART:
+            continue
+        chosen.append(int(j))
+        tried += 1
+        harvest.polish_and_verify(generators[j], scales_given=True)
+        progress(0.3 + 0.6 * tried / most, "verifying")
+    harvest.screened("outranked", len(order) - tried)
+
+
+def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
+    """Random members of a family, shape (k, 7)."""
+    most = 3 + sum(zero is None for zero in task.zeros)
+    found = []
+    choices = _choices(task)
+    for first, second in choices:
+        count = DRAWN // len(choices)
+        k, scale = (_drawn(limits, count, rng) for limits in (first, second))
+        pairs = k[:, None] * task.inputs, scale[:, None] * task.outputs
+        if len(task.inputs) == most and task.free[5:].any():
+            members = many_exact(task.closure, *pairs, task.zeros)
+        else:
+            members = family(task.closure, *pairs, task.zeros, rng)
+        index = members[:, 5].astype(np.int64)
+        found.append(np.column_stack([members[:, :5], k[index], scale[index]]))
+    return np.concatenate(found)
+
+
+def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
+    low, high = limits
+    return np.asarray(low * (high / low) ** rng.random(count))
+
+
+def _worth(task: FunctionTask, limits: Limits, generators: Real, signs: Real, sine: Real) -> Real:
+    """What members are ordered by, least first: the structural error of a function, else quality; infinite unfit."""
+    problem, demanded = task.problem, task.problem.constraints
+    lengths = generators[:, :2] if problem.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
+    ratio = lengths.max(axis=1) / lengths.min(axis=1)
+    unfit = sine <= 0.0
+    if demanded.max_link_ratio is not None:
+        unfit |= ratio > demanded.max_link_ratio
+    if demanded.min_transmission_angle is not None:
+        unfit |= sine < math.sin(math.radians(demanded.min_transmission_angle))
+    if problem.function is not None:
+        errors = np.abs(task.samples().errors(generators, signs)).max(axis=1)
+        if task.free[6]:
+            errors = errors / np.abs(generators[:, 6])
+        if demanded.min_transmission_angle is None:
+            errors = errors * np.where(sine < USABLE, 10.0, 1.0)
+        worth = errors
+    else:
+        reach = lengths.max(axis=1) if problem.slides else 0.0
+        worth = -sine / (1.0 + (ratio / 8.0) ** 2) / (1.0 + (reach / 3.0) ** 2)
+    return np.where(unfit | ~np.isfinite(worth), np.inf, worth)
+
+
+def _within(scale: float, choices: list[tuple[float, float]]) -> bool:
+    """Whether a scale is one of those allowed, to rounding."""
+    return any(low - 1e-9 * abs(low) <= scale <= high + 1e-9 * abs(high) for low, high in choices)
+
+
+class _Harvest:
+    """Linkages, verified, and what became of them."""
+
+    def __init__(self, task: FunctionTask) -> None:
+        self.task, self.problem = task, task.problem
+        self.points = task.points()
+        self.passed: list[FunctionDesign] = []
+        self.failed: list[FunctionDesign] = []
+        self.rejected: Counter[str] = Counter()
+        self.candidates = 0
+        self._seen: list[Real] = []
+
+    def degenerate(self, count: int) -> None:
+        """Count solutions that are no linkages."""
+        self.screened("degenerate", count)
+
+    def screened(self, reason: str, count: int) -> None:
+        """Count candidates that were not driven."""
+        if count:
+            self.candidates += count
+            self.rejected[reason] += count
+
+    def polish_and_verify(self, generator: Real, *, scales_given: bool = False) -> None:
+        """Bring a nearly exact generator to the last digits, and put it where it belongs; the same twice is one."""
+        free = self.task.free.copy()
+        if scales_given:
+            free[5:] = False
+        found = polished(self.points, generator, free)
+        if not all(_within(float(found[5 + side]), self.task.scales[side]) for side in (0, 1)):
+            return
+        if any(np.allclose(found, other, SAME, SAME) for other in self._seen):
+            return
+        self._seen.append(found)
+        self.verify(found, float(self.points.signs(found[None])[0, 0]))
+
+    def verify(self, generator: Real, sign: float) -> None:
+        """Drive a linkage, and put it where it belongs."""
+        self.candidates += 1
+        try:
+            mechanism, dials = built(self.task, generator, sign)
+            design = verify_function(self.problem, mechanism, dials)
+        except (ZeroDivisionError, OverflowError):
+            design = None
+        if design is None:
+            self.rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            self.passed.append(design)
+        else:
+            self.failed.append(design)
+            name = next(check.name for check in design.verification.checks if not check.passed)
+            self.rejected[_REASONS.get(name, name)] += 1
+
+    def approximated(self, judged: int, improved: int) -> FunctionResult:
+        """The answer of an approximation."""
+        if self.passed:
+            best = min(self.passed, key=self._error)
+            error = best.structural_error
+            unit = "°" if error.unit == "degrees" else f" {self.problem.length_unit}"
+            if self.problem.aim == "minimax":
+                text = f"The least greatest structural error found is {error.max:.4g}{unit}"
+                text += f" ({error.alternations} alternating extremes)"
+            else:
+                text = f"The least root mean square structural error found is {error.rms:.4g}{unit}"
+                text += f" (at most {error.max:.4g}{unit})"
+            text += f", from {improved} of {judged} starts; no proof that none is better."
+        else:
+            text = f"None of {improved} of {judged} starts came to a linkage that satisfies all demands.{self._why()}"
+        return self._result(self.problem.aim, False, text)
+
+    def determined(self, proved: bool, method: str) -> FunctionResult:
+        """The answer where all linkages were computed."""
+        complete = proved and not _NUMERICAL & self.rejected.keys()
+        text = f"{len(self.passed)} of {self.candidates} real linkages satisfy all demands.{self._why()}"
+        if not self.passed:
+            text += " There are no others, so no design exists." if complete else " Others may exist."
+        return self._result(method, complete, text)
+
+    def searched(self, method: str) -> FunctionResult:
+        """The answer where linkages were searched for."""
+        text = f"{len(self.passed)} linkages found among {self.candidates} candidates.{self._why()}"
+        return self._result(method, False, text)
+
+    def _why(self) -> str:
+        if not self.rejected:
+            return ""
+        listed = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in self.rejected.items())
+        return f" Rejected: {listed}."
+
+    def _error(self, design: FunctionDesign) -> float:
+        error = design.structural_error.rms if self.problem.aim == "least_squares" else design.structural_error.max
+        # With the output's range open errors are shares of it.
+        return error / abs(design.metrics.output_range) if self.task.free[6] else error
+
+    def _key(self, design: FunctionDesign) -> tuple[bool, bool, float, float]:
+        metrics = design.metrics
+        by = self.problem.rank_by
+        approximates = self.problem.aim != "precision"
+        if by == "transmission_angle":
+            value = -metrics.min_transmission_angle
+        elif by == "size":
+            value = metrics.size
+        elif by == "accuracy" or (by == "quality" and (self.problem.function is not None or approximates)):
+            value = self._error(design)
+        else:
+            value = -metrics.quality
+        if self.problem.pairs is not None and by == "accuracy" and not approximates:
+            value = 0.0  # all of them meet the pairs to rounding
+        # Pairs as they were stated come before pairs on other scales.
+        off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
+        rescaled = self.problem.pairs is not None and max(off) > UNCHANGED
+        return not design.verification.passed, rescaled, value, -metrics.quality
+
+    def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:
+        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
+        return FunctionResult(
+            designs=sorted(shown, key=self._key)[: self.problem.max_designs],
+            search=Search(
+                method=method,
+                complete=complete,
+                candidates=self.candidates,
+                accepted=len(self.passed),
+                rejected=dict(self.rejected),
+                seed=self.problem.seed,
+            ),
+            summary=summary,
+        )
+
+
+_WARM_FOURBAR = {
+    "kind": "function",
+    "function": {"name": "exponential", "x": [0.0, 1.0]},
+    "input_range": 60.0,
+    "output_range": 60.0,
+}
+_WARM_SLIDER = {
+    "kind": "function",
+    "mechanism": "slider_crank",
+    "pairs": [{"input": x, "output": 10.0 * math.sin(x / 40.0)} for x in (0.0, 20.0, 40.0)],
+}

@@ -1,0 +1,206 @@
+"""A problem of function generation in numbers, and a linkage of the solver's as a mechanism with its dials.
+
+Solvers work with ground 1 (slider-cranks: with the slider's range as unit) and radians. Inputs and outputs are φ and ψ
+for scale 1: the rotations of pairs, or shares of a function's range, which the scales multiply.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.closure import Closure, closure_of
+from synthesis.kinds.function.design import Dial, Dials
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.function.structural_error import Generators
+from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    fourbar_mechanism,
+    slider_crank_mechanism,
+    to_complex,
+)
+
+Real = NDArray[np.float64]
+Limits = tuple[float, float]
+
+USUAL_GROUND = 100.0
+"""Length of the ground link where nothing tells it, length units."""
+
+IN_REGION = 0.98
+"""Share of a region's width that the ground link takes where it is put there."""
+
+SAMPLES = 121
+"""Places of the range at which an approximation is fitted, closer together at its ends."""
+
+
+class FunctionTask(NamedTuple):
+    """The problem in numbers.
+
+    Attributes
+    ----------
+    inputs, outputs : float, shape (n,)
+        Pairs or precision points.
+    sample_inputs, sample_outputs : float, shape (m,)
+        Places that an approximation follows: the whole range, or the pairs.
+    zeros : pair of float or None
+        Where the links stand at input 0 and output 0.
+    scales : pair of list of (low, high)
+        What each scale may be; of equal numbers where it is given.
+    unit : float
+        Of the slider's positions, length units; of a fourbar 1.
+    """
+
+    problem: FunctionProblem
+    closure: Closure
+    inputs: Real
+    outputs: Real
+    sample_inputs: Real
+    sample_outputs: Real
+    zeros: tuple[float | None, float | None]
+    scales: tuple[list[Limits], list[Limits]]
+    unit: float
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Which of a generator's seven numbers are open."""
+        zeros = [zero is None for zero in self.zeros]
+        scales = [any(low < high for low, high in choice) for choice in self.scales]
+        return np.array([True, True, True, *zeros, *scales])
+
+    def points(self) -> Generators:
+        """Errors at the pairs or precision points."""
+        return Generators(self.problem.slides, self.inputs, self.outputs)
+
+    def samples(self) -> Generators:
+        """Errors at the places that an approximation follows."""
+        return Generators(self.problem.slides, self.sample_inputs, self.sample_outputs)
+
+
+def function_task(problem: FunctionProblem) -> FunctionTask:
+    """The problem's numbers."""
+    zeros = problem.stated_zeros
+    radians = math.pi / 180.0
+    if problem.pairs is not None:
+        given = problem.values
+        unit = float(np.ptp(given[:, 1])) if problem.slides else 1.0
+        # Of an open zero only differences count, and small numbers are kept exact.
+        given -= np.where([zero is None for zero in zeros], given[0], 0.0)
+        inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)
+        choices = tuple(
+            [problem.open_scale(side)] if scale is None else [(scale, scale)]
+            for side, scale in enumerate(problem.scale_choice)
+        )
+        samples = inputs, outputs
+        begins = 0.0, 0.0
+    else:
+        function = problem.function
+        assert function is not None
+        low, high = function.interval
+        inputs = problem.precision_shares if problem.aim == "precision" else np.linspace(0.0, 1.0, 5)
+        dense = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SAMPLES))
+        outputs = function.share(low + (high - low) * inputs)
+        samples = dense, function.share(low + (high - low) * dense)
+        unit = abs(problem.span("output") or 1.0) if problem.slides else 1.0
+        choices = (_ranges(problem, "input"), _ranges(problem, "output"))
+        begins = problem.first_value("input"), problem.first_value("output")
+    first = None if zeros[0] is None else (zeros[0] + begins[0]) * radians
+    second = None if zeros[1] is None else (zeros[1] + begins[1]) * (1.0 / unit if problem.slides else radians)
+    return FunctionTask(
+        problem, closure_of(problem.slides), inputs, outputs, *samples, (first, second), (choices[0], choices[1]), unit
+    )
+
+
+def _ranges(problem: FunctionProblem, side: str) -> list[Limits]:
+    """Ranges of a side in radians or units: given, the other direction too, or between limits."""
+    span = problem.span("input" if side == "input" else "output")
+    both = side == "output" and (span is None or problem.either_direction)
+    if span is None:
+        low, high = (math.radians(limit) for limit in problem.range_limits)
+        return [(low, high), (-high, -low)] if both else [(low, high)]
+    given = math.copysign(1.0, span) if side == "output" and problem.slides else math.radians(span)
+    return [(given, given), (-given, -given)] if both else [(given, given)]
+
+
+def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMechanism | SliderCrankMechanism, Dials]:
+    """A generator of the solver's as a mechanism, standing at the first target, with its dials.
+
+    Parameters
+    ----------
+    task : FunctionTask
+        The task.
+    generator : float, shape (7,)
+        See :mod:`synthesis.kinds.function.structural_error`.
+    sign : float
+        Its assembly.
+    """
+    problem = task.problem
+    a, b, c, start, zero, k, scale = (float(x) for x in generator)
+    place = float(task.inputs[0])
+    theta = start + k * place
+    pin = cmath.rect(a, theta)
+    origin, along = _ground(task, [1.0, a, b, c])
+    if problem.slides:
+        joint = complex(a * math.cos(theta) + sign * math.sqrt(max(b * b - (c - pin.imag) ** 2, 0.0)), c)
+    else:
+        f = abs(1.0 - pin)
+        x = (f * f + (b - c) * (b + c)) / (2.0 * f)
+        joint = pin + (1.0 - pin) / f * complex(x, sign * math.sqrt(max(b * b - x * x, 0.0)))
+    pin, joint = origin + along * pin, origin + along * joint
+    frame = math.degrees(cmath.phase(along))
+    to_input = 180.0 / math.pi
+    to_output = task.unit if problem.slides else to_input
+    turned = 0.0 if problem.slides else frame
+    if problem.pairs is not None:
+        shift = [
+            value if zero is None else 0.0
+            for value, zero in zip((problem.pairs[0].input, problem.pairs[0].output), task.zeros, strict=True)
+        ]
+        dials = Dials(
+            input=Dial(at=shift[0], place=frame + start * to_input, scale=k),
+            output=Dial(at=shift[1], place=turned + zero * to_output, scale=scale),
+        )
+    else:
+        function = problem.function
+        assert function is not None
+        low, high = function.interval
+        least, greatest = function.extent()
+        first = float(function.values(np.array([low]))[0])
+        dials = Dials(
+            input=Dial(at=low, place=frame + start * to_input, scale=k * to_input / (high - low)),
+            output=Dial(
+                at=first,
+                place=turned + zero * to_output,
+                scale=scale * to_output * function.direction / (greatest - least),
+            ),
+        )
+    if problem.slides:
+        return slider_crank_mechanism(origin, pin, joint, cmath.phase(along), pin), dials
+    return fourbar_mechanism(FourbarConfiguration(origin, pin, joint, origin + along, pin)), dials
+
+
+def _ground(task: FunctionTask, lengths: list[float]) -> tuple[complex, complex]:
+    """O2, and the vector that the solver's unit along the ground line or the slide becomes."""
+    problem = task.problem
+    limits, region = problem.constraints.link_length, problem.constraints.fixed_pivot_region
+    if problem.fixed_pivots is not None:
+        o2 = to_complex(problem.fixed_pivots.input)
+        along = to_complex(problem.fixed_pivots.output) - o2
+        return o2, along / abs(along) * task.unit if problem.slides else along
+    centre = 0j if region is None else complex(sum(region.x) / 2.0, sum(region.y) / 2.0)
+    if problem.slides:
+        return centre, complex(task.unit)
+    size = USUAL_GROUND
+    if region is not None:
+        size = min(size, IN_REGION * (region.x[1] - region.x[0]))
+    if limits is not None:
+        # In the middle, by ratio, of what the limits leave; outside of them only where nothing is left.
+        least = limits.min / min(lengths)
+        most = math.inf if limits.max is None else limits.max / max(lengths)
+        if not least <= size <= most:
+            size = math.sqrt(least * most) if least > 0.0 and math.isfinite(most) else max(least, min(most, size))
+    return (centre if region is None else centre - 0.5 * size), complex(size)

@@ -1,0 +1,466 @@
+"""Verification of function generators: the linkage is driven over its range, and its output read off the dials.
+
+From the dimensions and the dials alone: the input link is put where its dial has each value, and the output's place is
+compared with what its dial should show. At the pairs and precision points both assemblies are looked at, so that a
+branch defect is seen as one; over the range the linkage stays in the assembly of its first target, and the structural
+error is measured at two thousand places, with its extremes looked for more and more closely.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import (
+    CROSSED,
+    OPEN,
+    BarkerClass,
+    SliderCrank,
+    barker_class,
+    can_assemble,
+    positions,
+    same_circuit,
+    slider_crank,
+    stays_on_branch,
+    transmission_extremes,
+)
+from kinematics.linkage.slider_crank import range as slider_range
+from synthesis.kinds.function.design import (
+    Dial,
+    Dials,
+    ErrorCurve,
+    ErrorExtreme,
+    FunctionDesign,
+    FunctionMetrics,
+    FunctionTarget,
+    StructuralError,
+)
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
+from synthesis.model.linkages import driven_fourbar, to_complex
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import TARGET_REACHED, constraint_checks
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DRIVEN = 2001
+"""Places of the range at which the structural error is measured at first."""
+
+CLOSER, LOOKS = 17, 6
+"""Places in each closer look at an extreme, and the number of looks: 8⁶ times finer than the first."""
+
+SHOWN = 201
+"""Places of the error curve that are returned."""
+
+SHOWN_TARGETS = 9
+"""Places, ends included, at which an approximation is listed as targets."""
+
+LEVEL = 1e-3
+"""Extremes within this share of the greatest error have reached it."""
+
+DIAL_KEPT = 1e-9
+"""Deviation of a dial from what was stated, radians or shares of the range: what rounding leaves."""
+
+
+class _Driven(NamedTuple):
+    """The linkage at input angles: whether it closes, the output's place (radians or lengths), and its joints."""
+
+    valid: NDArray[np.bool_]
+    place: Real
+    a: Complex
+    b: Complex
+
+
+class _Drive(ABC):
+    """A linkage that is driven at its input, by the analysis core."""
+
+    assembly: int
+    lengths: list[float]
+    pivots: list[complex]
+    turns: float
+    """A turn of the output, radians; infinite for a slider."""
+    frame: float
+    """Direction of the ground line or of the slide, radians."""
+    full: bool
+    """Whether the input turns through."""
+    barker: BarkerClass | None = None
+
+    @abstractmethod
+    def at(self, angles: Real, assembly: int) -> _Driven:
+        """Positions at absolute input angles, radians."""
+
+    @abstractmethod
+    def on_branch(self, start: float, end: float) -> bool:
+        """Whether the input turns from start to end without a toggle."""
+
+    @abstractmethod
+    def least_transmission(self, start: float, end: float) -> float:
+        """Least transmission angle on the way, radians."""
+
+    @abstractmethod
+    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
+        """Whether the configurations lie on one circuit."""
+
+
+class _Fourbar(_Drive):
+    turns = math.tau
+
+    def __init__(self, mechanism: FourbarMechanism) -> None:
+        fourbar = driven_fourbar(mechanism)
+        self.linkage, self.assembly = fourbar.linkage, fourbar.assembly
+        if not can_assemble(self.linkage):
+            raise DimensionError("input", "lengths that can be assembled", math.nan)
+        links = mechanism.links
+        self.lengths = [links.ground, links.input, links.coupler, links.output]
+        self.pivots = [complex(self.linkage.input_pivot), complex(self.linkage.output_pivot)]
+        self.frame = float(self.linkage.ground_angle)
+        self.barker = barker_class(self.linkage)
+        self.full = self.barker.motion in ("double_crank", "crank_rocker")
+
+    def at(self, angles: Real, assembly: int) -> _Driven:
+        found = positions(self.linkage, angles, assembly)
+        return _Driven(found.valid, found.output_angle, found.a, found.b)
+
+    def on_branch(self, start: float, end: float) -> bool:
+        return bool(stays_on_branch(self.linkage, start, end))
+
+    def least_transmission(self, start: float, end: float) -> float:
+        return float(transmission_extremes(self.linkage, start, end)[0])
+
+    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
+        return bool(np.all(same_circuit(self.linkage, angles[0], assemblies[0], angles, assemblies)))
+
+
+class _Slider(_Drive):
+    turns = math.inf
+
+    def __init__(self, mechanism: SliderCrankMechanism) -> None:
+        pivot, angle = to_complex(mechanism.fixed_pivot), math.radians(mechanism.slide.angle)
+        along = complex(math.cos(angle), math.sin(angle))
+        line = to_complex(mechanism.slide.point)
+        # Travel is counted from the foot of the pivot.
+        foot = line + along * ((pivot - line) * along.conjugate()).real
+        self.linkage = SliderCrank(pivot, foot, angle, mechanism.links.crank, mechanism.links.coupler)
+        self.assembly = OPEN if mechanism.assembly == "open" else CROSSED
+        self.lengths = [mechanism.links.crank, mechanism.links.coupler]
+        self.pivots = [pivot]
+        self.frame = angle
+        self.full = bool(slider_crank.full_rotation(self.linkage))
+
+    def at(self, angles: Real, assembly: int) -> _Driven:
+        found = slider_crank.positions(self.linkage, angles, assembly)
+        return _Driven(found.valid, found.travel, found.a, found.b)
+
+    def on_branch(self, start: float, end: float) -> bool:
+        return slider_range.stays_on_branch(self.linkage, start, end)
+
+    def least_transmission(self, start: float, end: float) -> float:
+        return slider_range.least_transmission_angle(self.linkage, start, end)
+
+    def one_circuit(self, angles: Real, assemblies: NDArray[np.int64]) -> bool:
+        first = float(angles[0]), int(assemblies[0])
+        rest = zip(angles, assemblies, strict=True)
+        return all(slider_range.same_circuit(self.linkage, *first, float(x), int(sign)) for x, sign in rest)
+
+
+class _Wanted(NamedTuple):
+    """What the dials ask for: input angles (radians) and places of the output (radians or lengths)."""
+
+    values: Real
+    outputs: Real
+    angles: Real
+    places: Real
+
+
+def verify_function(
+    problem: FunctionProblem, mechanism: FourbarMechanism | SliderCrankMechanism, dials: Dials
+) -> FunctionDesign | None:
+    """Drive a linkage through a problem's range and measure its structural error.
+
+    Parameters
+    ----------
+    problem : FunctionProblem
+        What was asked.
+    mechanism : FourbarMechanism or SliderCrankMechanism
+        Dimensions only; the skeleton is not looked at.
+    dials : Dials
+        How the values are read off the links.
+
+    Returns
+    -------
+    FunctionDesign or None
+        None where the dimensions make no linkage, or it cannot be assembled at a target or somewhere in the range.
+    """
+    try:
+        drive = _Fourbar(mechanism) if isinstance(mechanism, FourbarMechanism) else _Slider(mechanism)
+    except DimensionError:
+        return None
+    targets = _wanted(problem, dials, _target_values(problem), drive)
+    met, assemblies = _met(drive, targets)
+    if not np.all(np.isfinite(met.place)):
+        return None
+    own = bool(np.all(assemblies == drive.assembly))
+    errors = _off(met.place, targets.places, drive.turns)
+    measured = _structural_error(problem, dials, drive, targets, errors)
+    if measured is None:
+        return None
+    error, whole = measured
+    unit = _unit(problem)
+    residuals = np.abs(errors) / (unit if problem.slides else 1.0)
+    start, end = _range(problem, dials, targets)
+    same_branch = own and drive.on_branch(start, end)
+    on_circuit = same_branch or drive.one_circuit(targets.angles, assemblies)
+    least = drive.least_transmission(start, end) if same_branch else 0.0
+    steps = np.diff(targets.angles)
+    in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    joints = np.concatenate([met.a, met.b, drive.pivots])
+    ratio = max(drive.lengths) / min(drive.lengths)
+    barker = drive.barker
+    degrees = 1.0 if problem.slides else 180.0 / math.pi
+    metrics = FunctionMetrics(
+        grashof=None if barker is None else barker.motion,
+        barker=None if barker is None else barker.code,
+        min_transmission_angle=math.degrees(least),
+        transmission_angles={"coupler": math.degrees(least)},
+        same_branch=same_branch,
+        visits_in_order=in_order,
+        full_rotation=drive.full,
+        input_rotation=math.degrees(end - start),
+        link_ratio=ratio,
+        rms_residual=math.sqrt(float(np.mean(residuals**2))),
+        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
+        quality=quality(math.sin(least), max(drive.lengths) / unit if problem.slides else 0.0, ratio),
+        max_structural_error=error.max,
+        rms_structural_error=error.rms,
+        output_range=float(targets.places[-1] - targets.places[0]) * degrees,
+    )
+    checks = []
+    if problem.aim == "precision":
+        residual = float(residuals.max())
+        checks.append(
+            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
+        )
+    checks.append(Check(name="same_circuit", passed=on_circuit))
+    if problem.function is not None:
+        checks.append(Check(name="covers_range", passed=whole and drive.on_branch(start, end)))
+    kept = _dials_off(problem, dials, drive)
+    checks.append(Check(name="dials", passed=kept <= DIAL_KEPT, value=kept, limit=DIAL_KEPT))
+    first = [complex(met.a[0]), complex(met.b[0])]
+    checks += constraint_checks(problem.constraints, drive.lengths, drive.pivots, first, metrics)
+    return FunctionDesign(
+        mechanism=mechanism,
+        dials=dials,
+        targets=[
+            FunctionTarget(
+                index=k,
+                input=float(targets.values[k]),
+                output=float(targets.outputs[k]),
+                input_angle=math.degrees(targets.angles[k]),
+                output_place=float(targets.places[k] + errors[k]) * degrees,
+                error=float(errors[k]) * degrees,
+                residual=float(residuals[k]),
+            )
+            for k in range(len(residuals))
+        ],
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+        structural_error=error,
+    )
+
+
+def _target_values(problem: FunctionProblem) -> Real:
+    """Values of the input at the targets."""
+    if problem.pairs is not None:
+        return problem.values[:, 0]
+    assert problem.function is not None
+    low, high = problem.function.interval
+    shares = problem.precision_shares if problem.aim == "precision" else np.linspace(0.0, 1.0, SHOWN_TARGETS)
+    return np.asarray(low + (high - low) * shares)
+
+
+def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: _Drive) -> _Wanted:
+    """What the dials ask for at values of the input: pairs, or x of the function."""
+    if problem.pairs is not None:
+        outputs = problem.values[:, 1]
+    else:
+        assert problem.function is not None
+        outputs = problem.function.values(values)
+    places = _place(dials.output, outputs)
+    if math.isfinite(drive.turns):
+        places = np.radians(places)
+    return _Wanted(values, outputs, np.radians(_place(dials.input, values)), places)
+
+
+def _place(dial: Dial, values: Real) -> Real:
+    return np.asarray(dial.place + dial.scale * (values - dial.at))
+
+
+def _off(place: Real, wanted: Real, turn: float) -> Real:
+    """Error of a place; angles without full turns."""
+    off = place - wanted
+    return np.asarray(off - turn * np.round(off / turn) if math.isfinite(turn) else off)
+
+
+def _met(drive: _Drive, targets: _Wanted) -> tuple[_Driven, NDArray[np.int64]]:
+    """The linkage at the targets, in its own assembly unless the other one is clearly meant; NaN where in none."""
+    both = [drive.at(targets.angles, sign) for sign in (drive.assembly, -drive.assembly)]
+    off = [np.where(d.valid, np.abs(_off(d.place, targets.places, drive.turns)), np.inf) for d in both]
+    other = (off[0] > TARGET_REACHED) & (off[1] < 1e-3 * off[0])
+    # The reference is the first target's configuration: it is met there, or not at all.
+    other[0] = False
+    place, a, b = (np.where(other, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "a", "b"))
+    return _Driven(both[0].valid, place, a, b), np.where(other, -drive.assembly, drive.assembly)
+
+
+def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[float, float]:
+    """The input's range, radians: over all of x, or from the first pair to the last."""
+    if problem.function is None:
+        angles = targets.angles
+        onward = angles[-1] >= angles[0]
+        return float(angles.min() if onward else angles.max()), float(angles.max() if onward else angles.min())
+    start, end = np.radians(_place(dials.input, np.array(problem.function.interval)))
+    return float(start), float(end)
+
+
+def _structural_error(
+    problem: FunctionProblem, dials: Dials, drive: _Drive, targets: _Wanted, at_targets: Real
+) -> tuple[StructuralError, bool] | None:
+    """The error over the range or at the pairs, and whether the linkage goes through all of it; None where nowhere."""
+    if problem.function is None:
+        curve = _Curve(targets.values, targets.angles, at_targets)
+        return _stated(problem, curve, curve, math.sqrt(float(np.mean(at_targets**2)))), True
+
+    def curve_at(x: Real) -> _Curve:
+        wanted = _wanted(problem, dials, x, drive)
+        driven = drive.at(wanted.angles, drive.assembly)
+        return _Curve(x, wanted.angles, np.where(driven.valid, _off(driven.place, wanted.places, drive.turns), np.nan))
+
+    whole = curve_at(np.linspace(*problem.function.interval, DRIVEN))
+    known = np.isfinite(whole.errors)
+    if not known.any():
+        return None
+    part = _Curve(*(values[known] for values in whole))
+    extremes = curve_at(_extremes(lambda x: curve_at(x).errors, part))
+    # The mean over the range: the ends count half.
+    rms = math.sqrt(
+        float(np.trapezoid(part.errors**2, part.values) / np.ptp(part.values) if len(part.values) > 1 else 0)
+    )
+    shown = _Curve(*(values[:: (DRIVEN - 1) // (SHOWN - 1)] for values in whole))
+    shown = _Curve(*(values[np.isfinite(shown.errors)] for values in shown))
+    return _stated(problem, extremes, shown, rms), bool(known.all())
+
+
+class _Curve(NamedTuple):
+    """Structural error at places of the range: values of the input, input angles (radians), errors."""
+
+    values: Real
+    angles: Real
+    errors: Real
+
+
+def _extremes(errors: Callable[[Real], Real], curve: _Curve) -> Real:
+    """Values of the input at the ends of a curve and at its extremes, which are looked for more and more closely."""
+    x, e = curve.values, curve.errors
+    steps = np.diff(e)
+    turns = np.flatnonzero(steps[:-1] * steps[1:] < 0.0) + 1
+    found = []
+    for k in turns:
+        at, step = x[k], float(x[1] - x[0])
+        upward = 1.0 if e[k] > e[k - 1] else -1.0
+        best = upward * e[k]
+        for _ in range(LOOKS):
+            near = np.clip(at + step * np.linspace(-1.0, 1.0, CLOSER), x[k - 1], x[k + 1])
+            values = upward * errors(near)
+            values = np.where(np.isfinite(values), values, -np.inf)
+            if values.max() > best:
+                at, best = near[int(values.argmax())], float(values.max())
+            step *= 2.0 / (CLOSER - 1)
+        found.append(at)
+    return np.array([x[0], *found, x[-1]])
+
+
+def _stated(problem: FunctionProblem, extremes: _Curve, curve: _Curve, rms: float) -> StructuralError:
+    """The error in degrees or length units."""
+    unit = 1.0 if problem.slides else 180.0 / math.pi
+    greatest = float(np.abs(extremes.errors).max())
+    reached = np.sign(extremes.errors[np.abs(extremes.errors) >= (1.0 - LEVEL) * greatest])
+    return StructuralError(
+        unit="length" if problem.slides else "degrees",
+        max=greatest * unit,
+        rms=rms * unit,
+        alternations=1 + int(np.count_nonzero(np.diff(reached))),
+        extremes=[
+            ErrorExtreme(input=float(x), input_angle=math.degrees(angle), error=float(error) * unit)
+            for x, angle, error in zip(*extremes, strict=True)
+        ],
+        curve=ErrorCurve(
+            input=curve.values.tolist(),
+            input_angle=np.degrees(curve.angles).tolist(),
+            error=(curve.errors * unit).tolist(),
+        ),
+    )
+
+
+def _unit(problem: FunctionProblem) -> float:
+    """The range of the output that is asked for, length units of a slider."""
+    if problem.pairs is not None:
+        moved = [pair.output for pair in problem.pairs]
+        return max(moved) - min(moved)
+    return abs(problem.span("output") or 1.0)
+
+
+def _dials_off(problem: FunctionProblem, dials: Dials, drive: _Drive) -> float:
+    """How far the dials are from what was stated: radians, and shares of a range."""
+    off = [0.0]
+    radians = math.pi / 180.0
+    sides: tuple[Literal["input", "output"], ...] = ("input", "output")
+    for k, side in enumerate(sides):
+        dial: Dial = getattr(dials, side)
+        slides = side == "output" and problem.slides
+        stated = problem.stated_zeros[k]
+        if problem.pairs is not None:
+            scale = problem.scale_choice[k]
+            low, high = problem.open_scale(k)
+            off.append(_outside(dial.scale, (low, high) if scale is None else (scale, scale)))
+            begins = dial.scale * getattr(problem.pairs[0], side)
+            first = getattr(problem.pairs[0], side)
+        else:
+            assert problem.function is not None
+            least, greatest = problem.function.interval if side == "input" else problem.function.extent()
+            first = (
+                least
+                if side == "input"
+                else float(problem.function.values(np.array([problem.function.interval[0]]))[0])
+            )
+            grows = 1.0 if side == "input" else problem.function.direction
+            turned, span = dial.scale * (greatest - least) * grows, problem.span(side)
+            if span is None or (side == "output" and problem.either_direction):
+                turned = abs(turned)
+            limits = problem.range_limits if span is None else (span, span)
+            if span is not None and side == "output" and problem.either_direction:
+                limits = abs(span), abs(span)
+            off.append(_outside(turned, limits))
+            begins = problem.first_value(side)
+        if stated is None:
+            continue
+        stands = dial.place + dial.scale * (first - dial.at)
+        if slides:
+            off.append(abs(stands - stated - begins) / _unit(problem))
+        else:
+            turn = 180.0 if problem.from_ground else 360.0
+            off.append(abs(math.remainder(stands - math.degrees(drive.frame) - stated - begins, turn)) * radians)
+    return max(off)
+
+
+def _outside(value: float, limits: tuple[float, float]) -> float:
+    """How far a value lies outside of limits, as a share of them."""
+    low, high = limits
+    return max(low - value, value - high, 0.0) / max(abs(low), abs(high))

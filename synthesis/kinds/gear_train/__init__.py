@@ -1,0 +1,18 @@
+"""Ordinary gear trains for a speed ratio: exhaustive search in exact arithmetic."""
+
+from __future__ import annotations
+
+from synthesis.kinds.gear_train.design import GearTrainResult
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
+    from synthesis.kinds.gear_train.solver import solve_gear_train
+
+    return solve_gear_train(problem, progress)
+
+
+KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve)

@@ -1,0 +1,286 @@
+"""The finite sets of trains that a search covers, ready for the compiled loops.
+
+:class:`Halves` are all choices of drivers and all choices of driven gears, whose products meet in the middle: k gears
+of n tooth numbers are only C(n+k−1, k) multisets, and the ratio does not depend on the pairing. :class:`Meshes` are all
+meshes a:b, in groups of equal centre distance for reverted trains, or in one group where the demands on the meshes
+leave so few of them that it is the shorter way.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.gear_train import kernels
+from synthesis.kinds.gear_train.kernels import (
+    Floats,
+    Found,
+    Gears,
+    Integers,
+    Rule,
+)
+from synthesis.kinds.gear_train.task import Task
+
+FEW_TRAINS = 20_000_000
+"""Trains that are gone through one by one, where they are no more than so many."""
+
+MANY_TRAINS = 10_000_000
+"""Trains of two halves from which on it pays to put them in order once more."""
+
+_NO_TIES = np.zeros((0, 2), np.int64)
+
+
+class Candidates(Protocol):
+    """A finite set of trains in ``steps`` parts, sizes not falling from part to part."""
+
+    @property
+    def combinations(self) -> int:
+        """Number of trains in the set."""
+
+    @property
+    def steps(self) -> int:
+        """Number of parts."""
+
+    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+        """Search the parts ``first`` up to, without, ``last``."""
+
+    def least(self, part: int) -> int:
+        """A lower bound of the sizes in a part and all later ones."""
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """Search all parts from ``first`` on at once, if that is little work; returns whether it was done."""
+
+    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+        """How many trains have exactly one of these ratios; ``found`` holds a search's result."""
+
+
+class _Half(NamedTuple):
+    """Choices of a gear for each stage; rows of size u are ``starts[u]`` to ``starts[u + 1]``, by their products."""
+
+    teeth: Gears
+    products: Integers
+    starts: Integers
+    sizes: Integers
+
+
+class Halves:
+    """All trains of k stages as drivers × driven gears."""
+
+    def __init__(self, task: Task, k: int) -> None:
+        self.k = k
+        self.drivers = _half(task, task.drivers[:k])
+        same = all(np.array_equal(a, b) for a, b in zip(task.drivers[:k], task.driven[:k], strict=True))
+        self.driven = self.drivers if same else _half(task, task.driven[:k])
+        self.combinations = len(self.drivers.products) * len(self.driven.products)
+        join = max if task.largest else sum
+        sizes = [(half.sizes.min(), half.sizes.max()) for half in (self.drivers, self.driven)]
+        self.least_size, most = (int(join(ends)) for ends in zip(*sizes, strict=True)) if self.combinations else (0, -1)
+        if task.most_total is not None:
+            most = min(most, task.most_total)
+        self.steps = max(0, most - self.least_size + 1)
+
+    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+        """Search a range of sizes."""
+        start = self.least_size
+        drivers, driven = self.drivers, self.driven
+        kernels.match(
+            self.k,
+            drivers.teeth,
+            drivers.products,
+            drivers.starts,
+            driven.teeth,
+            driven.products,
+            driven.starts,
+            start + first,
+            start + last,
+            rule,
+            found,
+        )
+
+    def least(self, part: int) -> int:
+        """The size of a part."""
+        return self.least_size + part
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """One pass over both lists by product, once so few trains come near that sizes need not be held apart."""
+        size = self.least(first)
+        settled = found.kept[0] == len(found.error) and (not rule.by_size or size > found.size[-1])
+        if not settled or self.combinations < MANY_TRAINS:
+            return False
+        near = max(float(found.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else found.error[-1])
+        # The products are spread over some powers of e: about so many pairs are as near as that.
+        if self.combinations * near > FEW_TRAINS:
+            return False
+        orders = [np.argsort(half.products, kind="stable") for half in (self.drivers, self.driven)]
+        kernels.match_all(
+            self.k,
+            self.drivers.teeth,
+            self.drivers.products,
+            self.drivers.sizes,
+            orders[0],
+            self.driven.teeth,
+            self.driven.products,
+            self.driven.sizes,
+            orders[1],
+            size,
+            rule,
+            found,
+        )
+        return True
+
+    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+        """Products that are in exactly one of the ratios."""
+        order = np.argsort(self.driven.products, kind="stable")
+        driven, products = self.driven.teeth[order], self.driven.products[order]
+        count, drivers = 0, (self.drivers.teeth, self.drivers.products)
+        for ratio in ratios:
+            fraction = ratio.numerator, ratio.denominator
+            count += int(kernels.count_products(self.k, *drivers, driven, products, *fraction, rule))
+        return count
+
+
+def _half(task: Task, values: tuple[Integers, ...]) -> _Half:
+    flat = np.concatenate(values)
+    starts = np.concatenate([[0], np.cumsum([len(v) for v in values])])
+    rows = np.empty((0, len(values)), np.int16)
+    number = kernels.tuples(flat, starts, task.stock, task.ordered, rows)
+    rows = np.empty((number, len(values)), np.int16)
+    kernels.tuples(flat, starts, task.stock, task.ordered, rows)
+    products, sizes = np.ones(number, np.int64), np.zeros(number, np.int64)
+    for column in rows.T:
+        products *= column
+        sizes = np.maximum(sizes, column) if task.largest else sizes + column
+    order = np.lexsort((products, sizes))
+    bounds = np.searchsorted(sizes[order], np.arange(int(sizes.max(initial=0)) + 2))
+    return _Half(rows[order], products[order], bounds, sizes[order])
+
+
+@dataclass(frozen=True, eq=False)
+class Meshes:
+    """Trains of one mesh for each of k stages; all from one group."""
+
+    k: int
+    a: Integers
+    b: Integers
+    mark: Integers
+    ratio: Floats
+    groups: Integers
+    least_size: Integers
+    coaxial: bool
+    combinations: int
+
+    @property
+    def steps(self) -> int:
+        """Number of groups."""
+        return len(self.groups)
+
+    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+        """Search a range of groups."""
+        self._combine(first, last, rule, found, _NO_TIES)
+
+    def least(self, part: int) -> int:
+        """Bound of a group."""
+        return int(self.least_size[part])
+
+    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+        """Groups are gone through one by one."""
+        return False
+
+    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+        """Trains of the ratios, met once more."""
+        found.ties[0] = 0
+        fractions = np.array([(ratio.numerator, ratio.denominator) for ratio in ratios], np.int64)
+        self._combine(0, self.steps, rule, found, fractions)
+        return int(found.ties[0])
+
+    def _combine(self, first: int, last: int, rule: Rule, found: Found, tied: Integers) -> None:
+        lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size
+        kernels.combine(self.k, *lists, first, last, self.coaxial, rule, found, tied)
+
+
+def coaxial_meshes(task: Task, k: int) -> Meshes:
+    """Reverted trains: groups of equal centre distance, that is of equal pitch × (a + b)."""
+    return _grouped(task, k, [_meshes(task, i, len(task.pitches), task.allowed) for i in range(k)], coaxial=True)
+
+
+def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float) -> Meshes | None:
+    """Trains of meshes that can still lead to the target, where they are few; None where they are many.
+
+    If every stage ratio is within ``reach``, a stage of a train near enough has at least T (1 − t) / reach₁^(k−1).
+    """
+    if not task.by_mesh or task.ordered or k in task.idler_counts:
+        return None
+    low, high = reach
+    ratio = float(task.target)
+    least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - 1e-9)
+    most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + 1e-9)
+    a, b, mark = _meshes(task, 0, 1, task.allowed)
+    kept = (b / a >= least) & (b / a <= most)
+    if not math.comb(int(np.count_nonzero(kept)) + k - 1, k) <= FEW_TRAINS:
+        return None
+    return _grouped(task, k, [(a[kept], b[kept], mark[kept])] * k, coaxial=False)
+
+
+def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
+    """Least and greatest ratio of each stage's allowed meshes; empty where a stage has none."""
+    found = []
+    for i in range(k):
+        a, b, _ = _meshes(task, i, 1, task.stages(k))
+        if not len(a):
+            return []
+        ratio = b / a
+        ends = (int(np.argmin(ratio)), int(np.argmax(ratio)))
+        low, high = (Fraction(int(b[end]), int(a[end])) for end in ends)
+        found.append((low, high))
+    return found
+
+
+def _meshes(task: Task, stage: int, pitches: int, allowed: NDArray[np.bool_]) -> tuple[Integers, Integers, Integers]:
+    """Allowed meshes of a stage, each with each of the first so many pitches."""
+    drivers, driven = task.drivers[stage], task.driven[stage]
+    at = np.argwhere(allowed[np.ix_(drivers, driven)])
+    a, b = drivers[at[:, 0]], driven[at[:, 1]]
+    return np.tile(a, pitches), np.tile(b, pitches), np.repeat(np.arange(pitches), len(a))
+
+
+def _grouped(task: Task, k: int, stages: list[tuple[Integers, Integers, Integers]], coaxial: bool) -> Meshes:
+    """Order the meshes of the stages by group, stage and ratio."""
+    listed = stages if task.ordered else stages[:1]
+    a, b, mark = (np.concatenate([stage[column] for stage in listed]) for column in range(3))
+    stage = np.repeat(np.arange(len(listed)), [len(one[0]) for one in listed])
+    key = task.pitches[mark] * (a + b) if coaxial else np.zeros(len(a), np.int64)
+    order = np.lexsort((b / a, stage, key))
+    a, b, mark, stage, key = (column[order] for column in (a, b, mark, stage, key))
+    ratio = b / a
+    keys = np.unique(key)
+    places = np.arange(len(listed) + 1)
+    # Rows are unique in (key, stage) order: the start of each stage of each group by one search over both.
+    joined = np.searchsorted(key * (len(listed) + 1) + stage, keys[:, None] * (len(listed) + 1) + places[None, :])
+    complete = (np.diff(joined, axis=1) > 0).all(axis=1)
+    joined = joined[complete]
+    size = np.maximum(a, b) if task.largest else a + b
+    least = np.array([_least_size(size, group, task.largest, k) for group in joined], np.int64)
+    if task.most_total is not None and not task.largest:
+        joined, least = joined[least <= task.most_total], least[least <= task.most_total]
+    rising = np.argsort(least, kind="stable")
+    groups = np.ascontiguousarray(joined[rising], np.int64)
+    counts = np.diff(groups, axis=1)
+    if task.ordered:
+        combinations = sum(math.prod(int(n) for n in row) for row in counts)
+    else:
+        combinations = sum(math.comb(int(n) + k - 1, k) for n in counts[:, 0])
+    return Meshes(k, a, b, mark, ratio, groups, least[rising], coaxial, combinations)
+
+
+def _least_size(size: Integers, group: Integers, largest: bool, k: int) -> int:
+    """A lower bound of the sizes of a group's trains."""
+    least = [int(size[start:end].min()) for start, end in itertools.pairwise(group)]
+    if largest:
+        return max(least)
+    return sum(least) if len(least) > 1 else k * least[0]

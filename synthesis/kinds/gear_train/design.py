@@ -1,0 +1,123 @@
+"""Answers to problems of ordinary gear trains."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from synthesis.model.answer import (
+    Answer,
+    Result,
+    Search,
+    Verification,
+)
+
+
+class Stage(Answer):
+    """Two gears that mesh; the driven gear sits on the shaft of the next stage's driver."""
+
+    driver: int = Field(description="Teeth of the driving gear.")
+    driven: int = Field(description="Teeth of the driven gear.")
+    module: float = Field(description="Module in length units.")
+
+
+class Idler(Answer):
+    """A gear between driver and driven gear of a stage: it turns the direction round and leaves the ratio as it is."""
+
+    stage: int = Field(description="Number of the stage, from 1.")
+    teeth: int
+
+
+class Ratio(Answer):
+    """Input speed over output speed as a reduced fraction; negative where they turn in opposite directions."""
+
+    numerator: int
+    denominator: int
+    value: float
+
+
+class GearTrainMechanism(Answer):
+    """An ordinary train of external spur gears on fixed shafts."""
+
+    type: Literal["gear_train"] = "gear_train"
+    stages: list[Stage]
+    idlers: list[Idler] = Field(default=[])
+    ratio: Ratio
+    pressure_angle: float = Field(default=20.0, description="Degrees.")
+
+
+class SuggestedShift(Answer):
+    """Profile shift, in modules, that would make a mesh sound; nothing of it is in the mechanism."""
+
+    driver: float
+    driven: float
+    centre_distance: float
+    contact_ratio: float
+
+
+class MeshGeometry(Answer):
+    """One mesh of full-depth teeth at the distance of the pitch circles."""
+
+    stage: int
+    driver: int = Field(description="Teeth; of an idler where one lies between.")
+    driven: int
+    centre_distance: float
+    contact_ratio: float
+    interferes: bool = Field(description="Whether a tip digs into the flank of this very mate.")
+    undercut: bool = Field(description="Whether a rack that cuts the smaller gear takes away from its flanks.")
+    suggested_shift: SuggestedShift | None = Field(
+        default=None, description="Where the mesh interferes or is undercut and a profile shift would save it."
+    )
+
+
+class GearTrainMetrics(Answer):
+    """Measured properties of a train."""
+
+    error: float = Field(description="Size of the ratio minus size of the demanded ratio.")
+    relative_error: float = Field(description="The error over the size of the demanded ratio.")
+    total_teeth: int = Field(description="Of drivers and driven gears, idlers not counted.")
+    largest_gear: int
+    largest_stage_ratio: float = Field(description="Larger over smaller gear, the greatest of all stages.")
+    hunting_tooth: bool = Field(description="The teeth of every mesh have no common divisor.")
+    centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
+    meshes: list[MeshGeometry]
+
+
+class GearTrainDesign(Answer):
+    """A gear train with the proof of its ratio."""
+
+    mechanism: GearTrainMechanism
+    verification: Verification
+    metrics: GearTrainMetrics
+
+
+class ParetoTrain(Answer):
+    """A train that none is both smaller and nearer than."""
+
+    size: int = Field(description="Sum of the teeth or largest gear, as the problem measures it.")
+    relative_error: float
+    stages: list[Stage]
+    ratio: Ratio
+
+
+class GearTrainSearch(Search):
+    """The search of a finite set of trains; ``complete`` is always true: the ranking is proven.
+
+    ``candidates`` are the trains that stand out: the designs and those that verification refused. ``combinations`` is
+    the number of trains that the search covers, most of them by bounds.
+    """
+
+    combinations: int
+    ties: int = Field(description="Trains whose error is exactly that of the nearest one, of whatever size.")
+    least_error: float | None = Field(description="Relative error of the nearest train; null where there is none.")
+
+
+class GearTrainResult(Result[GearTrainDesign]):
+    """Gear trains for a speed ratio."""
+
+    search: GearTrainSearch
+    pareto: list[ParetoTrain] = Field(
+        description="The Pareto set of error against size, smallest first, of the trains within the tolerance "
+        "(within 1 % where none is stated)."
+    )

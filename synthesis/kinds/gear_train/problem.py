@@ -1,0 +1,297 @@
+"""The problem of an ordinary gear train: tooth numbers for a speed ratio."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Annotated, Literal, Self
+
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
+
+from synthesis.model.ratio_target import (
+    LONGEST,
+    Target,
+    decimal,
+    parse_target,
+)
+from synthesis.model.statement import (
+    Contradiction,
+    Count,
+    Flag,
+    Number,
+    StatedProblem,
+    Statement,
+)
+
+MOST_TEETH = 2000
+"""More teeth are a typing error; the fourth power of it is exact in every number that the search uses."""
+
+MOST_HALVES = 10_000_000
+"""Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
+
+MOST_COAXIAL = 3_000_000_000
+"""Combinations of all stages but one that a search of coaxial trains goes through at most; a minute or two."""
+
+FINEST_PITCHES = 10**9
+"""Modules are compared as whole multiples of their common measure, at most so many of it."""
+
+NEAR = Fraction(1, 100)
+"""Relative error up to which trains are of interest where no tolerance is stated: those of the Pareto set, and those
+among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
+
+DEFAULT_MOST_TEETH = 100
+
+FEWEST_TEETH = 3
+"""Full-depth gears with fewer have no root circle."""
+
+
+def _parsed(stated: float | str) -> float | str:
+    parse_target(stated)
+    return stated
+
+
+ExactRatio = Annotated[
+    Annotated[Number, Field(strict=True)] | Annotated[str, Field(strict=True, min_length=1, max_length=LONGEST)],
+    AfterValidator(_parsed),
+]
+"""A number or a text of the grammar of :mod:`synthesis.model.ratio_target`."""
+
+Pitch = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
+"""A module or diametral pitch; beyond, lengths of trains would leave the numbers there are. Finer is a typing error."""
+
+ToothNumber = Annotated[Count, Field(ge=FEWEST_TEETH, le=MOST_TEETH)]
+
+
+class TeethRange(Statement):
+    """Fewest and most teeth of a gear."""
+
+    min: ToothNumber | None = Field(
+        default=None, description="Left out: the fewest that no mate can undercut at the pressure angle (18 at 20°)."
+    )
+    max: ToothNumber = DEFAULT_MOST_TEETH
+
+    @model_validator(mode="after")
+    def _min_below_max(self) -> Self:
+        if self.min is not None and self.min > self.max:
+            raise ValueError("min must not be above max")
+        return self
+
+
+class StockedGear(Statement):
+    """A gear in stock, and how many there are of it."""
+
+    teeth: ToothNumber
+    count: Annotated[Count, Field(ge=1, le=100)] = 1
+
+
+class GearTrainProblem(StatedProblem):
+    """An ordinary gear train of one to four stages for a speed ratio, proven to be the best.
+
+    Every train within the ranges, or of the gears in stock, is covered in exact arithmetic. The answer is the trains in
+    the order of the ranking, the number of ties, and the Pareto set of error against size.
+    """
+
+    model_config = ConfigDict(
+        title="Gear train",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "gear_train",
+                    "ratio": "pi",
+                    "max_stages": 2,
+                    "teeth": {"min": 15, "max": 100},
+                    "max_designs": 5,
+                },
+                {
+                    "kind": "gear_train",
+                    "ratio": "12",
+                    "max_stages": 2,
+                    "teeth": {"min": 12, "max": 60},
+                    "reverted": True,
+                    "tolerance": 0.0,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["gear_train"]
+    ratio: ExactRatio = Field(
+        description="Input speed over output speed; negative: they turn in opposite directions. A number is taken as "
+        "the decimal that is written; a text is kept exact: 127/50, pi, e, sqrt(2), products and quotients of them."
+    )
+    direction: Literal["any", "same", "opposite"] = Field(
+        default="any",
+        description="How input and output turn. With `any` a positive ratio states the size only and no idler is used. "
+        "An idler has teeth within the ranges of the other gears, or is one more gear of the stock; of its stage the "
+        "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
+    )
+    max_stages: Annotated[Count, Field(ge=1, le=4)] = 3
+    teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] = Field(
+        default=TeethRange(),
+        description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ...",
+    )
+    stock: list[ToothNumber | StockedGear] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=500,
+        description="The gears that there are, in place of `teeth`; a number that stands twice is two gears.",
+    )
+    max_stage_ratio: Annotated[float, Field(strict=True, ge=1.0, le=1e6)] | None = Field(
+        default=None, description="Larger over smaller gear of every stage, at most."
+    )
+    max_total_teeth: Annotated[Count, Field(ge=6, le=8 * MOST_TEETH)] | None = Field(
+        default=None, description="Sum of the teeth of all drivers and driven gears, at most."
+    )
+    hunting_tooth: Literal["any", "prefer", "require"] = Field(
+        default="any",
+        description="Whether the teeth of every mesh shall have no common divisor, so that each tooth meets every "
+        "other; `prefer` puts such trains first among those of equal error (or equal size and error).",
+    )
+    reverted: Flag = Field(
+        default=False, description="Every stage has the same centre distance, so that output and input can be coaxial."
+    )
+    module: Pitch | Annotated[list[Pitch], Field(min_length=1, max_length=8)] | None = Field(
+        default=None,
+        description="Module in length units, 1 if left out; a list: for a reverted train what every stage may choose "
+        "from, otherwise the modules of stage 1, 2, ...",
+    )
+    diametral_pitch: Pitch | None = Field(
+        default=None, description="Teeth per length unit of pitch diameter, in place of the module."
+    )
+    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = Field(default=20.0, description="Degrees.")
+    interference: Literal["report", "refuse"] = Field(
+        default="report",
+        description="Whether meshes in which one gear would dig into the other are only told (with the profile shift "
+        "that would save them) or not used at all.",
+    )
+    tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
+        default=None,
+        description="Relative error of the ratio, at most. Left out: the nearest trains, whatever their error, for a "
+        "ratio within reach.",
+    )
+    rank_by: Literal["error", "size"] = Field(
+        default="error",
+        description="`error`: the nearest first, of equally near ones the smallest. `size`: of the trains within the "
+        "tolerance, or within 1 % where none is stated, the smallest first.",
+    )
+    size: Literal["total_teeth", "largest_gear"] = "total_teeth"
+
+    @property
+    def target(self) -> Target:
+        """Size of the demanded ratio, exact."""
+        return parse_target(self.ratio)[1]
+
+    @property
+    def demanded_sign(self) -> int:
+        """+1: input and output turn alike; −1: opposite; 0: any."""
+        if parse_target(self.ratio)[0] < 0:
+            return -1
+        return {"any": 0, "same": 1, "opposite": -1}[self.direction]
+
+    @property
+    def exact_tolerance(self) -> Fraction | None:
+        """The tolerance as the decimal that was written; :data:`NEAR` for the smallest trains if none was."""
+        if self.tolerance is None:
+            return NEAR if self.rank_by == "size" else None
+        return decimal(self.tolerance)
+
+    @property
+    def fewest_teeth(self) -> int:
+        """Fewest teeth that a rack of the pressure angle does not undercut: 2 / sin² φ, rounded up."""
+        return math.ceil(2.0 / math.sin(math.radians(self.pressure_angle)) ** 2 * (1.0 - 1e-12))
+
+    def position_ranges(self) -> list[tuple[int, int]]:
+        """Fewest and most teeth of driver and driven gear of each stage up to ``max_stages``."""
+        stated = self.teeth if isinstance(self.teeth, list) else [self.teeth] * (2 * self.max_stages)
+        return [(self.fewest_teeth if r.min is None else r.min, r.max) for r in stated]
+
+    def stocked(self) -> dict[int, int]:
+        """How many gears of each tooth number are in stock."""
+        counts: dict[int, int] = {}
+        for gear in self.stock or []:
+            teeth, count = (gear.teeth, gear.count) if isinstance(gear, StockedGear) else (gear, 1)
+            counts[teeth] = counts.get(teeth, 0) + count
+        return counts
+
+    def modules(self) -> list[Fraction]:
+        """The stated modules, exact."""
+        if self.diametral_pitch is not None:
+            return [1 / decimal(self.diametral_pitch)]
+        stated = [1.0] if self.module is None else self.module if isinstance(self.module, list) else [self.module]
+        return [decimal(module) for module in stated]
+
+    def pitches(self) -> list[int]:
+        """The modules as the smallest whole numbers that are in proportion to them."""
+        modules = self.modules()
+        unit = math.lcm(*(module.denominator for module in modules))
+        whole = [int(module * unit) for module in modules]
+        return [pitch // math.gcd(*whole) for pitch in whole]
+
+    def contradictions(self) -> list[Contradiction]:
+        """Faults that no single field shows."""
+        return [*self._contradicting_fields(), *self._wrong_lists(), *self._too_much()]
+
+    def _contradicting_fields(self) -> list[Contradiction]:
+        found = []
+        if self.direction == "same" and parse_target(self.ratio)[0] < 0:
+            found.append(Contradiction("/direction", "a negative ratio states opposite directions; drop one of them"))
+        if self.module is not None and self.diametral_pitch is not None:
+            found.append(Contradiction("/diametral_pitch", "the module already states the pitch; give one of them"))
+        if self.stock is not None and "teeth" in self.model_fields_set:
+            found.append(Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock"))
+        if self.reverted and self.max_stages < 2:
+            found.append(Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages"))
+        return found
+
+    def _wrong_lists(self) -> list[Contradiction]:
+        found = []
+        if isinstance(self.teeth, list) and len(self.teeth) != 2 * self.max_stages:
+            found.append(
+                Contradiction(
+                    "/teeth",
+                    f"expected {2 * self.max_stages} ranges, driver and driven gear of {self.max_stages} stages, "
+                    f"got {len(self.teeth)}",
+                )
+            )
+        stated = self.teeth if isinstance(self.teeth, list) else [self.teeth]
+        for place, one in enumerate(stated):
+            if one.min is None and self.fewest_teeth > one.max:
+                path = f"/teeth/{place}/max" if isinstance(self.teeth, list) else "/teeth/max"
+                detail = f"below the least sound tooth number {self.fewest_teeth}; state min as well"
+                found.append(Contradiction(path, detail))
+        if isinstance(self.module, list):
+            if len(set(self.module)) < len(self.module) and self.reverted:
+                found.append(Contradiction("/module", "lists a module twice; each is a choice for every stage"))
+            elif max(self.pitches()) > FINEST_PITCHES:
+                found.append(Contradiction("/module", "the modules have no common measure; round them"))
+            elif not self.reverted and len(self.module) != self.max_stages:
+                found.append(
+                    Contradiction(
+                        "/module", f"expected the modules of {self.max_stages} stages, got {len(self.module)}"
+                    )
+                )
+        return found
+
+    def _too_much(self) -> list[Contradiction]:
+        if self._wrong_lists():
+            return []
+        k = self.max_stages
+        field = "/teeth"
+        if self.stock is not None:
+            widths, field = [len(self.stocked())] * (2 * k), "/stock"
+        else:
+            widths = [high - low + 1 for low, high in self.position_ranges()]
+        if self.reverted:
+            meshes = max(widths) * len(self.modules())
+            half = 2 * max(widths) * len(self.modules()) * math.comb(meshes + k - 2, k - 1)
+            most, what = MOST_COAXIAL, "combinations of meshes"
+        else:
+            most, what = MOST_HALVES, "choices of drivers or driven gears"
+            if isinstance(self.teeth, list):
+                half = max(math.prod(widths[0::2]), math.prod(widths[1::2]))
+            else:
+                half = math.comb(widths[0] + k - 1, k)
+        if half <= most:
+            return []
+        detail = f"about {half:.0e} {what} in {k} stages are more than the {most:.0e} that a search covers"
+        return [Contradiction(field, f"{detail}; narrow the tooth numbers or allow fewer stages")]

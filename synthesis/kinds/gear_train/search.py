@@ -1,0 +1,278 @@
+"""The search for the best gear trains, with its proof.
+
+All numbers of stages in turn, a :class:`~synthesis.kinds.gear_train.candidates.Candidates` for each. The compiled loops
+keep somewhat more trains than are wanted; those are ordered in exact arithmetic. If the loops could have dropped a
+train that belongs among the wanted, because two errors differ by less than they can tell, the search is done again with
+more room.
+
+A ratio that no tolerance is stated for is first sought within :data:`~synthesis.kinds.gear_train.problem.NEAR`, where
+the loops have the least to look at; only if fewer trains than are wanted are that near, and the ratio is within reach,
+all errors are searched.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Container, Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cmp_to_key
+from typing import NamedTuple
+
+import numpy as np
+
+from synthesis.kinds.gear_train.candidates import (
+    Candidates,
+    Halves,
+    coaxial_meshes,
+    few_meshes,
+    stage_reach,
+)
+from synthesis.kinds.gear_train.kernels import (
+    MOST_STAGES,
+    NOISE,
+    Found,
+    Integers,
+)
+from synthesis.kinds.gear_train.problem import NEAR
+from synthesis.kinds.gear_train.task import UNLIMITED, Task
+from synthesis.model.ratio_target import Target
+
+SPARE = 54
+"""Trains kept beyond those wanted."""
+
+TOLD_APART = 1e-11
+"""Errors that differ by more than this share of themselves were surely ordered rightly by the loops."""
+
+PARTS = 25
+"""Parts of a search between which progress is told."""
+
+Progress = Callable[[float, str], None]
+
+
+class Train(NamedTuple):
+    """Tooth numbers of drivers and driven gears, and the mark of each stage's module."""
+
+    drivers: tuple[int, ...]
+    driven: tuple[int, ...]
+    marks: tuple[int, ...]
+
+    @property
+    def ratio(self) -> Fraction:
+        """Size of input speed over output speed."""
+        return Fraction(math.prod(self.driven), math.prod(self.drivers))
+
+    @property
+    def meshes(self) -> list[tuple[int, int]]:
+        """Driver and driven gear of each stage."""
+        return list(zip(self.drivers, self.driven, strict=True))
+
+    def size(self, largest: bool) -> int:
+        """Largest gear, or sum of all teeth."""
+        gears = self.drivers + self.driven
+        return max(gears) if largest else sum(gears)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a search found: ``trains`` in the order of the ranking, ``pareto`` by rising size."""
+
+    trains: list[Train]
+    pareto: list[Train]
+    ties: int
+    combinations: int
+    reach: tuple[Fraction, Fraction] | None
+    nearest: Train | None
+
+
+def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progress) -> Outcome:
+    """The ``wanted`` best trains of a task.
+
+    Parameters
+    ----------
+    tolerance : Fraction or None
+        Largest relative error; None: any, for a target within reach.
+
+    Returns
+    -------
+    Outcome
+        ``reach``: bounds of the ratios that the meshes permit, None where there is no train at all. ``nearest``: the
+        nearest train of all where none is within the tolerance but the target is within reach.
+    """
+    reach = {k: _reach(task, k) for k in task.stage_counts}
+    spans = [span for span in reach.values() if span is not None]
+    whole = (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
+    near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + 1e-12) + 1e-15
+    counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
+    found = _searched(task, counts, near, tolerance, wanted, progress)
+    nearest = None
+    few = not found.trains or (tolerance is None and len(found.trains) < wanted)
+    if few and whole is not None and _reaches(task.target, whole, 0.0):
+        every = tuple(k for k, span in reach.items() if span is not None)
+        progress(0.5, "few trains are that near; searching the nearest")
+        anyhow = _searched(task, every, UNLIMITED, None, wanted, lambda fraction, message: None)
+        if tolerance is None:
+            found = found._replace(trains=anyhow.trains) if found.trains else anyhow
+        elif anyhow.trains:
+            nearest = anyhow.trains[0]
+    combinations = sum(_covered(task, k) for k in task.stage_counts)
+    return Outcome(found.trains, found.pareto, found.ties, combinations, whole, nearest)
+
+
+class _Pass(NamedTuple):
+    trains: list[Train]
+    pareto: list[Train]
+    ties: int
+
+
+def _searched(
+    task: Task, counts: tuple[int, ...], near: float, tolerance: Fraction | None, wanted: int, progress: Progress
+) -> _Pass:
+    """One search of all errors up to ``near``."""
+    capacity = wanted + SPARE
+    rules = [task.rule(near, k) for k in counts]
+    listed = [_candidates(task, k, near) for k in counts]
+    while True:
+        size = task.most_teeth if task.largest else 2 * max(counts, default=0) * task.most_teeth
+        if task.most_total is not None and not task.largest:
+            size = min(size, task.most_total)
+        found = Found.empty(capacity, size)
+        done, work = 0, sum(one.combinations for one in listed) or 1
+        for k, one, rule in zip(counts, listed, rules, strict=True):
+            parts = np.linspace(0, one.steps, min(PARTS, one.steps) + 1).astype(int)
+            for first, last in itertools.pairwise(parts):
+                if one.least(int(first)) > _last_size(task, found) or one.finish(int(first), rule, found):
+                    break
+                one.search(int(first), int(last), rule, found)
+                share = (done + one.combinations * float(last) / one.steps) / work
+                progress(0.95 * share, f"{k} stages: {one.combinations:.3g} trains")
+            done += one.combinations
+        trains = [_train(row) for row in found.teeth[: found.kept[0]]]
+        kept = [train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance)]
+        # Trains that only the rounded tolerance let in may have taken the places of others.
+        crowded = len(kept) < len(trains) == capacity
+        trains = order(task, kept)
+        if not crowded and not _may_have_dropped(task, trains, found, wanted):
+            break
+        capacity *= 4
+    ties = 0
+    if trains:
+        rows = [_train(row) for row in found.least_teeth[np.isfinite(found.least_error)]] if task.by_size else []
+        best = min((train.ratio for train in [*trains, *rows]), key=cmp_to_key(task.target.nearer))
+        equal = _equally_near(task, best)
+        found.error[0] = abs(task.target.relative_error(best))
+        ties = sum(one.ties(equal, rule, found) for one, rule in zip(listed, rules, strict=True))
+    return _Pass(trains[:wanted], _pareto(task, found, tolerance), ties)
+
+
+def _last_size(task: Task, found: Found) -> float:
+    """Size beyond which no train can enter what is found: infinite until as many exact trains as are kept are met."""
+    full = found.kept[0] == len(found.error)
+    exact = task.target.rational
+    if not full or exact is None or found.least_error.min() > NOISE:
+        return math.inf
+    rows = found.teeth if not task.by_size else found.least_teeth[found.least_error <= NOISE]
+    settled = (all if not task.by_size else any)(_train(row).ratio == exact for row in rows)
+    return float(found.size.max()) if settled else math.inf
+
+
+def _candidates(task: Task, k: int, near: float) -> Candidates:
+    if task.reverted:
+        return coaxial_meshes(task, k)
+    spans = stage_reach(task, k)
+    few = few_meshes(task, k, (float(spans[0][0]), float(spans[0][1])), near)
+    return few or Halves(task, k)
+
+
+def _covered(task: Task, k: int) -> int:
+    """Number of trains of k stages that the search covers, however it excludes them."""
+    if task.reverted:
+        return coaxial_meshes(task, k).combinations
+    return math.prod(_choices(task, values[:k], k) for values in (task.drivers, task.driven))
+
+
+def _choices(task: Task, values: tuple[Integers, ...], k: int) -> int:
+    if task.ordered:
+        return math.prod(len(one) for one in values)
+    return math.comb(len(values[0]) + k - 1, k)
+
+
+def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
+    """Bounds of the ratios of k stages; None where there is no train."""
+    if task.reverted:
+        meshes = coaxial_meshes(task, k)
+        if not meshes.steps:
+            return None
+    spans = stage_reach(task, k)
+    if not spans:
+        return None
+    return math.prod((low for low, _ in spans), start=Fraction(1)), math.prod(
+        (high for _, high in spans), start=Fraction(1)
+    )
+
+
+def _reaches(target: Target, span: tuple[Fraction, Fraction], near: float) -> bool:
+    slack = Fraction(near)
+    over = near >= 1.0 or target.compared(span[1] / (1 - slack)) <= 0
+    return over and target.compared(span[0] / (1 + slack)) >= 0
+
+
+def _train(row: Integers) -> Train:
+    k = int(np.count_nonzero(row[:MOST_STAGES]))
+    parts = (row[start : start + k] for start in (0, MOST_STAGES, 2 * MOST_STAGES))
+    return Train(*(tuple(int(n) for n in part) for part in parts))
+
+
+def order(task: Task, trains: Iterable[Train], hunting: Container[Train] = ()) -> list[Train]:
+    """Trains in the order of the ranking, by exact arithmetic.
+
+    After error and size fewer stages, a smaller largest gear and the tooth numbers make the order definite.
+    Of trains of equal error (ranked by size: of equal size and error) those of ``hunting`` come first.
+    """
+    near = cmp_to_key(task.target.nearer)
+
+    def key(train: Train) -> tuple[object, ...]:
+        size, error = train.size(task.largest), near(train.ratio)
+        other = train not in hunting
+        first = (size, error, other) if task.by_size else (error, other, size)
+        return (*first, len(train.drivers), max(train.drivers + train.driven), train)
+
+    return sorted(trains, key=key)
+
+
+def _may_have_dropped(task: Task, trains: list[Train], found: Found, wanted: int) -> bool:
+    """Whether a train that was left out could belong among the first ``wanted``."""
+    if found.kept[0] < len(found.error) or not trains:
+        return False
+    last = trains[min(wanted, len(trains)) - 1]
+    dropped = _train(found.teeth[-1])
+    if task.by_size and last.size(task.largest) != dropped.size(task.largest):
+        return False
+    if task.target.nearer(last.ratio, dropped.ratio) == 0:
+        # Truly tied in error: the loops order such trains by size, which is exact; equal in both are interchangeable.
+        return False
+    error, limit = (abs(task.target.relative_error(train.ratio)) for train in (last, dropped))
+    return abs(limit - error) <= TOLD_APART * limit
+
+
+def _equally_near(task: Task, ratio: Fraction) -> list[Fraction]:
+    """The ratio, and the one on the other side of a rational target, if its numbers are not beyond all trains."""
+    target = task.target.rational
+    if target is None or target == ratio:
+        return [ratio]
+    mirrored = 2 * target - ratio
+    possible = mirrored > 0 and max(mirrored.numerator, mirrored.denominator) <= task.most_teeth**MOST_STAGES
+    return [ratio, mirrored] if possible else [ratio]
+
+
+def _pareto(task: Task, found: Found, tolerance: Fraction | None) -> list[Train]:
+    """The nearest train of each size that is nearer than all smaller ones."""
+    front: list[Train] = []
+    for row in found.least_teeth[np.isfinite(found.least_error)]:
+        train = _train(row)
+        if tolerance is not None and not task.target.within(train.ratio, tolerance):
+            continue
+        if not front or task.target.nearer(train.ratio, front[-1].ratio) < 0:
+            front.append(train)
+    return front

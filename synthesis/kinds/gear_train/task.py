@@ -1,0 +1,174 @@
+"""A gear-train problem as the search takes it: tooth numbers by position, allowed meshes, exact modules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.teeth import largest_gear
+from synthesis.kinds.gear_train.kernels import Integers, Rule
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.model.ratio_target import Target, decimal
+
+UNLIMITED = 1e9
+"""A tolerance that no train misses: ratios and targets are within 1e9 of 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is searched.
+
+    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; stages that are ``ordered`` have their own,
+    the others have the same and may change places. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
+    in a unit in which all are whole numbers.
+
+    Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
+    one another, only with the idler: ``sound[a, b]`` tells which gears may mesh, ``idled[a, b]`` between which an idler
+    can stand, ``allowed[a, b]`` which may be a stage without one.
+    """
+
+    target: Target
+    drivers: tuple[Integers, ...]
+    driven: tuple[Integers, ...]
+    ordered: bool
+    allowed: NDArray[np.bool_]
+    by_mesh: bool
+    sound: NDArray[np.bool_]
+    idled: NDArray[np.bool_]
+    idlers: Integers
+    idler_counts: tuple[int, ...]
+    stock: Integers
+    reverted: bool
+    modules: tuple[Fraction, ...]
+    pitches: Integers
+    stage_counts: tuple[int, ...]
+    most_total: int | None
+    by_size: bool
+    largest: bool
+
+    @property
+    def most_teeth(self) -> int:
+        """The largest tooth number."""
+        return len(self.allowed) - 1
+
+    def stages(self, k: int) -> NDArray[np.bool_]:
+        """Driver and driven gear of the stages that a train of k stages may have."""
+        return self.allowed | self.idled if k in self.idler_counts else self.allowed
+
+    def rule(self, tolerance: float, k: int) -> Rule:
+        """The task for the compiled loops over trains of k stages."""
+        head, rest = self.target.parts()
+        stocked = len(self.stock) > 0
+        return Rule(
+            target=head,
+            target_rest=rest,
+            tolerance=tolerance,
+            by_size=self.by_size,
+            largest=self.largest,
+            ordered=self.ordered,
+            by_mesh=self.by_mesh,
+            allowed=self.allowed,
+            with_idler=k in self.idler_counts,
+            sound=self.sound,
+            idled=self.idled,
+            by_stock=stocked,
+            stock=self.stock if stocked else np.zeros(1, np.int64),
+            most_total=2 * len(self.drivers) * self.most_teeth if self.most_total is None else self.most_total,
+        )
+
+
+def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
+    """The task of a problem; ``coprime``: only meshes without a common divisor."""
+    counts = problem.stocked()
+    if counts:
+        numbers = np.array(sorted(counts), np.int64)
+        positions = [numbers] * (2 * problem.max_stages)
+    else:
+        positions = [np.arange(low, high + 1, dtype=np.int64) for low, high in problem.position_ranges()]
+    most = int(max(values[-1] for values in positions))
+    stock = np.zeros(most + 1 if counts else 0, np.int64)
+    for teeth, count in counts.items():
+        stock[teeth] = count
+    drivers, driven = tuple(positions[0::2]), tuple(positions[1::2])
+    by_mesh = coprime or problem.max_stage_ratio is not None or problem.interference == "refuse"
+    sound = _sound_meshes(problem, most, coprime)
+    limited = _within_stage_ratio(problem, most)
+    stage_counts = _stage_counts(problem, sum(counts.values()) if counts else None)
+    idler_counts = tuple(k for k in stage_counts if needs_idler(problem, k))
+    idlers = np.unique(np.concatenate(positions)) if counts else np.arange(min(v[0] for v in positions), most + 1)
+    allowed, idled = sound & limited, np.zeros_like(sound)
+    if idler_counts:
+        # Counted in floats, which the matrix product of whole numbers is not made for.
+        before, after = sound[:, idlers].astype(np.float32), sound[idlers].astype(np.float32)
+        idled = (before @ after > 0.0) & limited
+    stages = allowed | idled
+    modules = tuple(problem.modules())
+    return Task(
+        target=problem.target,
+        drivers=tuple(_usable(values, stages.T, mates) for values, mates in zip(drivers, driven, strict=True)),
+        driven=tuple(_usable(values, stages, mates) for values, mates in zip(driven, drivers, strict=True)),
+        ordered=any(not np.array_equal(v, positions[k % 2]) for k, v in enumerate(positions)),
+        allowed=allowed,
+        by_mesh=by_mesh,
+        sound=sound,
+        idled=idled,
+        idlers=idlers,
+        idler_counts=idler_counts,
+        stock=stock,
+        reverted=problem.reverted,
+        modules=modules,
+        pitches=np.array(problem.pitches(), np.int64),
+        stage_counts=stage_counts,
+        most_total=problem.max_total_teeth,
+        by_size=problem.rank_by == "size",
+        largest=problem.size == "largest_gear",
+    )
+
+
+def needs_idler(problem: GearTrainProblem, stages: int) -> bool:
+    """Whether a train of so many external stages turns the wrong way without an idler."""
+    return problem.demanded_sign == (1 if stages % 2 else -1)
+
+
+def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, ...]:
+    """Numbers of stages that the direction and the stock permit."""
+    found = []
+    for k in range(2 if problem.reverted else 1, problem.max_stages + 1):
+        idler = needs_idler(problem, k)
+        # An idler in one stage of a reverted train would spread its shafts.
+        if (idler and problem.reverted) or (stocked is not None and stocked < 2 * k + idler):
+            continue
+        found.append(k)
+    return tuple(found)
+
+
+def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArray[np.bool_]:
+    """Which gears may mesh with one another."""
+    a, b = np.ogrid[: most + 1, : most + 1]
+    sound = np.minimum(a, b) > 0
+    if coprime:
+        sound &= np.gcd(a, b) == 1
+    if problem.interference == "refuse":
+        largest = [largest_gear(n, math.radians(problem.pressure_angle)) if n else 0 for n in range(most + 1)]
+        bound = np.array([most if n is None else n for n in largest])
+        sound &= np.maximum(a, b) <= bound[np.minimum(a, b)]
+    return sound
+
+
+def _within_stage_ratio(problem: GearTrainProblem, most: int) -> NDArray[np.bool_]:
+    """Which gears may be driver and driven gear of a stage, for the limit of its ratio."""
+    a, b = np.ogrid[: most + 1, : most + 1]
+    if problem.max_stage_ratio is None:
+        return np.minimum(a, b) >= 0
+    limit = decimal(problem.max_stage_ratio)
+    mate = np.array([min(most, math.floor(n * limit)) for n in range(most + 1)])
+    return np.asarray(np.maximum(a, b) <= mate[np.minimum(a, b)], np.bool_)
+
+
+def _usable(values: Integers, allowed: NDArray[np.bool_], mates: Integers) -> Integers:
+    """Tooth numbers that have an allowed mate."""
+    return values[allowed[mates][:, values].any(axis=0)]

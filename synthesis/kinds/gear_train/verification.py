@@ -1,0 +1,171 @@
+"""The proof of a gear train: speeds followed from mesh to mesh, meshes drawn up from the tooth numbers.
+
+Nothing of the search is taken over. The ratio comes from the speeds of the shafts, exact fractions; its error from the
+target's enclosure between rational numbers; distances, contact and interference from the geometry of the teeth.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from fractions import Fraction
+
+from kinematics.errors import DimensionError
+from kinematics.gear.teeth import Mesh, saving_shift
+from kinematics.gear.train import OrdinaryTrain, TrainStage
+from synthesis.kinds.gear_train.design import (
+    GearTrainDesign,
+    GearTrainMechanism,
+    GearTrainMetrics,
+    MeshGeometry,
+    SuggestedShift,
+)
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.model.answer import Check, Verification
+
+SAME_DISTANCE = 1e-12
+"""Share of a centre distance by which equal ones may differ in rounding."""
+
+BITS = 256
+"""Width of the target's enclosure; errors of trains are told to some sixty digits."""
+
+
+def driven_train(mechanism: GearTrainMechanism) -> OrdinaryTrain:
+    """The mechanism for the analysis core; raises DimensionError for gears that do not exist."""
+    idlers: dict[int, list[int]] = {}
+    for idler in mechanism.idlers:
+        idlers.setdefault(idler.stage, []).append(idler.teeth)
+    return OrdinaryTrain(
+        tuple(
+            TrainStage(stage.driver, stage.driven, stage.module, tuple(idlers.get(number, ())))
+            for number, stage in enumerate(mechanism.stages, 1)
+        ),
+        math.radians(mechanism.pressure_angle),
+    )
+
+
+def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrainDesign | None:
+    """Drive a train and measure it; None where its gears cannot be made at all."""
+    try:
+        train = driven_train(mechanism)
+    except DimensionError:
+        return None
+    errors = _errors(problem, abs(train.ratio))
+    meshes = mesh_geometries(train)
+    gears = [n for stage in train.stages for n in (stage.driver, stage.driven)]
+    pairs = [pair for stage in train.stages for pair in zip(stage.gears[:-1], stage.gears[1:], strict=True)]
+    metrics = GearTrainMetrics(
+        error=float(errors[0] * abs(train.ratio) / (1 + errors[0])),
+        relative_error=float(errors[0]),
+        total_teeth=sum(gears),
+        largest_gear=max(gears),
+        largest_stage_ratio=max(max(s.driver, s.driven) / min(s.driver, s.driven) for s in train.stages),
+        hunting_tooth=all(math.gcd(*pair) == 1 for pair in pairs),
+        centre_distances=list(train.centre_distances),
+        meshes=meshes,
+    )
+    checks = [
+        *_ratio_checks(problem, mechanism, train, errors),
+        *_gear_checks(problem, mechanism, train, metrics),
+        *_mesh_checks(problem, metrics),
+    ]
+    return GearTrainDesign(
+        mechanism=mechanism,
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def mesh_geometries(train: OrdinaryTrain) -> list[MeshGeometry]:
+    """Geometry of every mesh, with a shift that would save it where it is not sound."""
+    found = []
+    for number, (stage, meshes) in enumerate(zip(train.stages, train.meshes, strict=True), 1):
+        for (driver, driven), mesh in zip(zip(stage.gears[:-1], stage.gears[1:], strict=True), meshes, strict=True):
+            found.append(
+                MeshGeometry(
+                    stage=number,
+                    driver=driver,
+                    driven=driven,
+                    centre_distance=mesh.centre_distance,
+                    contact_ratio=mesh.contact_ratio,
+                    interferes=mesh.interferes,
+                    undercut=mesh.pinion.is_undercut,
+                    suggested_shift=_suggested(mesh, driver),
+                )
+            )
+    return found
+
+
+def _suggested(mesh: Mesh, driver: int) -> SuggestedShift | None:
+    saved = saving_shift(mesh)
+    if saved is None:
+        return None
+    shifts = saved.pinion.shift, saved.gear.shift
+    first, second = shifts if driver == mesh.pinion.teeth else shifts[::-1]
+    return SuggestedShift(
+        driver=first, driven=second, centre_distance=saved.centre_distance, contact_ratio=saved.contact_ratio
+    )
+
+
+def _errors(problem: GearTrainProblem, ratio: Fraction) -> tuple[Fraction, Fraction]:
+    """Relative error of the ratio, for the two ends of the target's enclosure."""
+    low, high = problem.target.enclosure(BITS)
+    return ratio / high - 1, ratio / low - 1
+
+
+def _ratio_checks(
+    problem: GearTrainProblem,
+    mechanism: GearTrainMechanism,
+    train: OrdinaryTrain,
+    errors: tuple[Fraction, Fraction],
+) -> list[Check]:
+    stated = Fraction(mechanism.ratio.numerator, mechanism.ratio.denominator)
+    checks = [Check(name="ratio", passed=stated == train.ratio and mechanism.ratio.value == float(stated))]
+    tolerance = problem.exact_tolerance
+    if tolerance is not None:
+        worst = max(abs(error) for error in errors)
+        passed = worst <= tolerance
+        checks.append(Check(name="ratio_error", passed=passed, value=float(worst), limit=float(tolerance)))
+    if problem.demanded_sign:
+        checks.append(Check(name="direction", passed=(train.ratio > 0) == (problem.demanded_sign > 0)))
+    return checks
+
+
+def _gear_checks(
+    problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
+) -> list[Check]:
+    count = len(train.stages)
+    checks = [Check(name="stages", passed=count <= problem.max_stages, value=count, limit=problem.max_stages)]
+    if problem.stock is not None:
+        used, stocked = Counter(n for stage in train.stages for n in stage.gears), problem.stocked()
+        checks.append(Check(name="stock", passed=all(stocked.get(n, 0) >= many for n, many in used.items())))
+    elif count <= problem.max_stages:
+        ranges = problem.position_ranges()
+        gears = [n for stage in train.stages for n in (stage.driver, stage.driven)]
+        inside = all(low <= n <= high for n, (low, high) in zip(gears, ranges, strict=False))
+        checks.append(Check(name="teeth", passed=inside))
+    if problem.max_stage_ratio is not None:
+        limit = Fraction(repr(problem.max_stage_ratio))
+        kept = all(
+            Fraction(s.driven, s.driver) <= limit and Fraction(s.driver, s.driven) <= limit for s in train.stages
+        )
+        value = metrics.largest_stage_ratio
+        checks.append(Check(name="stage_ratio", passed=kept, value=value, limit=problem.max_stage_ratio))
+    if problem.max_total_teeth is not None:
+        total, limit_of_total = metrics.total_teeth, problem.max_total_teeth
+        checks.append(Check(name="total_teeth", passed=total <= limit_of_total, value=total, limit=limit_of_total))
+    return checks
+
+
+def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[Check]:
+    checks = []
+    if problem.reverted:
+        distances = metrics.centre_distances
+        apart = max(distances) - min(distances)
+        limit = SAME_DISTANCE * max(distances)
+        checks.append(Check(name="coaxial", passed=apart <= limit, value=apart, limit=limit))
+    if problem.hunting_tooth == "require":
+        checks.append(Check(name="hunting_tooth", passed=metrics.hunting_tooth))
+    if problem.interference == "refuse":
+        checks.append(Check(name="interference", passed=not any(mesh.interferes for mesh in metrics.meshes)))
+    return checks

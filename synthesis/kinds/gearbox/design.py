@@ -1,0 +1,158 @@
+"""Gearboxes of several speeds as answers."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from synthesis.kinds.gear_train.design import Ratio
+from synthesis.model.answer import (
+    Answer,
+    Result,
+    Verification,
+)
+
+
+class GearPairTeeth(Answer):
+    """Teeth of a pair of gears."""
+
+    driver: int
+    driven: int
+
+
+class GearboxStage(Answer):
+    """The pairs between two neighbouring shafts, slowest first; all have one tooth sum."""
+
+    characteristic: int = Field(description="Steps of the progression from one pair to the next.")
+    pairs: list[GearPairTeeth]
+    centre_distance: float
+
+
+class GearboxMechanism(Answer):
+    """A machine-tool gearbox: one pair of every stage is engaged at a time."""
+
+    type: Literal["gearbox"] = "gearbox"
+    formula: str = Field(description="Structural formula, stages in the order of the shafts, e.g. 3(1) 2(3).")
+    input_speed: float
+    stages: list[GearboxStage]
+    module: float
+    pressure_angle: float = Field(description="Degrees.")
+
+
+class SpindleSpeed(Answer):
+    """A speed of the spindle beside its nominal value."""
+
+    speed: float
+    nominal: float
+    error: float = Field(description="speed/nominal − 1.")
+    standard: float | None = Field(description="The rounded preferred number, where the speeds are of a series.")
+    engaged: list[int] = Field(description="The pair that is engaged in each stage, from 0.")
+
+
+class ShaftSpeeds(Answer):
+    """All speeds of one shaft, lowest first; the first shaft is the input."""
+
+    shaft: int
+    speeds: list[float]
+
+
+class GearboxMetrics(Answer):
+    """Measured properties of a gearbox."""
+
+    max_error: float = Field(description="Largest |ln(speed/nominal)|.")
+    tooth_sum: int = Field(description="Sum of the tooth sums of all stages.")
+    torque: float = Field(
+        description="Input speed over lowest speed, summed over the shafts between input and spindle: their loads."
+    )
+    speeds: list[SpindleSpeed]
+    shafts: list[ShaftSpeeds] = Field(description="The nodes of the ray diagram.")
+
+
+class GearboxDesign(Answer):
+    """A gearbox with the proof of its speeds."""
+
+    mechanism: GearboxMechanism
+    verification: Verification
+    metrics: GearboxMetrics
+
+
+class StructureVerdict(Answer):
+    """A structure that was tried: its least error, or null where no teeth within the limits serve."""
+
+    formula: str
+    max_error: float | None
+    tooth_sum: int | None = Field(description="The least tooth sum with that error.")
+
+
+class GearboxResult(Result[GearboxDesign]):
+    """Machine-tool gearboxes.
+
+    The designs are the Pareto set of error against tooth sum of every structure, in order of the ranking.
+    """
+
+    progression_ratio: float
+    structures: list[StructureVerdict]
+
+
+class LayshaftGear(Answer):
+    """A forward gear; without teeth it is direct drive."""
+
+    layshaft: int | None
+    mainshaft: int | None
+    ratio: Ratio
+
+
+class ReverseGear(Answer):
+    """The reverse gear with its idler."""
+
+    layshaft: int
+    idler: int
+    mainshaft: int
+    ratio: Ratio
+
+
+class LayshaftMechanism(Answer):
+    """A layshaft gearbox of a vehicle."""
+
+    type: Literal["layshaft_gearbox"] = "layshaft_gearbox"
+    head: GearPairTeeth = Field(description="From the input shaft to the layshaft.")
+    gears: list[LayshaftGear]
+    reverse: ReverseGear | None
+    module: float
+    pressure_angle: float = Field(description="Degrees.")
+    centre_distance: float
+
+
+class LayshaftMetrics(Answer):
+    """Measured properties of a layshaft gearbox."""
+
+    max_error: float = Field(description="Largest relative error of a gear.")
+    errors: list[float] = Field(description="Relative error of each forward gear, with its sign; reverse comes last.")
+    tooth_sum: int
+    interfering: list[GearPairTeeth] = Field(description="Pairs whose standard teeth interfere; they need a shift.")
+    contact_ratios: list[float] = Field(
+        description="Of the head pair, the forward gears with teeth, and reverse's two."
+    )
+
+
+class LayshaftDesign(Answer):
+    """A layshaft gearbox with the proof of its ratios."""
+
+    mechanism: LayshaftMechanism
+    verification: Verification
+    metrics: LayshaftMetrics
+
+
+class ParetoLayshaft(Answer):
+    """The least error that a tooth sum allows, where no smaller sum allows it."""
+
+    tooth_sum: int
+    max_error: float
+    head: GearPairTeeth
+
+
+class LayshaftResult(Result[LayshaftDesign]):
+    """Layshaft gearboxes, best first."""
+
+    pareto: list[ParetoLayshaft] = Field(description="The Pareto set of error against tooth sum, smallest first.")

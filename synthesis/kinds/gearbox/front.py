@@ -1,0 +1,234 @@
+"""The least error of a gearbox for every tooth sum: stages put together, by widening the errors that are looked at.
+
+:mod:`synthesis.kinds.gearbox.stages` says by what a choice of teeth enters: middle c, half width h and tooth sum. The
+stages but one or two are put together, and for what comes of it the best partner among the others is found by
+bisection.
+
+Most combinations are far too wide to be of use, since gearboxes of the larger tooth sums are far better than the
+tolerance. So the search is run for a small part of the tolerated error first. What it finds bounds the error that is
+worth looking at for each tooth sum when the search is run again with a larger part, until the bounds allow for all that
+is tolerated. Each run is exact for what its bounds let in, and the last lets in everything that could be better.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.gearbox.stages import (
+    SAME,
+    Options,
+    Real,
+    Whole,
+    worth_having,
+)
+
+PARTS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
+"""The runs look at the tolerated error over these."""
+
+MOST_JOINED = 4
+"""Stages of which all but one are put together; of more all but two."""
+
+HELD = 1_000_000
+"""Combinations that are gathered before those not worth having are left out."""
+
+
+class Choice(NamedTuple):
+    """Teeth of all stages: largest error in logarithms, tooth sum of all stages, and drivers by stage."""
+
+    error: float
+    size: int
+    stages: tuple[tuple[int, tuple[int, ...]], ...]
+
+
+class _Rest(NamedTuple):
+    """What the stages that are not yet put together can at least and at most add."""
+
+    half: float
+    size: int
+    low: float
+    high: float
+
+
+def best_choices(stages: list[Options], level: float, widest: float, progress: Callable[[float], None]) -> list[Choice]:
+    """For every total tooth sum the choice of least error, where it is less than for all smaller sums.
+
+    Parameters
+    ----------
+    stages : list of Options
+        The choices of each stage.
+    level : float
+        L, the logarithm of the lowest speed over the input's.
+    widest : float
+        Largest error that is tolerated.
+    progress : callable
+        Told the share that is done, roughly.
+    """
+    if not all(stage.count for stage in stages):
+        return []
+    most = sum(int(stage.size.max()) for stage in stages)
+    front: list[Choice] = []
+    for run, part in enumerate(PARTS):
+        bound = np.full(most + 1, widest / part)
+        for choice in front:
+            bound[choice.size :] = np.minimum(bound[choice.size :], choice.error)
+        front = _run(stages, _Wanted(level, bound), _part_of(progress, run / len(PARTS), (run + 1) / len(PARTS)))
+    return front
+
+
+class _Wanted(NamedTuple):
+    """L, and the largest error worth looking at by total tooth sum, which falls with it."""
+
+    level: float
+    bound: Real
+
+    def allows(self, middle: Real, half: Real, size: Whole, rest: _Rest) -> NDArray[np.bool_]:
+        """Which choices can, with the best that the other stages may add, stay within the bounds."""
+        room = self.bound[size + rest.size] - half - rest.half + SAME
+        short = middle - self.level
+        return np.asarray((room >= 0.0) & (short + rest.low <= room) & (short + rest.high >= -room), np.bool_)
+
+
+def _part_of(progress: Callable[[float], None], start: float, end: float) -> Callable[[float], None]:
+    """Progress through a part of the work."""
+
+    def told(share: float) -> None:
+        progress(start + share * (end - start))
+
+    return told
+
+
+def _run(stages: list[Options], wanted: _Wanted, progress: Callable[[float], None]) -> list[Choice]:
+    """The front within the bounds, exactly."""
+    for k, stage in enumerate(stages):
+        others = _rest([*stages[:k], *stages[k + 1 :]])
+        stages = [*stages[:k], _allowed(stage, wanted, others), *stages[k + 1 :]]
+        if not stages[k].count:
+            return []
+    # The stage of most choices is never multiplied out: its partners are found by bisection.
+    order = sorted(range(len(stages)), key=lambda k: stages[k].count)
+    split = len(stages) - 1 - (len(stages) > MOST_JOINED)
+    parts = [[stages[k] for k in order[:split]], [stages[k] for k in order[split:]]]
+    joined = []
+    for part, beyond in (parts, parts[::-1]):
+        whole = part[0] if part else _nothing()
+        for k in range(1, len(part)):
+            whole = _together(whole, part[k], wanted, _rest([*part[k + 1 :], *beyond]), progress)
+        if not whole.count:
+            return []
+        joined.append(whole)
+    return [
+        choice._replace(stages=tuple(choice.stages[order.index(k)] for k in range(len(stages))))
+        for choice in _front(joined[0], joined[1], wanted)
+    ]
+
+
+def _rest(stages: list[Options]) -> _Rest:
+    return _Rest(
+        sum(float(stage.half.min()) for stage in stages),
+        sum(int(stage.size.min()) for stage in stages),
+        sum(float(stage.middle.min()) for stage in stages),
+        sum(float(stage.middle.max()) for stage in stages),
+    )
+
+
+def _nothing() -> Options:
+    """No stage at all, in the one way there is."""
+    zero = np.zeros(1)
+    return Options(zero, zero, np.zeros(1, np.int64), np.zeros((1, 0), np.int64), (), 1)
+
+
+def _allowed(stage: Options, wanted: _Wanted, rest: _Rest) -> Options:
+    kept = wanted.allows(stage.middle, stage.half, stage.size, rest)
+    return Options(
+        stage.middle[kept], stage.half[kept], stage.size[kept], stage.picks[kept], stage.teeth, stage.covered
+    )
+
+
+def _together(one: Options, other: Options, wanted: _Wanted, rest: _Rest, progress: Callable[[float], None]) -> Options:
+    """All choices worth having for the stages of two sets of options together."""
+    pairs = np.zeros((0, 2), np.int64)
+    gathered, held = [pairs], 0
+    step = max(1, HELD // other.count)
+    for start in range(0, one.count, step):
+        progress(start / one.count)
+        rows = np.arange(start, min(start + step, one.count))
+        c, h = one.middle[rows, None] + other.middle, one.half[rows, None] + other.half
+        at, to = np.nonzero(wanted.allows(c, h, one.size[rows, None] + other.size, rest))
+        gathered.append(np.stack((rows[at], to), axis=1))
+        held += len(at)
+        if held > HELD:
+            gathered = [_kept(one, other, np.concatenate(gathered))]
+            held = len(gathered[0])
+    pairs = _kept(one, other, np.concatenate(gathered))
+    middle, half, size = _sums(one, other, pairs)
+    picks = np.concatenate((one.picks[pairs[:, 0]], other.picks[pairs[:, 1]]), axis=1)
+    return Options(middle, half, size, picks, (*one.teeth, *other.teeth), one.covered * other.covered)
+
+
+def _kept(one: Options, other: Options, pairs: Whole) -> Whole:
+    return np.asarray(pairs[worth_having(*_sums(one, other, pairs))])
+
+
+def _sums(one: Options, other: Options, pairs: Whole) -> tuple[Real, Real, Whole]:
+    a, b = pairs[:, 0], pairs[:, 1]
+    return one.middle[a] + other.middle[b], one.half[a] + other.half[b], one.size[a] + other.size[b]
+
+
+def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
+    """The best of every total tooth sum.
+
+    For each choice of the first stages the best partner of one tooth sum has its middle next to the one wanted: of
+    those below it the one of least h − c, of those above it the one of least h + c.
+    """
+    best: dict[int, tuple[float, int, int]] = {}
+    for size in np.unique(other.size).tolist():
+        rows = np.flatnonzero(other.size == size)
+        rows = rows[np.argsort(other.middle[rows], kind="stable")]
+        c, h = other.middle[rows], other.half[rows]
+        level = _Rest(float(h.min()), size, float(c[0]), float(c[-1]))
+        firsts = np.flatnonzero(wanted.allows(one.middle, one.half, one.size, level))
+        needed = wanted.level - one.middle[firsts]
+        at = np.searchsorted(c, needed)
+        below, above = _running_least(h - c), _running_least((h + c)[::-1])
+        for partner, there in (
+            (below[np.maximum(at - 1, 0)], at > 0),
+            (len(c) - 1 - above[np.maximum(len(c) - 1 - at, 0)], at < len(c)),
+        ):
+            error = np.where(there, np.abs(c[partner] - needed) + h[partner] + one.half[firsts], np.inf)
+            total = one.size[firsts] + size
+            error[error > wanted.bound[total] + SAME] = np.inf
+            for k in _firsts(total, error):
+                found = (float(error[k]), int(firsts[k]), int(rows[partner[k]]))
+                whole = int(total[k])
+                if math.isfinite(found[0]) and (whole not in best or found[0] < best[whole][0] - SAME):
+                    best[whole] = found
+    front: list[Choice] = []
+    for whole in sorted(best):
+        least, first, second = best[whole]
+        if not front or least < front[-1].error - SAME:
+            picks = (*one.picks[first].tolist(), *other.picks[second].tolist())
+            teeth = (*one.teeth, *other.teeth)
+            stages = tuple(
+                (int(sums[pick]), tuple(int(z) for z in drivers[pick]))
+                for pick, (sums, drivers) in zip(picks, teeth, strict=True)
+            )
+            front.append(Choice(least, whole, stages))
+    return front
+
+
+def _running_least(values: Real) -> Whole:
+    """For every place the place of the least value up to it."""
+    least = np.minimum.accumulate(values)
+    return np.asarray(np.maximum.accumulate(np.where(values <= least, np.arange(len(values)), 0)), np.int64)
+
+
+def _firsts(total: Whole, error: Real) -> Whole:
+    """The place of least error for each total."""
+    order = np.lexsort((error, total))
+    _, first = np.unique(total[order], return_index=True)
+    return order[first]

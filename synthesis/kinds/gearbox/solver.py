@@ -1,0 +1,219 @@
+"""The best machine-tool gearboxes: for every structure the tooth numbers of least deviation for their size."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from kinematics.gear.gearbox import preferred_numbers
+from synthesis.kinds.gearbox.design import (
+    GearboxDesign,
+    GearboxMechanism,
+    GearboxResult,
+    GearboxStage,
+    GearPairTeeth,
+    StructureVerdict,
+)
+from synthesis.kinds.gearbox.front import Choice, best_choices
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.gearbox.stages import (
+    Options,
+    StageLimits,
+    stage_options,
+)
+from synthesis.kinds.gearbox.structures import (
+    Group,
+    Structure,
+    formula,
+    spread,
+    structures,
+)
+from synthesis.kinds.gearbox.verification import measure, verify
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import sifted
+
+FIXED = Group(1, 1)
+"""A stage of one pair."""
+
+
+class _Made(NamedTuple):
+    """A structure with its teeth, and what it is ranked by."""
+
+    error: float
+    size: int
+    torque: float
+    structure: Structure
+    stages: tuple[tuple[int, tuple[int, ...]], ...]
+
+
+def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
+    """The Pareto set of deviation against tooth sum over all structures, each gearbox verified.
+
+    Parameters
+    ----------
+    problem : GearboxProblem
+        A statement without contradictions.
+    progress : callable
+        Told how many structures are done.
+
+    Returns
+    -------
+    GearboxResult
+        Complete where no gearbox within the limits has a smaller deviation at the same tooth sum: that is unless the
+        statement lets in gearboxes without a structural formula.
+    """
+    tried = _structures(problem)
+    ratio = problem.speeds.progression_ratio
+    kinds = {tuple(sorted(structure)): structure for structure in tried}
+    covered, choices = 0, {}
+    for k, groups in enumerate(kinds):
+        told = f"structure {formula(kinds[groups])}"
+
+        def within(share: float, done: int = k, message: str = told) -> None:
+            progress((done + share) / len(kinds), message)
+
+        choices[groups], count = _choices(problem, groups, ratio, within)
+        covered += count
+    made = []
+    for groups, front in choices.items():
+        orders = [structure for structure in tried if tuple(sorted(structure)) == groups]
+        made += [_ordered(choice, groups, orders) for choice in front]
+    made.sort(key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque))
+    designs = [_design(problem, one) for one in made[: problem.max_designs]]
+    unsearched = _unsearched(problem, tried)
+    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)}, complete=not unsearched)
+    progress(1.0, "done")
+    return GearboxResult(
+        designs=found.returned,
+        search=found.search,
+        summary=_summary(problem, tried, found.passed, covered) + unsearched,
+        progression_ratio=ratio,
+        structures=[_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
+    )
+
+
+def _structures(problem: GearboxProblem) -> list[Structure]:
+    if problem.structure is None:
+        found = structures(problem.speeds.count, problem.max_pairs)
+        return [(FIXED, *structure) for structure in found] if problem.fixed_stage else found
+    stated = [pairs for pairs in problem.structure if pairs > 1]
+    found = []
+    for order in itertools.permutations(range(len(stated))):
+        characteristic, groups = 1, {}
+        for at in order:
+            groups[at] = Group(stated[at], characteristic)
+            characteristic *= stated[at]
+        several = iter([groups[at] for at in range(len(stated))])
+        found.append(tuple(FIXED if pairs == 1 else next(several) for pairs in problem.structure))
+    return found
+
+
+def _limits(problem: GearboxProblem) -> StageLimits:
+    return StageLimits(
+        (problem.teeth.min, problem.teeth.max),
+        (problem.tooth_sum.min, problem.tooth_sum.max),
+        (problem.stage_ratio.min, problem.stage_ratio.max),
+        math.radians(problem.pressure_angle),
+        problem.cluster_difference,
+    )
+
+
+def _choices(
+    problem: GearboxProblem, groups: tuple[Group, ...], ratio: float, progress: Callable[[float], None]
+) -> tuple[list[Choice], int]:
+    """Pareto choices of teeth for stages in the order of ``groups``, and how many combinations they stand for."""
+    progress(0.0)
+    limits = _limits(problem)
+    widest = problem.stage_ratio.max / problem.stage_ratio.min * math.exp(2.0 * problem.widest)
+    if any(spread(group, ratio) > widest for group in groups):
+        return [], 0
+    known: dict[Group, Options] = {}
+    for group in groups:
+        if group not in known:
+            known[group] = stage_options(group, ratio, problem.widest, limits)
+    stages = [known[group] for group in groups]
+    level = math.log(problem.speeds.min / problem.input_speed)
+    found = best_choices(stages, level, problem.widest, progress)
+    return found, math.prod(stage.covered for stage in stages)
+
+
+def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Made:
+    """The order of the stages that loads the shafts between input and spindle least, of those that are allowed."""
+    found = []
+    for structure in orders:
+        rest = list(zip(groups, choice.stages, strict=True))
+        # Equal groups may have different teeth; the faster one stands nearer to the input.
+        rest.sort(key=lambda item: -min(item[1][1]) / item[1][0])
+        placed = []
+        for group in structure:
+            at = next(k for k, (own, _) in enumerate(rest) if own == group)
+            placed.append(rest.pop(at)[1])
+        speed, torque = 1.0, 0.0
+        for total, drivers in placed[:-1]:
+            speed *= min(drivers) / (total - min(drivers))
+            torque += 1.0 / speed
+        found.append(_Made(choice.error, choice.size, torque, structure, tuple(placed)))
+    return min(found, key=lambda made: made.torque)
+
+
+def _design(problem: GearboxProblem, made: _Made) -> GearboxDesign:
+    stages = []
+    for group, (total, drivers) in zip(made.structure, made.stages, strict=True):
+        pairs = [GearPairTeeth(driver=z, driven=total - z) for z in drivers]
+        distance = 0.5 * problem.module * total
+        stages.append(GearboxStage(characteristic=group.characteristic, pairs=pairs, centre_distance=distance))
+    mechanism = GearboxMechanism(
+        formula=formula(made.structure),
+        input_speed=problem.input_speed,
+        stages=stages,
+        module=problem.module,
+        pressure_angle=problem.pressure_angle,
+    )
+    series = problem.speeds.series
+    standard = (
+        None
+        if series is None
+        else preferred_numbers(series, problem.speeds.min, problem.speeds.count, problem.speeds.step)
+    )
+    return GearboxDesign(
+        mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism, standard)
+    )
+
+
+def _verdict(structure: Structure, found: list[Choice]) -> StructureVerdict:
+    best = found[-1] if found else None
+    return StructureVerdict(
+        formula=formula(structure), max_error=best.error if best else None, tooth_sum=best.size if best else None
+    )
+
+
+def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
+    """Which gearboxes of the statement have no structural formula and were not searched, in words; empty for none.
+
+    A stage of a prime number of pairs beside others has one characteristic. One of 4 or 6 may have two: {0, 1, 4, 5}
+    with {0, 2} makes the steps 0 to 7 too (de Bruijn, On number systems, Nieuw Arch. Wisk. 4, 1956).
+    """
+    if problem.widest > problem.structured:
+        return " Beyond a quarter of a step gearboxes need not have a structure; those without one were not searched."
+    several = [[group.pairs for group in structure if group.pairs > 1] for structure in tried]
+    if any(len(pairs) > 1 and max(pairs) > 3 for pairs in several):
+        return " Stages of four or six pairs with two characteristics were not searched."
+    return ""
+
+
+def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
+    count = problem.speeds.count
+    if not tried:
+        return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."
+    if not passed:
+        return (
+            f"None of {len(tried)} structures with {covered:,} combinations of tooth numbers keeps all {count} speeds "
+            f"within {100.0 * problem.widest:.3g} % and the limits."
+        )
+    first = passed[0]
+    return (
+        f"{first.mechanism.formula} keeps {count} speeds within {100.0 * first.metrics.max_error:.3g} %, the best of "
+        f"{len(tried)} structures with {covered:,} combinations of tooth numbers."
+    )

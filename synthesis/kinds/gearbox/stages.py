@@ -1,0 +1,170 @@
+"""Tooth numbers of one stage of a machine-tool gearbox, and how stages add up to the errors of all speeds.
+
+With equal modules all pairs of a stage have the same tooth sum. Let d = ln(driver/driven) − k x ln φ for pair k of a
+stage: were the steps exact, d would be the same for all its pairs. The logarithm of a spindle speed over its nominal
+value is the sum of the engaged pairs' d, less L = ln(n₁/n_input). Over all speeds these sums reach from the sum of the
+least d of each stage to the sum of the greatest, so that with the middle c and half width h of each stage::
+
+    largest |ln(n/n_nominal)| = |Σ c − L| + Σ h
+
+A choice of teeth thus enters by c, h and its tooth sum alone. One with c', h' and no greater sum takes its place
+wherever |c − c'| + h' ≤ h without making anything worse; such choices are left out, which loses no best gearbox, of one
+stage or of several together.
+
+In one stage of a given tooth sum few are left from the start. Take any choice, and let δ be the least of its d: with
+the smallest d not below δ for each pair instead, the interval from the least to the greatest d lies within the old one.
+So δ runs through the d of all drivers and pairs, and all other choices need never be made.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.gearbox.structures import Group
+from synthesis.model.mesh_limits import external_sound
+
+Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+SAME = 1e-13
+"""Middles and half widths that differ by less are equal: sums of a few logarithms, rounded."""
+
+
+class StageLimits(NamedTuple):
+    """Limits on the teeth of one stage; ratios are driven speed over driving speed, angles radians.
+
+    ``cluster`` is the least difference between the largest and the next driver of three or more pairs.
+    """
+
+    teeth: tuple[int, int]
+    tooth_sum: tuple[int, int]
+    ratio: tuple[float, float]
+    pressure_angle: float
+    cluster: int
+
+
+@dataclass(frozen=True)
+class Options:
+    """Choices worth having of one stage or several, smallest tooth sum first.
+
+    Attributes
+    ----------
+    middle, half, size : ndarray, shape (n,)
+        c, h and the tooth sum.
+    picks : ndarray, shape (n, stages)
+        For each stage the row of ``teeth`` that is taken.
+    teeth : tuple of (sum, drivers) arrays
+        By stage: tooth sums (m,), and teeth of the drivers (m, pairs).
+    """
+
+    middle: Real
+    half: Real
+    size: Whole
+    picks: Whole
+    teeth: tuple[tuple[Whole, Whole], ...]
+    covered: int
+
+    @property
+    def count(self) -> int:
+        """How many choices there are."""
+        return len(self.middle)
+
+
+def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits) -> Options:
+    """All choices worth having for one stage.
+
+    Parameters
+    ----------
+    group : Group
+        Its pairs and their steps.
+    ratio : float
+        Progression ratio φ.
+    widest : float
+        Largest half width that can be of use, below half a step: the tolerated error.
+    limits : StageLimits
+        Teeth, tooth sums and ratios allowed.
+    """
+    step = group.characteristic * math.log(ratio)
+    found = [
+        (np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros((0, group.pairs), np.int64)),
+    ]
+    covered = 0
+    for total in range(limits.tooth_sum[0], limits.tooth_sum[1] + 1):
+        own = sound_drivers(total, limits)
+        covered += math.comb(len(own), group.pairs)
+        if len(own) < group.pairs:
+            continue
+        low, high, drivers = _narrowest(own, np.log(own / (total - own)), step, group.pairs, limits.cluster)
+        kept = high - low <= 2.0 * widest + SAME
+        c, h, drivers = 0.5 * (low + high)[kept], 0.5 * (high - low)[kept], drivers[kept]
+        worth = worth_having(c, h, np.zeros(len(c), np.int64))
+        found.append((c[worth], h[worth], np.full(len(worth), total), drivers[worth]))
+    middle, half, size, drivers = (np.concatenate(part) for part in zip(*found, strict=True))
+    worth = worth_having(middle, half, size)
+    return Options(middle[worth], half[worth], size[worth], worth[:, None], ((size, drivers),), covered)
+
+
+def sound_drivers(total: int, limits: StageLimits) -> Whole:
+    """Teeth of the drivers that make a pair of this tooth sum, in rising order."""
+    own = np.arange(max(limits.teeth[0], total - limits.teeth[1]), min(limits.teeth[1], total - limits.teeth[0]) + 1)
+    quotient = own / np.maximum(total - own, 1)
+    sound = external_sound(own.astype(np.float64), (total - own).astype(np.float64), limits.pressure_angle)
+    least, most = limits.ratio[0] * (1.0 - SAME), limits.ratio[1] * (1.0 + SAME)
+    return np.asarray(own[(quotient >= least) & (quotient <= most) & sound], np.int64)
+
+
+def _narrowest(own: Whole, level: Real, step: float, pairs: int, cluster: int) -> tuple[Real, Real, Whole]:
+    """For every d of a driver as the least: least and greatest d of the narrowest choice (n,), and its drivers (n, p).
+
+    With a least difference between the two largest drivers the largest is moved up where it must be: it and the one
+    below it are still the smallest that there are.
+    """
+    least = np.concatenate([level - k * step for k in range(pairs)])
+    places = [np.searchsorted(level, least + (k * step - SAME)) for k in range(pairs)]
+    if pairs > 2 and cluster:
+        below = own[np.minimum(places[-2], len(own) - 1)]
+        places[-1] = np.maximum(places[-1], np.searchsorted(own, below + cluster))
+    at = np.stack(places, axis=1)
+    at = at[(at < len(own)).all(axis=1)]
+    values = level[at] - step * np.arange(pairs)
+    return values.min(axis=1), values.max(axis=1), own[at]
+
+
+def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
+    """Rows that no other row of at most their size can replace, smallest first."""
+    order = np.lexsort((half, middle, size))
+    ends = np.flatnonzero(np.diff(size[order], append=np.iinfo(np.int64).max)) + 1
+    # Those kept, by rising middle, for the sizes up to here.
+    kept, c, h = np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
+    found = [kept]
+    for own in np.split(order, ends[:-1]):
+        if not len(own):
+            break
+        left, right = half[own] - middle[own], half[own] + middle[own]
+        # Of equals the first stays.
+        replaced = (_least_before(left) <= left + SAME) | (_least_after(right) < right - SAME)
+        if len(kept):
+            at = np.searchsorted(c, middle[own], side="right")
+            replaced |= np.append(_least_before(h - c), (h - c).min())[at] <= left + SAME
+            replaced |= np.append(np.minimum.accumulate((h + c)[::-1])[::-1], np.inf)[at] <= right + SAME
+        new = own[~replaced]
+        found.append(new)
+        kept = np.concatenate((kept, new))
+        kept = kept[np.argsort(middle[kept], kind="stable")]
+        c, h = middle[kept], half[kept]
+    return np.concatenate(found)
+
+
+def _least_before(values: Real) -> Real:
+    """For every place the least of the values before it; infinite for the first."""
+    return np.concatenate(([np.inf], np.minimum.accumulate(values)[:-1]))
+
+
+def _least_after(values: Real) -> Real:
+    """For every place the least of the values after it; infinite for the last."""
+    return _least_before(values[::-1])[::-1]

@@ -1,0 +1,18 @@
+"""Layshaft gearboxes of vehicles: tooth numbers for given gears with one tooth sum."""
+
+from __future__ import annotations
+
+from synthesis.kinds.gearbox.design import LayshaftResult
+from synthesis.kinds.gearbox.problem import LayshaftProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
+    from synthesis.kinds.layshaft_gearbox.solver import solve_layshaft_gearbox
+
+    return solve_layshaft_gearbox(problem, progress)
+
+
+KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve)

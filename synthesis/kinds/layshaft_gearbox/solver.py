@@ -1,0 +1,249 @@
+"""The best layshaft gearboxes: every tooth sum and head pair, and for each the nearest pair for every gear.
+
+Once tooth sum S and head pair a, b are chosen, the gears no longer depend on each other: of the pairs c, d = S − c the
+ratio (b/a)(S − c)/c falls with c, so that the nearest to a demanded ratio is one of the two c next to the real solution
+S/(1 + t a/b). Reverse takes the nearest of all pairs that do not touch each other and leave room for an idler.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.gearbox import layshaft_ratios
+from synthesis.kinds.gear_train.design import Ratio
+from synthesis.kinds.gearbox.design import (
+    GearPairTeeth,
+    LayshaftDesign,
+    LayshaftGear,
+    LayshaftMechanism,
+    LayshaftResult,
+    ParetoLayshaft,
+    ReverseGear,
+)
+from synthesis.kinds.gearbox.problem import LayshaftProblem
+from synthesis.kinds.layshaft_gearbox.verification import (
+    PASSING,
+    measure,
+    verify,
+)
+from synthesis.model.kind import Progress
+from synthesis.model.mesh_limits import external_sound
+from synthesis.outcome.sifting import sifted
+
+Real = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+CLOSE = 1e-12
+"""Errors nearer to each other than this are compared as exact fractions."""
+
+
+class _Box(NamedTuple):
+    """Teeth of a gearbox with its largest error, exact; None for direct drive, and where there is no reverse."""
+
+    error: Fraction
+    size: int
+    head: tuple[int, int]
+    gears: tuple[tuple[int, int] | None, ...]
+    reverse: tuple[int, int, int] | None
+
+
+class _Level(NamedTuple):
+    """The best of one tooth sum: largest error by head pair, with the teeth of the layshaft by gear, and of reverse."""
+
+    heads: Whole
+    error: Real
+    layshaft: list[Whole | None]
+    reverse: tuple[Whole, Whole, Whole] | None
+    covered: int
+
+
+def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
+    """The best layshaft gearboxes, each verified.
+
+    Parameters
+    ----------
+    problem : LayshaftProblem
+        A statement without contradictions.
+    progress : callable
+        Told how many tooth sums are done.
+
+    Returns
+    -------
+    LayshaftResult
+        Always complete: every tooth sum, head pair and gear pair within the limits was covered.
+    """
+    boxes: list[_Box] = []
+    best: list[_Box] = []
+    covered = 0
+    sums = range(problem.tooth_sum.min, problem.tooth_sum.max + 1)
+    for k, size in enumerate(sums):
+        progress(k / len(sums), f"tooth sum {size}")
+        level = _level(problem, size)
+        covered += level.covered
+        own = _of_level(problem, size, level, problem.max_designs)
+        boxes = sorted([*boxes, *own])[: problem.max_designs]
+        best += own[:1]
+    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
+    ranked = boxes if problem.rank_by == "error" else best
+    chosen = [box for box in ranked if limit is None or box.error <= limit][: problem.max_designs]
+    designs = [_design(problem, box) for box in chosen]
+    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)})
+    progress(1.0, "done")
+    return LayshaftResult(
+        designs=found.returned,
+        search=found.search,
+        summary=_summary(problem, found.passed, boxes, covered),
+        pareto=_front(best),
+    )
+
+
+def _level(problem: LayshaftProblem, size: int) -> _Level:
+    low, high = problem.teeth.min, problem.teeth.max
+    own = np.arange(max(low, size - high), min(high, size - low) + 1)
+    if problem.interference == "refuse" and len(own):
+        angle = math.radians(problem.pressure_angle)
+        own = own[external_sound(own.astype(np.float64), (size - own).astype(np.float64), angle)]
+    backs = _reverse_pairs(problem, size) if problem.reverse is not None else None
+    if not len(own) or (backs is not None and not len(backs[0])):
+        return _Level(np.zeros(0, np.int64), np.zeros(0), [], None, 0)
+    turned = (size - own) / own
+    error = np.zeros(len(own))
+    chosen: list[Whole | None] = []
+    covered = len(own)
+    for ratio in problem.ratios:
+        if ratio == 1.0 and problem.direct:
+            chosen.append(None)
+            continue
+        covered *= len(own)
+        after = np.searchsorted(own, size / (1.0 + ratio / turned))
+        near = [own[np.clip(after + step, 0, len(own) - 1)] for step in (-1, 0)]
+        errors = [np.abs(turned * (size - c) / c / ratio - 1.0) for c in near]
+        better = errors[1] < errors[0]
+        chosen.append(np.where(better, near[1], near[0]))
+        error = np.maximum(error, np.where(better, errors[1], errors[0]))
+    reverse = None
+    if backs is not None and problem.reverse is not None:
+        covered *= len(backs[0])
+        quotient = backs[2] / backs[0]
+        after = np.searchsorted(quotient, problem.reverse / turned)
+        places = [np.clip(after + step, 0, len(quotient) - 1) for step in (-1, 0)]
+        errors = [np.abs(turned * quotient[at] / problem.reverse - 1.0) for at in places]
+        at = np.where(errors[1] < errors[0], places[1], places[0])
+        error = np.maximum(error, np.minimum(*errors))
+        reverse = (backs[0][at], backs[1][at], backs[2][at])
+    return _Level(own, error, chosen, reverse, covered)
+
+
+def _reverse_pairs(problem: LayshaftProblem, size: int) -> tuple[Whole, Whole, Whole]:
+    """Gears on layshaft and main shaft that pass each other, with the smallest sound idler to reach both."""
+    low, high = problem.teeth.min, problem.teeth.max
+    counts = np.arange(low, high + 1)
+    one, other = (side.reshape(-1) for side in np.meshgrid(counts, counts, indexing="ij"))
+    idler = np.maximum(low, -((one + other - size) // 2))
+    kept = (0.5 * (size - one - other) - 2.0 >= PASSING) & (idler <= high)
+    one, idler, other = one[kept], idler[kept], other[kept]
+    if problem.interference == "refuse":
+        idler = _sound_idler(counts, one, idler, other, math.radians(problem.pressure_angle))
+        kept = idler <= high
+        one, idler, other = one[kept], idler[kept], other[kept]
+    order = np.lexsort((one, other / one))
+    return one[order], idler[order], other[order]
+
+
+def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: float) -> Whole:
+    """The smallest idler from ``idler`` on that interferes with neither gear; beyond the range where there is none.
+
+    An idler can be too small for a large mate and too large for a small one: for each mate the sound ones are those
+    between two limits, since z₁ (4 − 2 z₂ sin² φ) ≤ z₂² sin² φ − 4, and the same turned round, are monotonic in z₂.
+    """
+    real = counts.astype(np.float64)
+    sound = external_sound(real[:, None], real[None, :], angle)
+    least = np.where(sound.any(axis=1), counts[sound.argmax(axis=1)], counts[-1] + 1)
+    most = counts[-1] - sound[:, ::-1].argmax(axis=1)
+    at, to = one - counts[0], other - counts[0]
+    found = np.maximum(idler, np.maximum(least[at], least[to]))
+    sound_one = found <= np.minimum(most[at], most[to])
+    return np.asarray(np.where(sound_one, found, counts[-1] + 1), np.int64)
+
+
+def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:
+    """The best gearboxes of one tooth sum, one for each head pair."""
+    if not len(level.heads):
+        return []
+    most = min(count, len(level.heads))
+    limit = np.partition(level.error, most - 1)[most - 1]
+    found = []
+    for k in np.flatnonzero(level.error <= limit + CLOSE).tolist():
+        own = int(level.heads[k])
+        gears = tuple(None if c is None else (int(c[k]), size - int(c[k])) for c in level.layshaft)
+        reverse = None
+        if level.reverse is not None:
+            e, f, g = (int(side[k]) for side in level.reverse)
+            reverse = (e, f, g)
+        ratios = layshaft_ratios((own, size - own), gears, reverse)
+        demanded = [Fraction(repr(ratio)) for ratio in problem.ratios]
+        errors = [abs(r / t - 1) for r, t in zip(ratios.forward, demanded, strict=True)]
+        if ratios.reverse is not None and problem.reverse is not None:
+            errors.append(abs(-ratios.reverse / Fraction(repr(problem.reverse)) - 1))
+        found.append(_Box(max(errors), size, (own, size - own), gears, reverse))
+    return sorted(found, key=lambda box: box[:3])[:count]
+
+
+def _ratio(value: Fraction) -> Ratio:
+    return Ratio(numerator=value.numerator, denominator=value.denominator, value=float(value))
+
+
+def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
+    ratios = layshaft_ratios(box.head, box.gears, box.reverse)
+    reverse = None
+    if box.reverse is not None and ratios.reverse is not None:
+        e, f, g = box.reverse
+        reverse = ReverseGear(layshaft=e, idler=f, mainshaft=g, ratio=_ratio(ratios.reverse))
+    mechanism = LayshaftMechanism(
+        head=GearPairTeeth(driver=box.head[0], driven=box.head[1]),
+        gears=[
+            LayshaftGear(
+                layshaft=None if pair is None else pair[0],
+                mainshaft=None if pair is None else pair[1],
+                ratio=_ratio(ratio),
+            )
+            for pair, ratio in zip(box.gears, ratios.forward, strict=True)
+        ],
+        reverse=reverse,
+        module=problem.module,
+        pressure_angle=problem.pressure_angle,
+        centre_distance=0.5 * problem.module * box.size,
+    )
+    return LayshaftDesign(
+        mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism)
+    )
+
+
+def _front(best: list[_Box]) -> list[ParetoLayshaft]:
+    front: list[ParetoLayshaft] = []
+    least: Fraction | None = None
+    for box in best:
+        if least is None or box.error < least:
+            least = box.error
+            head = GearPairTeeth(driver=box.head[0], driven=box.head[1])
+            front.append(ParetoLayshaft(tooth_sum=box.size, max_error=float(box.error), head=head))
+    return front
+
+
+def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
+    counted = f"{covered:,} combinations of tooth numbers covered"
+    if passed:
+        first = passed[0]
+        return (
+            f"A tooth sum of {first.metrics.tooth_sum} keeps all {len(first.metrics.errors)} ratios within "
+            f"{100.0 * first.metrics.max_error:.3g} %; {counted}."
+        )
+    if not boxes:
+        return f"The limits leave no gearbox: {counted}."
+    nearest = 100.0 * float(boxes[0].error)
+    return f"No gearbox keeps all ratios within the tolerance: the best is off by {nearest:.3g} %; {counted}."

@@ -1,0 +1,121 @@
+"""A finished layshaft gearbox measured against its problem: its power paths as trains of meshes on fixed axes."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from kinematics.gear.planetary import GROUND, Train, speed_ratio
+from kinematics.gear.planetary import Mesh as Rolling
+from kinematics.gear.teeth import Gear, Mesh
+from synthesis.kinds.gearbox.design import (
+    GearPairTeeth,
+    LayshaftMechanism,
+    LayshaftMetrics,
+)
+from synthesis.kinds.gearbox.problem import LayshaftProblem
+from synthesis.model.answer import Check, Verification
+
+PASSING = 1e-9
+"""Room between the tips of reverse gears on layshaft and main shaft, in modules, that is no touch."""
+
+
+def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verification:
+    """Every demand on a layshaft gearbox, measured."""
+    errors = _errors(problem, mechanism)
+    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
+    sums = {one + other for one, other in _coaxial_pairs(mechanism)}
+    teeth = [z for pair in _meshing_pairs(mechanism) for z in pair]
+    low, high = problem.teeth.min, problem.teeth.max
+    least, most = problem.tooth_sum.min, problem.tooth_sum.max
+    checks = [
+        Check(
+            name="ratios",
+            passed=errors is not None and (limit is None or max(map(abs, errors)) <= limit),
+            value=None if errors is None else float(max(map(abs, errors))),
+            limit=problem.tolerance,
+        ),
+        Check(name="equal_tooth_sums", passed=len(sums) == 1 and least <= min(sums) and max(sums) <= most),
+        Check(name="tooth_limits", passed=all(low <= z <= high for z in teeth)),
+    ]
+    if problem.reverse is not None:
+        checks.append(Check(name="reverse_fits", passed=_reverse_fits(mechanism)))
+    if problem.interference == "refuse":
+        checks.append(Check(name="interference", passed=not _interfering(mechanism)))
+    return Verification(passed=all(check.passed for check in checks), checks=checks)
+
+
+def measure(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> LayshaftMetrics:
+    """Errors of the gears and the geometry of the meshes."""
+    errors = _errors(problem, mechanism)
+    assert errors is not None
+    return LayshaftMetrics(
+        max_error=float(max(map(abs, errors))),
+        errors=[float(error) for error in errors],
+        tooth_sum=mechanism.head.driver + mechanism.head.driven,
+        interfering=[GearPairTeeth(driver=one, driven=other) for one, other in _interfering(mechanism)],
+        contact_ratios=[_mesh(mechanism, pair).contact_ratio for pair in _meshing_pairs(mechanism)],
+    )
+
+
+def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Fraction] | None:
+    """Relative errors of all gears, reverse last; None where a gear is missing or states another ratio than it has."""
+    demanded = [Fraction(repr(ratio)) for ratio in problem.ratios]
+    if len(mechanism.gears) != len(demanded) or (mechanism.reverse is None) != (problem.reverse is None):
+        return None
+    head = Rolling("input", "layshaft", GROUND, mechanism.head.driver, mechanism.head.driven)
+    found = []
+    for gear, target in zip(mechanism.gears, demanded, strict=True):
+        ratio = Fraction(1)
+        if gear.layshaft is not None and gear.mainshaft is not None:
+            pair = Rolling("layshaft", "mainshaft", GROUND, gear.layshaft, gear.mainshaft)
+            ratio = speed_ratio(Train((head, pair)), "input", "mainshaft") or Fraction(0)
+        elif not problem.direct or target != 1:
+            return None
+        if ratio != Fraction(gear.ratio.numerator, gear.ratio.denominator):
+            return None
+        found.append(ratio / target - 1)
+    if mechanism.reverse is not None and problem.reverse is not None:
+        back = mechanism.reverse
+        pairs = (
+            Rolling("layshaft", "idler", GROUND, back.layshaft, back.idler),
+            Rolling("idler", "mainshaft", GROUND, back.idler, back.mainshaft),
+        )
+        ratio = speed_ratio(Train((head, *pairs)), "input", "mainshaft") or Fraction(0)
+        if ratio != Fraction(back.ratio.numerator, back.ratio.denominator) or ratio >= 0:
+            return None
+        found.append(-ratio / Fraction(repr(problem.reverse)) - 1)
+    return found
+
+
+def _coaxial_pairs(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:
+    """Pairs between input or main shaft and layshaft."""
+    head = mechanism.head.driver, mechanism.head.driven
+    return [head, *((g.layshaft, g.mainshaft) for g in mechanism.gears if g.layshaft and g.mainshaft)]
+
+
+def _meshing_pairs(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:
+    back = mechanism.reverse
+    idling = [] if back is None else [(back.layshaft, back.idler), (back.idler, back.mainshaft)]
+    return [*_coaxial_pairs(mechanism), *idling]
+
+
+def _reverse_fits(mechanism: LayshaftMechanism) -> bool:
+    """The reverse gears of layshaft and main shaft pass each other, and the idler's centre has a place on both."""
+    back = mechanism.reverse
+    if back is None:
+        return False
+    apart = mechanism.centre_distance / mechanism.module
+    one, other, idler = (0.5 * z for z in (back.layshaft, back.mainshaft, back.idler))
+    passing = apart - (one + 1.0) - (other + 1.0) >= PASSING
+    reach = one + idler, idler + other
+    return passing and sum(reach) >= apart and abs(reach[0] - reach[1]) <= apart
+
+
+def _mesh(mechanism: LayshaftMechanism, pair: tuple[int, int]) -> Mesh:
+    one, other = (Gear(z, mechanism.module, math.radians(mechanism.pressure_angle)) for z in pair)
+    return Mesh(one, other)
+
+
+def _interfering(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:
+    return [pair for pair in _meshing_pairs(mechanism) if _mesh(mechanism, pair).interferes]

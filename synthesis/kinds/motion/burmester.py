@@ -1,0 +1,429 @@
+"""Burmester's curves of four positions: all dyads, one parameter of them, sampled evenly on every branch.
+
+Three conditions leave a space of three dimensions for the points x of :mod:`synthesis.kinds.motion.sections`, in which
+the variety's quadrics meet in a curve of degree four; O/p and A/p along it are the centre-point and the circle-point
+curve, circular cubics both. Every combination of the quadrics with |A_k − O|² = |A_j − O|² is ruled by the lines
+
+    A_k − O = e^{iβ} (A_j − O),        β the rotation of the link from position j to position k.
+
+With X = A_k − O and Y = A_j − O as coordinates (two complex linear forms, hence all four real ones) the line is
+X = uρ, Y = conj(u)ρ with u = e^{iβ/2}, and meets the curve where another quadric vanishes, a quadratic form in ρ whose
+coefficients are trigonometric polynomials of degree one in β:
+
+    a ρ₁² + 2b ρ₁ρ₂ + c ρ₂² = 0,       Δ(β) = b² − ac.
+
+So the curve covers the circle of β twice where Δ > 0. Δ has at most four zeros: between two of them the sheets of the
+root join to one closed loop, and where there is none both sheets are loops. That is every real branch, and nothing has
+to be traced. With β = middle − half · cos t each loop is smooth in t, the sheet being the sign of sin t.
+
+Where the body takes two directions only (parallel positions), the point p = A = O = 0 is a vertex of the ruled quadric,
+X and Y fulfil a linear equation n·(X, Y) = 0, and each line from the vertex meets the curve once more: one loop,
+
+    ρ = i (ū n₁ + u n₂),        x = 2B(x₀, v) x₀ − B(x₀, x₀) v,
+
+with x₀ any point of the line, v the vertex and B the other quadric.
+
+A loop passes through p = 0 where a cubic runs to infinity along its asymptote; branches are cut there, or where the
+client's interest ends. Where the curve is reducible, whole lines of the ruling may belong to it (a body point that has
+the same place in three positions is a circle point for every centre on a line); they are sampled apart.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations, pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from synthesis.kinds.motion.dyads import DyadConditions, Dyads
+from synthesis.kinds.motion.sections import (
+    VARIETY,
+    condition_rows,
+    null_space,
+    pose_rows,
+)
+from synthesis.kinds.motion.task import (
+    Complex,
+    MotionTask,
+    Real,
+)
+
+COARSE = 512
+"""Samples of a loop before they are spread evenly."""
+
+SPREADINGS = 3
+"""Times that samples are spread anew from where they stand: each time the arc length between them is known better."""
+
+UNIT_CIRCLE = 1e-6
+"""Distance from the unit circle within which a zero of Δ counts as real; a false one splits a loop where it is thin."""
+
+RULED = 1e-7
+"""Size of a quadratic form, relative to the largest on the curve, below which the line of the ruling belongs to it."""
+
+SKEW = 1e-9
+"""Reciprocal condition of (X, Y) as coordinates below which they are none: half of the digits are lost."""
+
+EVEN_SHARE = 0.2
+"""Share of the samples that are spread evenly in the parameter until the arc length is known everywhere."""
+
+LONGEST_STEP = 0.3
+"""Step between samples, relative to the unit of arc length, beyond which it counts no more: a part of a branch that is
+seen too coarsely must not draw all samples to itself."""
+
+LONGEST_GAP = 3.0
+"""Distance of neighbouring samples, in steps of arc length, beyond which the branch between them is outside."""
+
+LEAST_SAMPLES = 8
+"""Samples of a branch at least, however short it is."""
+
+AT_INFINITY = 1e-9
+"""p of a unit point x below which a pivot counts as infinitely far away."""
+
+ON_CURVE = 1e-9
+"""Misfit of the quadrics, relative to p, up to which a sample is a dyad; the ends of
+very thin loops miss it, and designs are refined before they are verified."""
+
+
+class Loop(NamedTuple):
+    """A closed loop of the curve: β = middle − half · cos t on both sheets, or a whole turn of β on one (half = π)."""
+
+    middle: float
+    half: float
+    sheet: int  # ±1 of a loop that is one sheet, 0 of one that is both
+
+
+class Branch(NamedTuple):
+    """A connected piece of both curves, in order; task coordinates, shape (k,) each."""
+
+    dyads: Dyads
+    closed: bool
+
+
+class Cone(NamedTuple):
+    """The vertex v (shape (7,)), the equation n·(X, Y) = 0 (shape (2,), complex), and the other quadric (7, 7)."""
+
+    vertex: Real
+    normal: Complex
+    quadric: Real
+
+    def points(self, back: Real, beta: Real) -> Real:
+        """The point of the curve on the line of each β: unit vectors (len(beta), 7)."""
+        u = np.exp(0.5j * beta)
+        start = _on_line(back, beta, 1j * (np.conj(u) * self.normal[0] + u * self.normal[1]))
+        own = np.einsum("ki,ij,kj->k", start, self.quadric, start)
+        return _unit(2.0 * (start @ self.quadric @ self.vertex)[:, None] * start - own[:, None] * self.vertex)
+
+
+class BurmesterCurve(NamedTuple):
+    """The curve of a space of three dimensions.
+
+    Attributes
+    ----------
+    back : float64, shape (7, 4)
+        From (Re X, Im X, Re Y, Im Y) to x.
+    coefficients : float64, shape (3, 3)
+        a, b, c (rows) as combinations of 1, cos β, sin β.
+    loops : tuple of Loop
+        Every real branch.
+    lines : tuple of float
+        β of lines of the ruling that belong to the curve.
+    cone : Cone or None
+        For positions in two directions only.
+    """
+
+    back: Real
+    coefficients: Real
+    loops: tuple[Loop, ...]
+    lines: tuple[float, ...]
+    cone: Cone | None = None
+
+    def points(self, loop: Loop, t: Real) -> Real:
+        """Unit points x (len(t), 7) of a loop at parameters t in [0, 2π), continuous but for the sign."""
+        if self.cone is not None:
+            return self.cone.points(self.back, t)
+        beta = loop.middle - loop.half * np.cos(t) if loop.sheet == 0 else loop.middle + t
+        a, b, c = self.coefficients @ np.stack([np.ones_like(beta), np.cos(beta), np.sin(beta)])
+        root = np.sqrt(np.maximum(b * b - a * c, 0.0)) * (np.sign(np.sin(t)) if loop.sheet == 0 else loop.sheet)
+        # Of the two forms of each root of the quadratic, the one that does not cancel.
+        adding = b * root > 0.0
+        first = np.where(adding, -b - root, c)
+        second = np.where(adding, a, -b + root)
+        # a ρ₁² + 2b ρ₁ρ₂ + c ρ₂² with ρ₁ : ρ₂ = (−b − root) : a  and  c : (−b + root) are the same root.
+        rho = first + 1j * second
+        return _unit(_on_line(self.back, beta, rho))
+
+    def line_points(self, beta: float, t: Real) -> Real:
+        """Unit points x (len(t), 7) of a line that belongs to the curve, t in [0, π)."""
+        return _unit(_on_line(self.back, np.full_like(t, beta), np.exp(1j * t)))
+
+
+def burmester_curve(task: MotionTask, conditions: DyadConditions) -> BurmesterCurve | None:
+    """The curve of all dyads of four positions, or of fewer with linear conditions that leave one freedom.
+
+    None where the conditions leave another freedom, or a family of dyads for every β.
+    """
+    basis = null_space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
+    if basis.shape[1] != 4:
+        return None
+    for rank in (4, 3):
+        ruling = _ruling(task, basis, rank)
+        if ruling is not None:
+            break
+    else:
+        return None
+    back = basis @ ruling.back
+    # The real part of turn · quadrics is what the ruling lies on; the imaginary part cuts it.
+    quadric = np.tensordot([ruling.turn.imag, ruling.turn.real], VARIETY, 1)
+    coefficients = _quadratic(back.T @ quadric @ back)
+    if rank == 3:
+        cone = Cone(basis @ ruling.vertex, ruling.normal.view(np.complex128), quadric)
+        return BurmesterCurve(back, coefficients, (Loop(0.0, math.pi, 1),), (), cone)
+    return BurmesterCurve(back, coefficients, _loops(coefficients), _ruled_lines(coefficients))
+
+
+class Window(NamedTuple):
+    """Which dyads of a curve matter, and how their distances count, in task coordinates.
+
+    Attributes
+    ----------
+    centres : complex, shape (2,)
+        Middles of what is of interest for the fixed and the moving pivot.
+    reach : float
+        Farthest distance from them.
+    near : float
+        Arc length is measured relative to the distance from the middle, or to this where that is less; infinite for
+        plain arc length.
+    """
+
+    centres: tuple[complex, complex]
+    reach: float
+    near: float
+
+    def holds(self, dyads: Dyads) -> np.ndarray:
+        """Which dyads have both pivots within reach."""
+        fixed, moving = self.centres
+        return np.asarray(np.maximum(np.abs(dyads.fixed - fixed), np.abs(dyads.moving - moving)) <= self.reach)
+
+    def distances(self, dyads: Dyads) -> Real:
+        """Distance of each dyad from the one before, both pivots together."""
+        squares = np.zeros(len(dyads.fixed) - 1)
+        for pivots, centre in zip(dyads, self.centres, strict=True):
+            step = np.abs(np.diff(pivots))
+            if not math.isinf(self.near):
+                away = np.abs(pivots - centre)
+                step = step / np.hypot(self.near, np.minimum(away[1:], away[:-1]))
+            squares += step * step
+        return np.sqrt(squares)
+
+
+class _Strand(NamedTuple):
+    """One loop or line with parameters t along it, over one round, and the arc length from the first to each."""
+
+    loop: Loop | float
+    t: Real
+    arc: Real
+
+
+def cloud(curve: BurmesterCurve, window: Window, count: int, phase: float = 0.5) -> Dyads:
+    """About ``count`` dyads, evenly along all branches; ``phase``, 0 to 1, shifts them."""
+    strands = _strands(curve, window)
+    total = sum(strand.arc[-1] for strand in strands)
+    fixed, moving = [], []
+    for strand in strands:
+        number = int(count * strand.arc[-1] / total) if total > 0.0 else 0
+        if number:
+            t = np.interp((np.arange(number) + phase) * strand.arc[-1] / number, strand.arc, strand.t)
+            dyads, finite, _ = _dyads(curve, strand.loop, t)
+            kept = finite & window.holds(dyads)
+            fixed.append(dyads.fixed[kept])
+            moving.append(dyads.moving[kept])
+    none = np.empty(0, np.complex128)
+    return Dyads(np.concatenate([none, *fixed]), np.concatenate([none, *moving]))
+
+
+def branches(curve: BurmesterCurve, window: Window, count: int) -> list[Branch]:
+    """All branches inside a window, with about ``count`` samples at equal arc length."""
+    strands = _strands(curve, window)
+    total = sum(strand.arc[-1] for strand in strands)
+    found = []
+    for strand in strands:
+        number = max(int(count * strand.arc[-1] / total), LEAST_SAMPLES) if strand.arc[-1] > 0.0 else 0
+        if number:
+            t = np.interp(np.arange(number) * strand.arc[-1] / number, strand.arc, strand.t)
+            found += _pieces(curve, window, strand.loop, t, LONGEST_GAP * strand.arc[-1] / number)
+    return found
+
+
+def _pieces(curve: BurmesterCurve, window: Window, loop: Loop | float, t: Real, gap: float) -> list[Branch]:
+    """A loop cut where it leaves the window or passes infinity, which shows in a gap between samples."""
+    dyads, finite, through = _dyads(curve, loop, np.append(t, t[0] + _round(loop)))
+    inside = finite & window.holds(dyads)
+    joined = inside[1:] & inside[:-1] & ~through & (window.distances(dyads) <= gap)
+    if joined.all():
+        return [Branch(Dyads(dyads.fixed[:-1], dyads.moving[:-1]), closed=True)]
+    # From a gap onward, each run of joined samples is one piece.
+    start = int(np.flatnonzero(~joined)[0]) + 1
+    order = (np.arange(len(t)) + start) % len(t)
+    pieces, run = [], [] if not inside[order[0]] else [order[0]]
+    for one, other in pairwise(order):
+        if not joined[one]:
+            pieces.append(run)
+            run = []
+        if inside[other]:
+            run.append(other)
+    pieces.append(run)
+    return [Branch(Dyads(dyads.fixed[run], dyads.moving[run]), closed=False) for run in pieces if len(run) > 1]
+
+
+def _strands(curve: BurmesterCurve, window: Window) -> list[_Strand]:
+    loops: list[Loop | float] = [*curve.loops, *curve.lines]
+    return [_spread(curve, window, loop) for loop in loops]
+
+
+def _spread(curve: BurmesterCurve, window: Window, loop: Loop | float) -> _Strand:
+    """Parameters of a loop, dense where its arc length inside the window is."""
+    t = np.linspace(0.0, _round(loop), COARSE + 1)
+    arc = np.zeros_like(t)
+    for k in range(SPREADINGS + 1):
+        dyads, finite, through = _dyads(curve, loop, t)
+        inside = finite & window.holds(dyads)
+        with np.errstate(invalid="ignore", over="ignore"):
+            steps = window.distances(dyads)
+        cap = LONGEST_STEP * (window.reach if math.isinf(window.near) else 1.0)
+        steps = np.where((inside[1:] | inside[:-1]) & ~through, np.minimum(np.nan_to_num(steps, nan=cap), cap), 0.0)
+        arc = np.concatenate([[0.0], np.cumsum(steps)])
+        if k == SPREADINGS or arc[-1] == 0.0:
+            break
+        # A part of the samples stays where it is, so that what was overlooked can still be found.
+        even = arc / arc[-1] + EVEN_SHARE * t / t[-1]
+        t = np.interp(np.linspace(0.0, even[-1], COARSE + 1), even, t)
+    return _Strand(loop, t, arc)
+
+
+def _round(loop: Loop | float) -> float:
+    """The parameter's range: a full turn for a loop, half a turn for a line."""
+    return 2.0 * math.pi if isinstance(loop, Loop) else math.pi
+
+
+def _dyads(curve: BurmesterCurve, loop: Loop | float, t: Real) -> tuple[Dyads, np.ndarray, np.ndarray]:
+    """Dyads at parameters t, whether each is finite and true, and whether infinity lies before the next."""
+    points = curve.points(loop, t) if isinstance(loop, Loop) else curve.line_points(loop, t)
+    misfit = np.abs(np.einsum("ki,qij,kj->kq", points, VARIETY, points)).max(axis=1)
+    p = points[:, 0]
+    finite = (np.abs(p) > AT_INFINITY) & (misfit <= ON_CURVE * np.minimum(np.abs(p), 1.0))
+    divisor = np.where(np.abs(p) > AT_INFINITY, p, 1.0).astype(np.complex128)
+    dyads = Dyads((points[:, 3] + 1j * points[:, 4]) / divisor, (points[:, 1] + 1j * points[:, 2]) / divisor)
+    same_sign = (points[1:] * points[:-1]).sum(axis=1) > 0.0
+    through = (p[1:] * p[:-1] > 0.0) != same_sign
+    return dyads, finite, through
+
+
+class _Ruling(NamedTuple):
+    """Of a pair of positions: from (X, Y) to coordinates of the space (4, 4), and the turn between the two.
+
+    Where the rank is three: coordinates of the vertex, and the equation of X and Y, shape (4,) each.
+    """
+
+    back: Real
+    turn: complex
+    vertex: Real
+    normal: Real
+
+
+def _ruling(task: MotionTask, basis: Real, rank: int) -> _Ruling | None:
+    """The pair of positions for which X and Y, of that rank, are the best coordinates; None where they are none."""
+    best: _Ruling | None = None
+    condition = SKEW
+    for j, k in combinations(range(len(task.points)), 2):
+        forms = np.concatenate([_link_forms(task, k), _link_forms(task, j)]) @ basis
+        u, s, vh = np.linalg.svd(forms)
+        if s[rank - 1] > condition * s[0]:
+            condition = float(s[rank - 1] / s[0])
+            back = (vh[:rank].T / s[:rank]) @ u[:, :rank].T
+            best = _Ruling(back, complex(task.turns[k] - task.turns[j]), vh[-1], np.ascontiguousarray(u[:, -1]))
+    return best
+
+
+def _on_line(back: Real, beta: Real, rho: Complex) -> Real:
+    """x of X = uρ, Y = conj(u)ρ with u = e^{iβ/2}: shape (len(beta), 7)."""
+    u = np.exp(0.5j * beta)
+    x, y = u * rho, np.conj(u) * rho
+    points: Real = np.stack([x.real, x.imag, y.real, y.imag], axis=1) @ back.T
+    return points
+
+
+def _unit(points: Real) -> Real:
+    size = np.linalg.norm(points, axis=1)
+    unit: Real = points / np.where(size > 0.0, size, 1.0)[:, None]
+    return unit
+
+
+def _link_forms(task: MotionTask, k: int) -> Real:
+    """A_k − O = p c + r A − O, its real and imaginary part as forms in x: (2, 7)."""
+    r = complex(task.turns[k])
+    c = complex(task.points[k]) - r * complex(task.points[0])
+    return np.array(
+        [
+            [c.real, r.real, -r.imag, -1.0, 0.0, 0.0, 0.0],
+            [c.imag, r.imag, r.real, 0.0, -1.0, 0.0, 0.0],
+        ]
+    )
+
+
+def _quadratic(form: Real) -> Real:
+    """Coefficients a, b, c (rows; combinations of 1, cos β, sin β) of a form in (X, Y) on the lines of the ruling."""
+    values = []
+    for beta in (0.0, math.pi / 2.0, math.pi):
+        cos, sin = math.cos(beta / 2.0), math.sin(beta / 2.0)
+        line = np.array([[cos, -sin], [sin, cos], [cos, sin], [-sin, cos]])
+        on_line = line.T @ form @ line
+        values.append([on_line[0, 0], on_line[0, 1], on_line[1, 1]])
+    start, quarter, half = np.array(values)
+    mean = (start + half) / 2.0
+    return np.stack([mean, (start - half) / 2.0, quarter - mean], axis=1)
+
+
+def _loops(coefficients: Real) -> tuple[Loop, ...]:
+    """Every interval of β in which Δ is positive."""
+    a, b, c = coefficients
+
+    def discriminant(beta: float) -> float:
+        wave = np.array([1.0, math.cos(beta), math.sin(beta)])
+        return float((b @ wave) ** 2 - (a @ wave) * (c @ wave))
+
+    zeros = _zeros(_product(b, b) - _product(a, c))
+    if not len(zeros):
+        return (Loop(0.0, math.pi, 1), Loop(0.0, math.pi, -1)) if discriminant(0.0) > 0.0 else ()
+    ends = np.append(zeros[1:], zeros[0] + 2.0 * math.pi)
+    loops = [Loop(float(low + high) / 2.0, float(high - low) / 2.0, 0) for low, high in zip(zeros, ends, strict=True)]
+    return tuple(loop for loop in loops if discriminant(loop.middle) > 0.0)
+
+
+def _ruled_lines(coefficients: Real) -> tuple[float, ...]:
+    """β at which a, b and c vanish together: zeros of a² + 2b² + c² that are minima, hence zeros of its derivative."""
+    a, b, c = coefficients
+    squares = _product(a, a) + 2.0 * _product(b, b) + _product(c, c)
+    kept: list[float] = []
+    for beta in _zeros(squares * 1j * np.arange(-2, 3)):
+        size = np.linalg.norm(coefficients @ np.array([1.0, math.cos(beta), math.sin(beta)]))
+        if size <= RULED * np.linalg.norm(coefficients):
+            kept.append(float(beta))
+    return tuple(kept)
+
+
+def _product(f: Real, g: Real) -> Complex:
+    """Fourier coefficients, degrees −2 to 2, of the product of two combinations of 1, cos β, sin β."""
+    one, other = (np.array([(h[1] + 1j * h[2]) / 2.0, h[0], (h[1] - 1j * h[2]) / 2.0]) for h in (f, g))
+    product: Complex = np.convolve(one, other)
+    return product
+
+
+def _zeros(fourier: Complex) -> Real:
+    """Real zeros, ascending in [−π, π], of a real trigonometric polynomial with coefficients of degrees −2 to 2."""
+    size = np.abs(fourier).max()
+    if size == 0.0:
+        return np.empty(0)
+    roots = np.roots(fourier[::-1] / size)
+    zeros: Real = np.sort(np.angle(roots[np.abs(np.abs(roots) - 1.0) <= UNIT_CIRCLE]))
+    return zeros

@@ -1,0 +1,472 @@
+"""From what a client fixes of one side to the dyads that are tried there.
+
+n positions leave 5 − n free choices per dyad (Norton, Table 5-3). When the client makes them all, the dyads are solved
+for; when some are left open, the missing ones are drawn at random, many times, and a *cloud* of dyads results.
+
+Free pivots are drawn around the body: the moving pivot about P in the first position, the fixed pivot about the middle
+of the positions, at distances spread evenly in logarithm from a small part of the task's size to some multiples of it.
+A region that the client gives is filled evenly instead, and dyads with a pivot outside it are left out.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion import burmester
+from synthesis.kinds.motion.dyads import (
+    FAR,
+    DyadConditions,
+    Dyads,
+    Line,
+    directions_hold,
+    linear_family,
+    settled,
+    solve_dyads,
+)
+from synthesis.kinds.motion.problem import (
+    DyadChoices,
+    MotionProblem,
+    whole_point,
+)
+from synthesis.kinds.motion.sections import (
+    SliderDyad,
+    pose_rows,
+    section,
+)
+from synthesis.kinds.motion.task import (
+    Complex,
+    MotionTask,
+    Real,
+)
+from synthesis.model.linkage_statement import Constraints, Region
+from synthesis.model.statement import PartialPoint
+
+NEAR_REACH, FAR_REACH = 0.05, 6.0
+"""Free pivots are drawn between these distances, in task sizes; beyond them links get too short or too long."""
+
+CURVE_REACH = 50.0
+"""Dyads of Burmester's curves with a pivot farther away than this many task sizes are no candidates."""
+
+CURVE_NEAR = 0.15
+"""Within this distance of the body, in task sizes, samples of the curves stand as densely as their arc length is; far
+from it, as its logarithm is."""
+
+SECTIONS = 400
+"""Random sections, each with at most four dyads, from which a family is drawn that has no simpler description."""
+
+NEWTON_CLOUD = 4000
+"""Dyads of a cloud at most where each takes Newton's method: some tenths of a second."""
+
+NEAREST_SAMPLES = 4000
+"""Samples of a curve among which the pivot nearest to a stated one is looked for."""
+
+REDUNDANT = 1e-9
+"""Part of a position's condition that is new, below which it adds nothing to the conditions of the others."""
+
+REGION_DRAWS = 6
+"""Draws of a whole cloud at most, until half of it lies in the client's regions."""
+
+SAME_PLACE = 1e-12
+"""Angles (radians) and lengths (task sizes) that differ by less are equal: rounding of the positions, no motion."""
+
+_NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
+
+
+class Cloud(NamedTuple):
+    """The dyads of one side.
+
+    Attributes
+    ----------
+    dyads : Dyads
+        Task coordinates, shape (count,).
+    sampled : bool
+        The choices leave some freedom, and these dyads are drawn from what it allows.
+    complete : bool
+        These are all the dyads that satisfy the client's choices; where there are none, that is proved.
+    reason : str
+        Why there are none, in a sentence about "the side".
+    remark : str
+        What else a client should know of them, in sentences about "the side".
+    sliders : tuple of SliderDyad
+        Dyads with a pivot at infinity that satisfy the choices, where all are known.
+    """
+
+    dyads: Dyads
+    sampled: bool
+    complete: bool
+    reason: str = ""
+    remark: str = ""
+    sliders: tuple[SliderDyad, ...] = ()
+
+
+def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoices) -> DyadConditions:
+    """The client's choices of one side in task coordinates and radians."""
+
+    def pivot(point: PartialPoint | None) -> Complex | None:
+        whole = whole_point(point)
+        return None if whole is None else np.asarray(task.to_task(whole))
+
+    def line(point: PartialPoint | None) -> tuple[Line, ...]:
+        if point is None or whole_point(point) is not None:
+            return ()
+        normal, offset = (1.0 + 0j, point[0]) if point[1] is None else (1j, point[1])
+        assert offset is not None
+        return (Line(normal, (offset - (normal.conjugate() * task.origin).real) / task.size),)
+
+    def angle(degrees: float | None) -> Real | None:
+        return None if degrees is None else np.asarray(math.radians(degrees))
+
+    vector = choices.coupler_vector
+    length = None if vector is None or vector.length is None else np.asarray(vector.length / task.size)
+    moving = pivot(choices.moving_pivot)
+    if vector is not None and vector.length is not None and vector.angle is not None:
+        moving = np.asarray(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
+        vector = length = None
+    fixed, fixed_lines = pivot(choices.fixed_pivot), line(choices.fixed_pivot)
+    if problem.ground_line is not None and fixed is None:
+        normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
+        ground = Line(normal, -problem.ground_line.offset(task.origin) / task.size)
+        fixed, fixed_lines = (_crossing(fixed_lines[0], ground), ()) if fixed_lines else (None, (ground,))
+    return DyadConditions(
+        fixed_pivot=fixed,
+        moving_pivot=moving,
+        fixed_lines=fixed_lines,
+        moving_lines=line(choices.moving_pivot),
+        rotations=tuple(angle(b) for b in choices.rotations or [None] * (len(task.points) - 1)),
+        link_angle=angle(choices.link_angle),
+        coupler_length=length,
+        coupler_angle=None if vector is None else angle(vector.angle),
+    )
+
+
+def _crossing(one: Line, other: Line) -> Complex:
+    """Where two lines meet that are not parallel."""
+    return np.asarray(
+        1j * (other.offset * one.normal - one.offset * other.normal) / (one.normal.conjugate() * other.normal).imag
+    )
+
+
+def side_dyads(
+    task: MotionTask, problem: MotionProblem, choices: DyadChoices, rng: np.random.Generator, count: int
+) -> Cloud:
+    """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open."""
+    reason = why_no_dyads(task)
+    if reason:
+        return Cloud(_NO_DYADS, False, True, reason)
+    conditions, constraints = stated_conditions(task, problem, choices), problem.constraints
+    essential, conditions = _without_redundant_positions(task, conditions)
+    free = 5 - len(essential.points) - conditions.count()
+    if conditions.linear and (free <= 0 or _pivot(conditions) is not None):
+        cloud = _of_family(essential, conditions, constraints, rng, count)
+    elif free <= 0:
+        cloud = _of_section(essential, conditions, rng)
+    elif free == 1 and len(essential.points) == 4:
+        cloud = _of_curve(essential, conditions, constraints, rng, count)
+    else:
+        cloud = _of_draws(essential, conditions, constraints, rng, count)
+    if len(essential.points) == len(task.points):
+        return cloud
+    return cloud._replace(
+        remark=f"A dyad that meets {len(essential.points)} of the positions meets all {len(task.points)}. "
+        f"{cloud.remark}"
+    )
+
+
+def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -> tuple[MotionTask, DyadConditions]:
+    """The task and the choices without positions whose condition follows from those of the others.
+
+    So it is for a translation along a circle, where three positions say all. A position whose rotation is stated is
+    kept.
+    """
+    rows = pose_rows(task)
+    if np.linalg.svd(rows, compute_uv=False)[-1] > REDUNDANT:
+        return task, conditions
+    kept: list[int] = []
+    for k, row in enumerate(rows):
+        others = rows[kept]
+        new = row - others.T @ np.linalg.lstsq(others.T, row, rcond=None)[0] if kept else row
+        if np.linalg.norm(new) > REDUNDANT or conditions.rotations[k] is not None:
+            kept.append(k)
+    if len(kept) == len(rows):
+        return task, conditions
+    order = [0, *(k + 1 for k in kept)]
+    reduced = task._replace(points=task.points[order], turns=task.turns[order])
+    return reduced, replace(conditions, rotations=tuple(conditions.rotations[k] for k in kept))
+
+
+def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
+    """The dyads of as many conditions as a dyad has freedoms, each once; or a cloud where they repeat one another."""
+    found = section(task, conditions)
+    if not found.finite:
+        cloud = _of_random_sections(task, conditions, rng)
+        return cloud._replace(remark="A whole family of dyads satisfies the positions and choices of the side.")
+    dyads = found.dyads
+    if conditions.count() == 5 - len(task.points):
+        refined, converged = solve_dyads(task, conditions, dyads)
+        kept = converged & ~found.double
+        dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
+    remark = ""
+    if found.double.any():
+        remark = "Two dyads of the side coincide (a double root) and are counted as one."
+    text = "No dyad with two pins satisfies the positions and choices of the side."
+    return Cloud(dyads, False, found.proved, text, remark, found.sliders)
+
+
+def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
+    """Dyads of a family, met by random lines on which a pivot is to lie."""
+    fixed, moving = [], []
+    for k in range(SECTIONS):
+        centre = complex(_around(task.points.mean(keepdims=True), rng, 1)[0])
+        normal = cmath.rect(1.0, rng.uniform(-math.pi, math.pi))
+        line = Line(normal, (normal.conjugate() * centre).real)
+        lines = (
+            replace(conditions, fixed_lines=(*conditions.fixed_lines, line))
+            if k % 2
+            else replace(conditions, moving_lines=(*conditions.moving_lines, line))
+        )
+        found = section(task, lines)
+        near = np.maximum(np.abs(found.dyads.fixed), np.abs(found.dyads.moving)) <= CURVE_REACH
+        fixed.append(found.dyads.fixed[near])
+        moving.append(found.dyads.moving[near])
+    text = "A family of dyads satisfies the positions and choices of the side, but none was met within reach."
+    return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, text)
+
+
+def _of_curve(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """Dyads spread along Burmester's curve of four positions."""
+    curve = burmester.burmester_curve(task, conditions)
+    if curve is None:
+        return _of_random_sections(task, conditions, rng)
+    dyads = burmester.cloud(curve, curve_window(task), count, float(rng.uniform()))
+    dyads = settled(task, dyads)
+    good = _within(task, constraints.fixed_pivot_region, dyads.fixed)
+    good &= _within(task, constraints.moving_pivot_region, dyads.moving)
+    text = "No dyad of the side has its pivots within reach and in the regions that are given."
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
+
+
+def curve_window(task: MotionTask) -> burmester.Window:
+    """What matters of Burmester's curves in a search."""
+    return burmester.Window((complex(task.points.mean()), complex(task.points[0])), CURVE_REACH, CURVE_NEAR)
+
+
+def _of_draws(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """A cloud of dyads, two or more freedoms of which are drawn at random."""
+    if _pivot(conditions) is not None or conditions.count() > 0:
+        count = min(count, NEWTON_CLOUD)
+    fixed, moving = [], []
+    for _ in range(REGION_DRAWS):
+        start = _sampled_pivots(task, constraints, rng, count)
+        for pinned, share in _pinned(task, conditions, start, constraints, rng):
+            dyads, found = solve_dyads(task, pinned, share)
+            found &= _within(task, constraints.fixed_pivot_region, dyads.fixed)
+            found &= _within(task, constraints.moving_pivot_region, dyads.moving)
+            fixed.append(dyads.fixed[found])
+            moving.append(dyads.moving[found])
+        if sum(map(len, fixed)) >= count // 2:
+            break
+    cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])
+    return Cloud(cloud, True, False, "No dyad was met that satisfies the choices and regions of the side.")
+
+
+def _within(task: MotionTask, region: Region | None, points: Complex) -> NDArray[np.bool_]:
+    """Which points, in task coordinates, lie in a region of the problem's coordinates."""
+    if region is None:
+        return np.ones(points.shape, np.bool_)
+    return np.array([region.contains(z) for z in task.origin + points * task.size], np.bool_)
+
+
+def why_no_dyads(task: MotionTask) -> str:
+    """Why no pin-jointed dyad of positive length exists for the positions, in a sentence; empty where some do.
+
+    There is none for a translation through three or more positions, unless P moves on a circle; nor for a rotation
+    about one point, which every dyad would have for its fixed pivot.
+    """
+    if len(task.points) < 3:
+        return ""
+    if np.abs(task.turns - 1.0).max() <= SAME_PLACE:
+        sides = task.points[1:] - task.points[0]
+        if np.abs((np.conj(sides[0]) * sides).imag).max() <= SAME_PLACE:
+            return (
+                "The positions are a translation along a straight line: every point of the body moves on a line, "
+                "so only a slider can guide it and no pin-jointed fourbar exists."
+            )
+        if np.linalg.svd(pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANT:
+            return ""
+        return (
+            "The positions are a translation, and not along a circle: every point of the body takes the same places "
+            "as P, so no link of one length can hold it and no pin-jointed fourbar exists."
+        )
+    turning = int(np.abs(task.turns - 1.0).argmax())
+    pole = _pole(task, turning)
+    if np.abs(task.images(np.asarray(pole)) - pole).max() > SAME_PLACE * (1.0 + abs(pole)):
+        return ""
+    return (
+        "The positions are a rotation about one point: a pin joint there carries the body, "
+        "and every dyad would have it for its fixed pivot, so no fourbar exists."
+    )
+
+
+def _pole(task: MotionTask, k: int) -> complex:
+    """Displacement pole of positions 1 and k: the point that A_k = A fixes."""
+    turn = task.turns[k]
+    return complex((task.points[k] - turn * task.points[0]) / (1.0 - turn))
+
+
+def _pivot(conditions: DyadConditions) -> Complex | None:
+    """The pivot that is stated, if one is."""
+    return conditions.moving_pivot if conditions.fixed_pivot is None else conditions.fixed_pivot
+
+
+def _of_family(
+    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+) -> Cloud:
+    """The dyads of linear conditions: one, none, or a cloud where a freedom is left or a pivot is a pole."""
+    family = linear_family(task, conditions)
+    if family is None:
+        return Cloud(_NO_DYADS, False, True, _why_contradictory(task, conditions))
+    free = len(family.directions)
+    if not free:
+        reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
+        if reach >= FAR:
+            text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; a slider stands for that."
+            return Cloud(_NO_DYADS, False, False, text)
+        return _forwards(task, conditions, family.dyad, sampled=False)
+    distance = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(FAR_REACH), (count, free)))
+    moved = (distance * rng.choice([-1.0, 1.0], (count, free))) @ family.directions
+    fixed = family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1])
+    moving = family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
+    good = _within(task, constraints.fixed_pivot_region, fixed) & _within(task, constraints.moving_pivot_region, moving)
+    return _forwards(task, conditions, Dyads(fixed[good], moving[good]), sampled=True)
+
+
+def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool) -> Cloud:
+    """Those dyads that meet stated directions forwards."""
+    good = directions_hold(task, conditions, dyads)
+    text = "The choices of the side are met by a link or coupler vector of negative length only."
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, not sampled, text)
+
+
+def _why_contradictory(task: MotionTask, conditions: DyadConditions) -> str:
+    """Why linear conditions have no solution."""
+    pivot = _pivot(conditions)
+    if pivot is None:
+        return "The rotations of the side belong to no link of finite length."
+    if len(task.points) > 3:
+        return f"The stated pivot of the side is on no dyad that meets all positions. {_nearest(task, conditions)}"
+    return (
+        "The stated pivot of the side has its images on one straight line: "
+        "a slider, not a pin-jointed link, would guide it. No design exists with these choices."
+    )
+
+
+def _nearest(task: MotionTask, conditions: DyadConditions) -> str:
+    """Which pivots near the stated one belong to dyads, in a sentence."""
+    nothing = DyadConditions(rotations=(None,) * (len(task.points) - 1))
+    if len(task.points) == 4:
+        curve = burmester.burmester_curve(task, nothing)
+        dyads = _NO_DYADS if curve is None else burmester.cloud(curve, curve_window(task), NEAREST_SAMPLES)
+    else:
+        dyads = section(task, nothing).dyads
+    if not len(dyads.fixed):
+        return "No pivot within reach is."
+    moving = conditions.fixed_pivot is None
+    pivots, stated = (dyads.moving, conditions.moving_pivot) if moving else (dyads.fixed, conditions.fixed_pivot)
+    assert stated is not None
+    nearest = task.to_problem(complex(pivots[np.abs(pivots - stated).argmin()]))
+    return f"The nearest that is lies at about ({nearest.real:.6g}, {nearest.imag:.6g})."
+
+
+def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.Generator, count: int) -> Dyads:
+    """Random fixed and moving pivots, shape (count,) each."""
+    middle = task.points.mean(keepdims=True)
+    fixed = _filled(task, constraints.fixed_pivot_region, rng, count)
+    moving = _filled(task, constraints.moving_pivot_region, rng, count)
+    return Dyads(
+        _around(middle, rng, count) if fixed is None else fixed,
+        _around(task.points[:1], rng, count) if moving is None else moving,
+    )
+
+
+def _around(centre: Complex, rng: np.random.Generator, count: int, reach: float = FAR_REACH) -> Complex:
+    radius = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(reach), count))
+    return np.asarray(centre + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, count)))
+
+
+def _filled(task: MotionTask, region: Region | None, rng: np.random.Generator, count: int) -> Complex | None:
+    if region is None:
+        return None
+    return np.asarray((rng.uniform(*region.x, count) + 1j * rng.uniform(*region.y, count) - task.origin) / task.size)
+
+
+def _pinned(
+    task: MotionTask, conditions: DyadConditions, pivots: Dyads, constraints: Constraints, rng: np.random.Generator
+) -> list[tuple[DyadConditions, Dyads]]:
+    """Random conditions added until a dyad is determined; each way of doing so with its share of the pivots as starts.
+
+    Where both pivots are open, half of the cloud is drawn by moving pivots and half by fixed pivots: each finds dyads
+    that the other seldom meets. With a region for one of them alone, all are drawn there.
+    """
+    conditions = _on_lines(conditions, pivots)
+    missing = 5 - len(task.points) - conditions.count()
+    stated_vector = (conditions.coupler_length, conditions.coupler_angle).count(None) < 2
+    if missing >= 2 and _pivot(conditions) is None and not stated_vector and conditions.link_angle is None:
+        regions = constraints.moving_pivot_region, constraints.fixed_pivot_region
+        moving_share = 0.5 if (regions[0] is None) == (regions[1] is None) else float(regions[0] is not None)
+        half = int(len(pivots.fixed) * moving_share)
+        by_moving = Dyads(pivots.fixed[:half], pivots.moving[:half])
+        by_fixed = Dyads(pivots.fixed[half:], pivots.moving[half:])
+        return [
+            (
+                _with_numbers(task, replace(conditions, moving_pivot=by_moving.moving), by_moving, missing - 2, rng),
+                by_moving,
+            ),
+            (
+                _with_numbers(task, replace(conditions, fixed_pivot=by_fixed.fixed), by_fixed, missing - 2, rng),
+                by_fixed,
+            ),
+        ]
+    return [(_with_numbers(task, conditions, pivots, missing, rng), pivots)]
+
+
+def _on_lines(conditions: DyadConditions, pivots: Dyads) -> DyadConditions:
+    """A pivot that is to lie on a line put there: what is left is linear in the other pivot."""
+    if conditions.fixed_lines and conditions.moving_pivot is None:
+        line = conditions.fixed_lines[0]
+        gap = (line.normal.conjugate() * pivots.fixed).real - line.offset
+        return replace(conditions, fixed_pivot=pivots.fixed - gap * line.normal, fixed_lines=())
+    if conditions.moving_lines and conditions.fixed_pivot is None:
+        line = conditions.moving_lines[0]
+        gap = (line.normal.conjugate() * pivots.moving).real - line.offset
+        return replace(conditions, moving_pivot=pivots.moving - gap * line.normal, moving_lines=())
+    return conditions
+
+
+def _with_numbers(
+    task: MotionTask, conditions: DyadConditions, pivots: Dyads, missing: int, rng: np.random.Generator
+) -> DyadConditions:
+    """Add ``missing`` single random numbers: the other half of a coupler vector, rotations, then a coupler angle."""
+    vector = task.points[0] - pivots.moving
+    if missing and conditions.fixed_pivot is None:
+        if conditions.coupler_length is None and conditions.coupler_angle is not None:
+            conditions, missing = replace(conditions, coupler_length=np.abs(vector)), missing - 1
+        elif conditions.coupler_angle is None and conditions.coupler_length is not None:
+            conditions, missing = replace(conditions, coupler_angle=np.angle(vector)), missing - 1
+    rotations = list(conditions.rotations)
+    for k, rotation in enumerate(rotations):
+        if missing and rotation is None:
+            rotations[k] = rng.uniform(-np.pi, np.pi, len(vector))
+            missing -= 1
+    if missing:
+        conditions = replace(conditions, coupler_angle=np.angle(vector))
+    return replace(conditions, rotations=tuple(rotations))

@@ -1,0 +1,152 @@
+"""A driver dyad on the coupler: a crank and a link that move a finished fourbar by a point of its coupler.
+
+Where the fourbar's links turn too far for a rocker, or one of them turns back, a pin C of the coupler is pulled along
+its path instead: Stephenson's sixbar of the third kind, driven from its far pivot. With C₁ and Cₙ the ends of the path
+and r the distance of C from the crank's pivot O6, crank a and link b are those of the rocker's driver,
+
+    a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2,
+
+and the crank turns through, with the body's end positions at its two dead centres, if r rises or falls all the way from
+C₁ to Cₙ. The link pushes along D C; the transmission angle is that between it and the normal of C's path, for both
+places of D at each place of C. So C and O6 are free, and all of a grid of both are looked at.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage import positions
+from synthesis.kinds.motion.driver_joints import (
+    ROOM,
+    coupler_driven,
+    diagonal,
+)
+from synthesis.kinds.motion.problem import DriverDyad
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    LinkageDesign,
+    SixbarMechanism,
+)
+from synthesis.model.linkages import driven_fourbar
+from synthesis.outcome.ranking import UNEVEN
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+STEPS = 49
+"""Places of C on its path that are looked at; what lies between is measured by the verification."""
+
+REACHES = np.array([0.0, 0.35, 0.7, 1.1, 1.6])
+"""Distances of C from the coupler's middle, in lengths of the coupler."""
+
+AROUND = np.linspace(-np.pi, np.pi, 17)[:-1]
+"""Directions of C on the coupler from its line A → B."""
+
+DISTANCES = np.geomspace(0.6, 5.0, 11)
+DIRECTIONS = np.linspace(-np.pi, np.pi, 49)[:-1]
+"""Places of O6: distance from the middle of the chord C₁ Cₙ in its lengths, and direction from it."""
+
+LEAST_SINE = 0.1
+"""Drivers that push at a worse angle than 6° are not looked at."""
+
+LEAST_PATH = 1e-3
+"""A chord shorter than this share of the linkage's size is no way for a crank."""
+
+APART = 0.3
+"""Drivers that are kept differ in C or O6 by this share of the linkage's size."""
+
+
+def coupler_drivers(
+    design: LinkageDesign, mechanism: FourbarMechanism, wanted: DriverDyad, count: int
+) -> list[tuple[float, SixbarMechanism]]:
+    """The best drivers of a fourbar's coupler, at most ``count``, with their scores, best first."""
+    fourbar = driven_fourbar(mechanism)
+    inputs = np.radians([target.input_angle for target in design.targets])
+    steps = np.diff(inputs)
+    if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
+        return []
+    at = positions(fourbar.linkage, np.linspace(inputs[0], inputs[-1], STEPS), fourbar.assembly)
+    if not at.valid.all():
+        return []
+    joints = np.concatenate([at.a, at.b, at.p, [fourbar.linkage.input_pivot, fourbar.linkage.output_pivot]])
+    alone = float(diagonal(joints))
+    pins, paths = _paths(at.a, at.b)
+    long = np.abs(paths[:, -1] - paths[:, 0]) > LEAST_PATH * alone
+    pins, paths = pins[long], paths[long]
+    chord = paths[:, -1] - paths[:, 0]
+    around = (DISTANCES[:, None] * np.exp(1j * DIRECTIONS)).ravel()
+    pivots = 0.5 * (paths[:, :1] + paths[:, -1:]) + chord[:, None] * around
+    along = np.gradient(paths, axis=1)
+    score = np.empty(pivots.shape)
+    least_sines(paths, along / np.maximum(np.abs(along), np.finfo(np.float64).tiny), pivots, score)
+    first, last = (np.abs(paths[:, k, None] - pivots) for k in (0, -1))
+    with np.errstate(divide="ignore"):
+        uneven = (first + last) / np.abs(last - first)
+    score = score / (1.0 + ((_whole(joints, paths, pivots) / alone - 1.0) / ROOM) ** 2)
+    score = score / (1.0 + (uneven / UNEVEN) ** 2)
+    if wanted.pivot_region is not None:
+        score = np.where(np.vectorize(wanted.pivot_region.contains)(pivots), score, 0.0)
+    found: list[tuple[float, SixbarMechanism]] = []
+    kept: list[tuple[complex, complex]] = []
+    for flat in np.argsort(-score, axis=None, kind="stable"):
+        k, m = np.unravel_index(int(flat), score.shape)
+        if len(found) == count or not score[k, m] > 0.0:
+            break
+        o6, c = complex(pivots[k, m]), complex(paths[k, 0])
+        if all(abs(o6 - z) + abs(c - w) > APART * alone for z, w in kept):
+            kept.append((o6, c))
+            found.append((float(score[k, m]), coupler_driven(mechanism, c, o6, complex(paths[k, -1]))))
+    return found
+
+
+def _whole(joints: Complex, paths: Complex, pivots: Complex) -> Real:
+    """Diagonal of the box around a linkage's joints, the ends of C's path and O6, pins × pivots."""
+
+    def span(of: Complex, ends: Complex, more: Complex, part: str) -> Real:
+        given, path, other = (getattr(z, part) for z in (of, ends, more))
+        low, high = np.minimum(given.min(), path.min(axis=1)), np.maximum(given.max(), path.max(axis=1))
+        return np.asarray(np.maximum(high[:, None], other) - np.minimum(low[:, None], other))
+
+    ends = paths[:, [0, -1]]
+    return np.hypot(*(span(joints, ends, pivots, part) for part in ("real", "imag")))
+
+
+def _paths(a: Complex, b: Complex) -> tuple[Complex, Complex]:
+    """Pins C in the coupler's frame (A the origin, B at 1), and their paths, shape (pins, steps)."""
+    pins: Complex = np.unique(0.5 + (REACHES[:, None] * np.exp(1j * AROUND)).ravel())
+    return pins, a + (b - a) * pins[:, None]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def least_sines(paths: Complex, along: Complex, pivots: Complex, least: Real) -> None:
+    """Least sine of the transmission angle into ``least``, pins × pivots; 0 where C's distance turns back on its way.
+
+    ``paths`` and their unit tangents ``along`` are pins × steps, ``pivots`` pins × pivots.
+    """
+    pins, steps = paths.shape
+    for k in range(pins):
+        for m in range(pivots.shape[1]):
+            o6 = pivots[k, m]
+            first, last = abs(paths[k, 0] - o6), abs(paths[k, steps - 1] - o6)
+            crank, link = 0.5 * abs(last - first), 0.5 * (last + first)
+            before, found = first, 1.0
+            for n in range(steps):
+                reach = o6 - paths[k, n]
+                r = abs(reach)
+                if n and not (r - before) * (last - first) > 0.0:
+                    found = 0.0
+                    break
+                before = r
+                forward = reach * along[k, n].conjugate() / r
+                cosine = min(max((r * r + link * link - crank * crank) / (2.0 * r * link), -1.0), 1.0)
+                sine = math.sqrt(1.0 - cosine * cosine)
+                one, other = forward.real * cosine - forward.imag * sine, forward.real * cosine + forward.imag * sine
+                found = min(found, abs(one), abs(other))
+                if not found >= LEAST_SINE:
+                    found = 0.0
+                    break
+            least[k, m] = found

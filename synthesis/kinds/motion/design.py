@@ -1,0 +1,32 @@
+"""Answers to problems of motion generation."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Result,
+)
+from synthesis.model.linkage_answer import LinkageDesign
+
+
+class BurmesterBranch(Answer):
+    """A connected piece of Burmester's curves, at equal steps of arc length of both together.
+
+    A moving pivot at ``circle_points[k]`` in the first position has its fixed pivot at ``centre_points[k]``. ``closed``
+    branches return to their beginning; the others leave the drawn region, along an asymptote or not.
+    """
+
+    circle_points: list[Point]
+    centre_points: list[Point]
+    closed: bool
+
+
+class MotionResult(Result[LinkageDesign]):
+    """Linkages that carry the body through the positions."""
+
+    curves: list[BurmesterBranch] = Field(
+        default=[], description="For four positions: all dyads that carry the body through them."
+    )

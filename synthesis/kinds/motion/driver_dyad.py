@@ -1,0 +1,248 @@
+"""A driver dyad: a crank and a link that move a finished fourbar between its end positions (Norton, Sec. 3.4).
+
+The driven link turns from the first position to the last. A pin C on it, r from its fixed pivot O, goes from C₁ to Cₙ;
+a crank-rocker with the crank's pivot O6 has its rocker's limits there when
+
+    crank a = (|O6 Cₙ| − |O6 C₁|)/2,    link b = (|O6 Cₙ| + |O6 C₁|)/2  (or with C₁ and Cₙ exchanged),
+
+the crank and the link lying in one line at both ends. So O6 is free in the plane; Norton's construction (Example 3-4)
+puts it on the chord, with a ratio of times of 1. The stage's shape, in units of r, depends on O6 alone: shapes are
+ranked by the least transmission angle, which stands where the crank lies on the line O O6, and by their size. Where C
+is on the link and how long r is only turns and scales the stage: it is put where the whole is small, or where O6 lies
+in the client's region. Where no link of the ground can be driven so, the coupler is (:mod:`coupler_driver`).
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage import positions
+from synthesis.kinds.motion.coupler_driver import coupler_drivers
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.driver_joints import (
+    ROOM,
+    diagonal,
+    rocker_driven,
+)
+from synthesis.kinds.motion.problem import DriverDyad, MotionProblem
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    LinkageDesign,
+    SixbarMechanism,
+)
+from synthesis.model.linkages import driven_fourbar, to_complex
+from synthesis.outcome.ranking import (
+    BULKY,
+    UNEVEN,
+    ranked,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WIDEST_SWING = math.radians(150.0)
+"""Swing above which a crank-rocker transmits its motion badly; 180° is impossible."""
+
+LEAST_SWING = 1e-3
+"""Radians; a link that turns less needs no crank."""
+
+DISTANCES = np.linspace(0.4, 5.0, 70)
+DIRECTIONS = np.linspace(-np.pi, np.pi, 181)[:-1]
+"""Places of O6 that are looked at: distance from O in units of r, and direction from the middle of the swing."""
+
+SHAPES = 12
+"""Shapes of the stage, the best, that are put on the linkage."""
+
+ARMS = np.array([0.4, 0.55, 0.75, 1.0, 1.35, 1.8])
+"""Lengths of r that are looked at, in lengths of the driven link."""
+
+PLACES = np.linspace(-np.pi, np.pi, 49)[:-1]
+"""Directions of C on the driven link, from the line of its pins."""
+
+USABLE = 20.0
+"""Degrees; where the client sets no limit, sixbars with a smaller transmission angle are offered only if there are no
+others."""
+
+TRIED = 3
+"""Drivers that are verified for a link, the best first, until one passes."""
+
+SPARE = 4
+"""Linkages that are looked for, for each design wanted: some turn too far to be driven so."""
+
+LEAST_SPARE = 40
+"""Linkages that are looked for at least."""
+
+
+class _Stage(NamedTuple):
+    """Shapes in units of r: O6 from O, the middle of the swing along the real axis; crank, link and score."""
+
+    pivot: Complex
+    crank: Real
+    link: Real
+    score: Real
+
+
+def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
+    """The fourbars of a result, each with a driver dyad, verified as sixbars."""
+    wanted = problem.driver
+    assert wanted is not None
+    passed: list[LinkageDesign] = []
+    poor: list[LinkageDesign] = []
+    failed: list[LinkageDesign] = []
+    tried = without = 0
+    for n, design in enumerate(result.designs):
+        progress(0.9 + 0.1 * n / len(result.designs), "adding driver dyads")
+        if len(passed) == problem.max_designs:
+            break
+        tried += 1
+        best = _driven(problem, design, wanted)
+        if best is None or not best.verification.passed:
+            without += 1
+            failed += [] if best is None else [best]
+        elif best.metrics.min_transmission_angle < USABLE and problem.constraints.min_transmission_angle is None:
+            poor.append(best)
+        else:
+            passed.append(best)
+    # Designs that transmit badly are offered where there are no others.
+    accepted = passed or poor
+    shown = [*accepted, *(failed if problem.include_failed else [])]
+    rejected = dict(result.search.rejected)
+    left = result.search.accepted - len(accepted) - without
+    rejected["outranked"] = rejected.get("outranked", 0) + left
+    rejected["driver_dyad"] = without
+    search = result.search.model_copy(
+        update={
+            "method": f"{result.search.method}, driver_dyad",
+            "accepted": len(accepted),
+            "rejected": {name: count for name, count in rejected.items() if count},
+            "complete": False,
+        }
+    )
+    text = f"{len(accepted)} of {tried} fourbars were given a driver dyad whose crank turns through. {result.summary}"
+    return result.model_copy(
+        update={
+            "designs": ranked(shown, problem.rank_by)[: problem.max_designs],
+            "search": search,
+            "summary": text,
+        }
+    )
+
+
+def undriven(problem: MotionProblem) -> MotionProblem:
+    """The problem of the fourbar alone: pins on both sides, and its own input need not turn through."""
+    pins = {"dyad": "RR"}
+    return problem.model_copy(
+        update={
+            "driver_dyad": False,
+            "max_designs": min(max(SPARE * problem.max_designs, LEAST_SPARE), 200),
+            "include_failed": False,
+            "input_side": problem.input_side.model_copy(update=pins),
+            "output_side": problem.output_side.model_copy(update=pins),
+            "constraints": problem.constraints.model_copy(update={"full_rotation": False}),
+        }
+    )
+
+
+def _driven(problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad) -> LinkageDesign | None:
+    """A fourbar with the best driver that passes, or the best one that does not; None where no driver fits."""
+    assert isinstance(design.mechanism, FourbarMechanism)
+    best = None
+    for link in ("input", "output", "coupler"):
+        if wanted.link not in ("any", link) or (link == "coupler" and _sound(problem, best) and wanted.link == "any"):
+            continue
+        if link == "coupler":
+            drivers = coupler_drivers(design, design.mechanism, wanted, TRIED)
+        else:
+            drivers = sorted(_drivers(design, design.mechanism, link, wanted), key=lambda c: -c[0])[:TRIED]
+        for _, mechanism in drivers:
+            found = verify(problem, mechanism)
+            if found is not None and (best is None or _worth(found) > _worth(best)):
+                best = found
+            if found is not None and found.verification.passed:
+                break
+    return best
+
+
+def _sound(problem: MotionProblem, design: LinkageDesign | None) -> bool:
+    """Whether a link of the ground is driven well enough that the coupler need not be."""
+    least = USABLE if problem.constraints.min_transmission_angle is None else 0.0
+    return design is not None and design.verification.passed and design.metrics.min_transmission_angle >= least
+
+
+def _worth(design: LinkageDesign) -> tuple[bool, float]:
+    return design.verification.passed, design.metrics.quality
+
+
+def _drivers(
+    design: LinkageDesign, mechanism: FourbarMechanism, link: str, wanted: DriverDyad
+) -> list[tuple[float, SixbarMechanism]]:
+    """Drivers of one link with their scores, the best of each shape."""
+    fourbar = driven_fourbar(mechanism)
+    inputs = np.radians([target.input_angle for target in design.targets])
+    at = positions(fourbar.linkage, inputs, fourbar.assembly)
+    if not at.valid.all():
+        return []
+    pivot = to_complex(mechanism.fixed_pivots.input if link == "input" else mechanism.fixed_pivots.output)
+    arms = (at.a if link == "input" else at.b) - pivot
+    turned = np.unwrap(np.angle(arms / arms[0]))
+    steps = np.diff(turned)
+    swing = float(turned[-1])
+    one_way = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    if not one_way or not LEAST_SWING < abs(swing) <= WIDEST_SWING:
+        return []
+    stage = _stages(abs(swing))
+    joints = np.concatenate([at.a, at.b, at.p, [to_complex(p) for p in (mechanism.fixed_pivots.input,
+                                                                         mechanism.fixed_pivots.output)]])  # fmt: skip
+    alone = diagonal(joints)
+    length = float(abs(arms[0]))
+    middle = arms[0] / length * cmath.exp(0.5j * swing)
+    found = []
+    for n in range(len(stage.score)):
+        # Shapes are made for a swing that is symmetrical to the real axis; C leads the link by a place.
+        turn = middle * np.exp(1j * PLACES)[None, :] * (ARMS * length)[:, None]
+        o6 = pivot + stage.pivot[n] * turn
+        c = pivot + turn[..., None] * np.exp(np.array([-0.5j, 0.5j]) * swing)
+        around = np.stack([o6, c[..., 0], c[..., 1]], axis=-1)
+        whole = diagonal(np.concatenate([around, np.broadcast_to(joints, (*around.shape[:2], len(joints)))], axis=-1))
+        score = stage.score[n] / (1.0 + ((whole / alone - 1.0) / ROOM) ** 2)
+        if wanted.pivot_region is not None:
+            score = np.where(np.vectorize(wanted.pivot_region.contains)(o6), score, 0.0)
+        k, m = np.unravel_index(int(np.argmax(score)), score.shape)
+        if score[k, m] > 0.0:
+            place = complex(c[k, m, 0])
+            found.append((float(score[k, m]), rocker_driven(mechanism, link, place, complex(o6[k, m]), swing)))
+    return found
+
+
+def _stages(swing: float) -> _Stage:
+    """The best shapes of crank-rockers with a given swing, in units of the rocker."""
+    pivot = (DISTANCES[:, None] * np.exp(1j * DIRECTIONS)[None, :]).ravel()
+    ends = np.exp(np.array([-0.5j, 0.5j]) * swing)
+    reach = ends - pivot[:, None]
+    distance = np.abs(reach)
+    crank, link, ground = 0.5 * np.abs(distance[:, 1] - distance[:, 0]), distance.mean(axis=1), np.abs(pivot)
+    # Both ends belong to one assembly where O lies on one side of the link there.
+    sides = (np.conj(reach) * (0.0 - ends)).imag
+    lengths = np.stack([crank, link, ground, np.ones_like(crank)])
+    shortest, longest = lengths.min(axis=0), lengths.max(axis=0)
+    rocks = (crank == shortest) & (2.0 * (shortest + longest) < lengths.sum(axis=0)) & (crank > 0.02)
+    rocks &= sides[:, 0] * sides[:, 1] > 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosines = [(link**2 + 1.0 - (ground + sign * crank) ** 2) / (2.0 * link) for sign in (-1.0, 1.0)]
+        sine = np.sqrt(np.maximum(1.0 - np.max(np.square(cosines), axis=0), 0.0))
+        score = np.where(rocks, sine, 0.0) / ((1.0 + (longest / BULKY) ** 2) * (1.0 + (longest / crank / UNEVEN) ** 2))
+    order = np.argsort(-score, kind="stable")
+    kept: list[int] = []
+    for k in order:
+        if len(kept) == SHAPES or not score[k] > 0.0:
+            break
+        if all(abs(pivot[k] - pivot[m]) > 0.25 for m in kept):
+            kept.append(int(k))
+    return _Stage(pivot[kept], crank[kept], link[kept], score[kept])

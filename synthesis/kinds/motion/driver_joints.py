@@ -1,0 +1,78 @@
+"""The sixbar of a fourbar and its driver dyad, from where pin C and the crank's pivot O6 are."""
+
+from __future__ import annotations
+
+import cmath
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    Link,
+    SixbarMechanism,
+    Skeleton,
+)
+from synthesis.model.linkages import to_complex, to_point
+
+ROOM = 2.0
+"""A whole this many times as large as the linkage alone halves the score of a place."""
+
+
+def diagonal(points: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Diagonal of the box around points along the last axis."""
+    return np.asarray(np.hypot(np.ptp(points.real, axis=-1), np.ptp(points.imag, axis=-1)))
+
+
+def rocker_driven(mechanism: FourbarMechanism, link: str, c: complex, o6: complex, swing: float) -> SixbarMechanism:
+    """The sixbar whose driver holds the input or output link at C, in the first position; ``swing`` in radians."""
+    pivot = to_complex(mechanism.fixed_pivots.input if link == "input" else mechanism.fixed_pivots.output)
+    return _sixbar("watt_2", mechanism, link, pivot, c, o6, pivot + (c - pivot) * cmath.exp(1j * swing))
+
+
+def coupler_driven(mechanism: FourbarMechanism, c: complex, o6: complex, last: complex) -> SixbarMechanism:
+    """The sixbar whose driver holds the coupler at C, in the first position; ``last`` is C in the last one."""
+    joints = mechanism.skeleton.joints
+    return _sixbar("stephenson_3", mechanism, "coupler", to_complex(joints["A"]), c, o6, last)
+
+
+def _sixbar(
+    kind: Literal["watt_2", "stephenson_3"],
+    mechanism: FourbarMechanism,
+    link: str,
+    pin: complex,
+    c: complex,
+    o6: complex,
+    last: complex,
+) -> SixbarMechanism:
+    """Crank and driver link that have their dead centres at C and ``last``; ``pin`` is the link's own, O2, O4 or A."""
+    first, other = abs(c - o6), abs(last - o6)
+    # Where C₁ is the nearer end, crank and link overlap there.
+    d = o6 + 0.5 * (first - other) * (c - o6) / first
+    bar = mechanism.skeleton
+    joints = {**bar.joints, "O6": to_point(o6), "C": to_point(c), "D": to_point(d)}
+    links = [
+        Link(name="ground", joints=["O2", "O4", "O6"]),
+        *(
+            Link(name=old.name, joints=[*old.joints, "C"]) if old.name == link else old
+            for old in bar.links
+            if old.name != "ground"
+        ),
+        Link(name="driver_coupler", joints=["C", "D"]),
+        Link(name="crank", joints=["O6", "D"]),
+    ]
+    pivot = to_complex(mechanism.fixed_pivots.output if link == "output" else mechanism.fixed_pivots.input)
+    return SixbarMechanism(
+        type=kind,
+        fixed_pivots={name: joints[name] for name in ("O2", "O4", "O6")},
+        links={
+            **mechanism.links.model_dump(),
+            "crank": abs(d - o6),
+            "driver_coupler": abs(d - c),
+            "driver_ground": abs(o6 - pivot),
+            "driver_arm": abs(c - pin),
+        },
+        reference_body_angle=mechanism.reference_body_angle,
+        skeleton=Skeleton(joints=joints, links=links, input_link="crank"),
+    )

@@ -1,0 +1,187 @@
+"""Dyads from which a fit to many positions starts.
+
+An open RR dyad is started by every dyad through sets of five positions, and by the linear fit to larger sets
+(:mod:`synthesis.kinds.motion.linear_fit`). Where positions have tolerances the sets are also moved about within them. A
+pivot that the client states leaves a circle to be fitted to its images, a slider a line: both are linear.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.constraint_manifold import (
+    NUMBERS,
+    Surface,
+    of_pivots,
+)
+from synthesis.kinds.motion.linear_fit import dyads_of_poses
+from synthesis.kinds.motion.pose_fit import Demands, Mask
+from synthesis.kinds.motion.problem import DyadChoices, whole_point
+from synthesis.kinds.motion.task import MotionTask
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SETS = 160
+"""Sets of five positions at most."""
+
+LARGER_SETS = 40
+"""Sets of more positions, of random size."""
+
+REACH = 300.0
+"""Pivots farther than this many task sizes are not started from; what tends there is a slider."""
+
+SHORTEST = 1e-3
+"""Links shorter than this many task sizes are not started from."""
+
+
+class Start(NamedTuple):
+    """A dyad to start from: what it is, its surface, its numbers, and which of them are the client's."""
+
+    dyad: str
+    surface: Surface
+    numbers: Real
+    fixed: Mask
+
+
+def starts(task: MotionTask, demands: Demands, choices: DyadChoices, rng: np.random.Generator) -> list[Start]:
+    """Dyads of one side that a fit may start from."""
+    if choices.dyad == "PR":
+        return _slider(task, demands, choices, inverted=False)
+    if choices.dyad == "RP":
+        return _slider(task, demands, choices, inverted=True)
+    stated = _stated(task, choices)
+    if stated is not None:
+        inverted, point = stated
+        return _circle(demands, inverted, point)
+    fixed, moving = _all_dyads(demands, rng)
+    found = []
+    for o, a in zip(fixed, moving, strict=True):
+        surface, numbers = of_pivots(complex(o), complex(a))
+        found.append(Start("RR", surface, numbers, np.zeros(NUMBERS, np.bool_)))
+    return found
+
+
+def as_slider(start: Start) -> Start:
+    """The slider that an RR dyad with a pivot far away is nearly."""
+    numbers = start.numbers.copy()
+    numbers[4] = 0.0
+    surface = start.surface._replace(curved=False)
+    return Start("RP" if surface.inverted else "PR", surface, numbers, start.fixed)
+
+
+def _stated(task: MotionTask, choices: DyadChoices) -> tuple[bool, complex] | None:
+    """The pivot that is stated: whether it is the fixed one, and where it is in task coordinates."""
+    fixed, moving = whole_point(choices.fixed_pivot), whole_point(choices.moving_pivot)
+    if fixed is not None:
+        return True, task.to_task(fixed)
+    if moving is not None:
+        return False, task.to_task(moving)
+    vector = choices.coupler_vector
+    if vector is not None and vector.length is not None and vector.angle is not None:
+        angle = math.radians(vector.angle)
+        return False, -vector.length / task.size * complex(math.cos(angle), math.sin(angle))
+    return None
+
+
+def _images(demands: Demands, inverted: bool, point: complex) -> Complex:
+    """Places of a point of the body (or of a fixed point as the body sees it) in the demanded poses."""
+    p, spin = demands.poses[:, 0] + 1j * demands.poses[:, 1], np.exp(1j * demands.poses[:, 2])
+    return np.asarray(np.conj(spin) * (point - p) if inverted else p + spin * point)
+
+
+def _circle(demands: Demands, inverted: bool, point: complex) -> list[Start]:
+    """The circle nearest to the images of a stated pivot, by linear least squares of |z|² − 2Re(conj(m)z) + k."""
+    images = _images(demands, inverted, point)
+    rows = np.stack([2.0 * images.real, 2.0 * images.imag, np.ones(len(images))], axis=1)
+    found, *_ = np.linalg.lstsq(rows, np.abs(images) ** 2, rcond=None)
+    centre = complex(found[0], found[1])
+    radius = math.sqrt(max(float(found[2]) + abs(centre) ** 2, 0.0))
+    if not radius > SHORTEST:
+        return []
+    arm = images[0] - centre
+    numbers = np.array([point.real, point.imag, math.atan2(arm.imag, arm.real), 0.0, 1.0 / radius])
+    foot = centre + radius * arm / abs(arm)
+    fixed = np.array([True, True, False, False, False])
+    return [Start("RR", Surface(inverted, complex(foot), True), numbers, fixed)]
+
+
+def _slider(task: MotionTask, demands: Demands, choices: DyadChoices, *, inverted: bool) -> list[Start]:
+    """The line nearest to the images of the best, or of the stated, point."""
+    fixed = np.zeros(NUMBERS, np.bool_)
+    normal = None
+    if choices.slide_angle is not None:
+        normal = math.radians(choices.slide_angle) - 0.5 * math.pi
+        fixed[2] = True
+    stated = _stated(task, choices)
+    if stated is not None:
+        point, found = stated[1], normal
+        fixed[:2] = True
+        if found is None:
+            images = _images(demands, inverted, point)
+            gaps = images - images.mean()
+            found = 0.5 * float(np.angle(np.sum(gaps * gaps))) + 0.5 * math.pi
+    else:
+        point, found = _best_slider(demands, inverted, normal)
+    images = _images(demands, inverted, point)
+    origin = complex(images.mean())
+    surface = Surface(inverted, origin, False)
+    numbers = np.array([point.real, point.imag, found, 0.0, 0.0])
+    return [Start("RP" if inverted else "PR", surface, numbers, fixed)]
+
+
+def _best_slider(demands: Demands, inverted: bool, normal: float | None) -> tuple[complex, float]:
+    """The point whose images lie nearest to a line, and the line's normal: linear, with n on the unit circle.
+
+    PR: Re(conj(n) p) + Re(c e^{iφ}) = d with c = conj(n) α. RP: Re(conj(n) p e^{−iφ}) + Re(c e^{iφ}) = −d with
+    c = −n conj(O).
+    """
+    p, spin = demands.poses[:, 0] + 1j * demands.poses[:, 1], np.exp(1j * demands.poses[:, 2])
+    q = np.conj(np.conj(p) * spin) if inverted else p
+    with_n = np.stack([q.real, q.imag], axis=1)
+    rest = np.stack([spin.real, -spin.imag, np.ones(len(p))], axis=1)
+    left = with_n - rest @ np.linalg.lstsq(rest, with_n, rcond=None)[0]
+    if normal is None:
+        n = np.linalg.svd(left)[2][-1]
+        normal = math.atan2(n[1], n[0])
+    else:
+        n = np.array([math.cos(normal), math.sin(normal)])
+    c = np.linalg.lstsq(rest, -with_n @ n, rcond=None)[0]
+    unit = complex(n[0], n[1])
+    found = complex(c[0], c[1])
+    return (-unit * found.conjugate() if inverted else unit * found), normal
+
+
+def _all_dyads(demands: Demands, rng: np.random.Generator) -> tuple[Complex, Complex]:
+    """RR dyads through sets of five poses and near larger sets, those of sensible size."""
+    poses = demands.poses
+    n, held = len(poses), demands.held
+    kept = [k for k in np.argsort(-held, kind="stable") if held[k] == 3][:5]
+    others = [k for k in range(n) if k not in kept]
+    wanted = 5 - len(kept)
+    if math.comb(len(others), wanted) <= SETS:
+        fives = [[*kept, *some] for some in combinations(others, wanted)]
+    else:
+        fives = [[*kept, *rng.choice(others, wanted, replace=False)] for _ in range(SETS)]
+    sets = np.array(fives, np.int64)
+    listed = [poses[sets]]
+    if np.any((demands.tolerances > 0.0) & np.isfinite(demands.tolerances)):
+        moved = rng.uniform(-1.0, 1.0, (SETS, 5, 3)) * demands.tolerances[sets[np.arange(SETS) % len(sets)]]
+        listed.append(poses[sets[np.arange(SETS) % len(sets)]] + moved)
+    fixed, moving = [], []
+    for batch in [*listed, *(poses[None, _some(n, rng)] for _ in range(LARGER_SETS if n > 6 else 0)), poses[None]]:
+        o, a = dyads_of_poses(batch[..., 0] + 1j * batch[..., 1], batch[..., 2])
+        fixed.append(o)
+        moving.append(a)
+    o, a = np.concatenate(fixed), np.concatenate(moving)
+    good = (np.abs(o) < REACH) & (np.abs(a) < REACH) & (np.abs(a - o) > SHORTEST)
+    return o[good], a[good]
+
+
+def _some(n: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    return np.asarray(rng.choice(n, int(rng.integers(6, n)), replace=False))

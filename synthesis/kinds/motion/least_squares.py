@@ -1,0 +1,379 @@
+"""Motion generation by least squares: more positions than can be met, or positions with tolerances.
+
+Many dyads are started from (:mod:`synthesis.kinds.motion.fit_starts`), each is fitted to all positions by itself, the
+best pairs are fitted together to the true error of the pose (:mod:`synthesis.kinds.motion.pose_fit`), and what comes
+out is driven and verified like any other linkage. Positions that are held stay held to rounding throughout. Lengths are
+weighed by the task's size and angles by the radian, or both by the client's tolerances.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.constraint_manifold import line_of, pivots_of
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.fit_starts import (
+    REACH,
+    Start,
+    as_slider,
+    starts,
+)
+from synthesis.kinds.motion.pose_fit import (
+    Demands,
+    PoseFit,
+    surface_fit,
+)
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.screening import SOUND, screen
+from synthesis.kinds.motion.screening import demands as screening_demands
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.answer import Search
+from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    fourbar_mechanism,
+    inverted_slider_crank_mechanism,
+    slider_crank_mechanism,
+)
+from synthesis.outcome.ranking import ranked
+
+Progress = Callable[[float, str], None]
+Real = NDArray[np.float64]
+
+SINGLES = 40
+"""Dyads of a side that are fitted by themselves."""
+
+DYADS = 36
+"""Dyads of a side of which pairs are made: the best of those, and of those that they came from."""
+
+HANDY = 3.0
+"""A dyad counts four times worse where a pivot lies this many task sizes away: it holds the body's angle to great
+precision there, whatever its place, and would keep dyads out that make a whole linkage."""
+
+PAIRS_HELD = 16
+"""Pairs that are fitted where positions or coordinates are held, which takes several times as long."""
+
+PARTNERS = 8
+"""Pairs of a dyad that are fitted at most, so that one dyad does not fill the list."""
+
+PAIRS = 48
+"""Pairs that are fitted together, a few milliseconds each at first."""
+
+ROUGH, ROUGHLY = 1e-4, 25
+"""Relative change of the cost at which the first fit of a pair stops, and its evaluations at most."""
+
+REFINED = 8
+"""Pairs, the best after the first fit, that are fitted to the end."""
+
+SAME_DYAD = 0.08
+"""Dyads whose pivots differ by less than this share of their distance are one start."""
+
+SAME_LINKAGE = 0.03
+"""Linkages whose pivots differ by less than this share of their distance are one answer; the nearest is kept."""
+
+LEAST_TRIED = 10
+"""Linkages that are verified at least, however few are wanted."""
+
+SHORTEST_LINK = 1e-4
+"""A link shorter than this share of the longest is none."""
+
+REASONS = {"reaches_targets": "residual", "within_tolerance": "tolerance", "same_circuit": "circuit_defect",
+           "same_branch": "branch_defect", "visits_in_order": "order_defect"}  # fmt: skip
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+class _Pair(NamedTuple):
+    """A pair of dyads to be fitted, its problem, and the cost it starts with."""
+
+    one: Start
+    other: Start
+    problem: PoseFit
+    point: Real
+    cost: float
+
+
+def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Fit linkages to the positions of a problem, some of which may be held exactly."""
+    task = motion_task(problem)
+    demands = fit_demands(problem, task)
+    rng = np.random.default_rng(problem.seed)
+    progress(0.0, "fitting single dyads")
+    sides = problem.input_side, problem.output_side
+    alike = sides[0] == sides[1]
+    inputs = _dyads(task, demands, problem, 0, rng)
+    outputs = inputs if alike else _dyads(task, demands, problem, 1, rng)
+    progress(0.3, "pairing dyads")
+    pairs = _pairs(problem, task, demands, inputs, outputs)
+    run = _Run(problem, task, demands, alike=alike)
+    rough: list[_Pair] = []
+    for n, pair in enumerate(pairs):
+        progress(0.35 + 0.3 * n / len(pairs), f"fitting pair {n + 1} of {len(pairs)}")
+        ended = pair.problem.minimum(pair.point, tolerance=ROUGH, evaluations=ROUGHLY)
+        if ended is None:
+            run.not_held()
+        elif math.isfinite(ended.cost):
+            rough.append(pair._replace(point=ended.point, cost=ended.cost))
+    rough.sort(key=lambda pair: pair.cost)
+    for n, pair in enumerate(rough[:REFINED]):
+        progress(0.65 + 0.2 * n / REFINED, f"refining pair {n + 1} of {REFINED}")
+        ended = pair.problem.minimum(pair.point)
+        rough[n] = pair if ended is None else pair._replace(point=ended.point, cost=ended.cost)
+    for n, pair in enumerate(sorted(rough, key=lambda pair: pair.cost)):
+        progress(0.85 + 0.15 * n / len(rough), "driving what was fitted")
+        run.add(pair)
+    progress(1.0, "verified")
+    return run.result()
+
+
+def fit_demands(problem: MotionProblem, task: MotionTask) -> Demands:
+    """Positions and tolerances in task units; without a limit the task's size and the radian stand for it."""
+    poses = np.stack([task.points.real, task.points.imag, np.array(problem.turns)], axis=1)
+    limits = np.array(problem.limits)
+    tolerances = np.stack([limits[:, 0] / task.size, limits[:, 1] / task.size, np.radians(limits[:, 2])], axis=1)
+    return Demands(poses, np.where(np.isfinite(tolerances), tolerances, 1.0))
+
+
+def _dyads(
+    task: MotionTask, demands: Demands, problem: MotionProblem, side: int, rng: np.random.Generator
+) -> list[Start]:
+    """The best dyads of one side: as they were started from, and as they fit all positions."""
+    choices = (problem.input_side, problem.output_side)[side]
+    listed = starts(task, demands, choices, rng)
+    rough = _least(demands, listed, SINGLES)
+    fits = []
+    for start in rough:
+        numbers = surface_fit(demands, start.surface, start.numbers, start.fixed).point
+        if np.all(np.isfinite(numbers)):
+            fits.append(start._replace(numbers=numbers))
+            if choices.dyad == "any" and abs(numbers[4]) * REACH < 1.0 and not start.fixed.any():
+                fits.append(as_slider(fits[-1]))
+    return _least(demands, [*fits, *rough], DYADS)
+
+
+def _least(demands: Demands, listed: list[Start], count: int) -> list[Start]:
+    """The dyads with the least distances from the poses, each once."""
+    cost = [_single_cost(demands, start) * (1.0 + 3.0 * _reach(start) ** 2 / HANDY**2) for start in listed]
+    kept: list[Start] = []
+    for k in np.argsort(cost, kind="stable"):
+        start = listed[int(k)]
+        if len(kept) == count or not math.isfinite(cost[int(k)]):
+            break
+        place = _place(start)
+        if all(
+            k.dyad != start.dyad or np.abs(place - _place(k)).max() > SAME_DYAD * (1.0 + abs(place).max()) for k in kept
+        ):
+            kept.append(start)
+    return kept
+
+
+def _single_cost(demands: Demands, start: Start) -> float:
+    fitted = surface_fit(demands, start.surface, start.numbers, np.ones(5, np.bool_))
+    return fitted.cost
+
+
+def _reach(start: Start) -> float:
+    """Distance of the farther pivot, or of the slider's point."""
+    if start.surface.curved:
+        return max(map(abs, pivots_of(start.surface, start.numbers)))
+    return float(np.hypot(start.numbers[0], start.numbers[1]))
+
+
+def _place(start: Start) -> Real:
+    """Numbers by which dyads of one kind are compared: pivots, or the slider's point and line."""
+    if start.surface.curved:
+        fixed, moving = pivots_of(start.surface, start.numbers)
+        return np.array([fixed.real, fixed.imag, moving.real, moving.imag])
+    point, foot, angle = line_of(start.surface, start.numbers)
+    along = complex(math.cos(angle), math.sin(angle))
+    return np.array(
+        [point.real, point.imag, (foot * along.conjugate()).imag, math.sin(2.0 * angle), math.cos(2.0 * angle)]
+    )
+
+
+def _pairs(
+    problem: MotionProblem, task: MotionTask, demands: Demands, inputs: list[Start], outputs: list[Start]
+) -> list[_Pair]:
+    """The pairs to fit together: half of them those with the least cost, half those among them that look sound.
+
+    A slider stands on one side at most.
+    """
+    alike = inputs is outputs
+    sound = _sound(problem, task, inputs, outputs)
+    if alike:
+        sound |= sound.T
+    found = []
+    for i, one in enumerate(inputs):
+        for j, other in enumerate(outputs):
+            if (alike and j <= i) or (one.dyad != "RR" and other.dyad != "RR"):
+                continue
+            fitting = PoseFit(demands, (one.surface, other.surface), (one.fixed, other.fixed))
+            point = fitting.start(one.numbers, other.numbers)
+            cost = fitting.cost(point, first_order=True)
+            if math.isfinite(cost):
+                found.append((not sound[i, j], _Pair(one, other, fitting, point, cost)))
+    partners: Counter[int] = Counter()
+    kept: dict[int, _Pair] = {}
+    count = PAIRS_HELD if demands.held.max() > 1 else PAIRS
+    by_cost = sorted(range(len(found)), key=lambda n: found[n][1].cost)
+    for order, size in ((by_cost, count // 2), (sorted(by_cost, key=lambda n: found[n][0]), count)):
+        for n in order:
+            pair = found[n][1]
+            if len(kept) == size:
+                break
+            if n not in kept and max(partners[id(pair.one)], partners[id(pair.other)]) < PARTNERS:
+                partners.update((id(pair.one), id(pair.other)))
+                kept[n] = pair
+    return list(kept.values())
+
+
+def _sound(problem: MotionProblem, task: MotionTask, inputs: list[Start], outputs: list[Start]) -> NDArray[np.bool_]:
+    """Which pairs of links pass the screening, as if each met all positions exactly; a slider passes."""
+    links = []
+    for listed in (inputs, outputs):
+        pivots = [pivots_of(s.surface, s.numbers) if s.surface.curved else (0j, 1.0 + 0j) for s in listed]
+        table = np.array(pivots, np.complex128).reshape(-1, 2)
+        links.append(Dyads(table[:, 0].copy(), table[:, 1].copy()))
+    limit = problem.constraints.min_transmission_angle
+    wanted = screening_demands(problem.constraints, task, limit or 0.0)
+    verdict = screen(task, links[0], links[1], wanted).verdict
+    sliders = np.array([[i.dyad != "RR" or o.dyad != "RR" for o in outputs] for i in inputs], np.bool_)
+    sliders = sliders.reshape(verdict.shape)
+    return np.asarray((verdict == SOUND) | sliders)
+
+
+class _Run:
+    """What becomes of the pairs."""
+
+    def __init__(self, problem: MotionProblem, task: MotionTask, demands: Demands, *, alike: bool) -> None:
+        self.problem, self.task, self.demands, self.alike = problem, task, demands, alike
+        self.seen: list[Real] = []
+        self.passed: list[LinkageDesign] = []
+        self.failed: list[LinkageDesign] = []
+        self.rejected: Counter[str] = Counter()
+        self.count = 0
+
+    def not_held(self) -> None:
+        """A pair could not hold the positions that are to be met exactly."""
+        self.count += 1
+        self.rejected["positions_not_held"] += 1
+
+    def add(self, pair: _Pair) -> None:
+        """Verify the linkage of a fitted pair, unless another pair has led to it."""
+        one = pair.one._replace(numbers=pair.point[:5])
+        other = pair.other._replace(numbers=pair.point[5:10])
+        places = np.concatenate(sorted((_place(one), _place(other)), key=lambda z: float(z[0])))
+        if any(
+            len(places) == len(s) and np.abs(places - s).max() < SAME_LINKAGE * (1.0 + abs(s).max()) for s in self.seen
+        ):
+            return
+        self.seen.append(places)
+        self.count += 1
+        if self.problem.fitted and len(self.passed) >= max(self.problem.max_designs, LEAST_TRIED):
+            self.rejected["outranked"] += 1
+            return
+        pose = pair.problem.poses(pair.point)[0]
+        best: LinkageDesign | None = None
+        reason = "cannot_be_driven"
+        for first, second in ((one, other), (other, one)) if self.alike else ((one, other),):
+            mechanism = self._mechanism(first, second, pose)
+            design = None if mechanism is None else verify(self.problem, mechanism)
+            if design is None:
+                reason = "degenerate" if mechanism is None else reason
+            elif best is None or _better(design, best):
+                best = design
+        if best is None:
+            self.rejected[reason] += 1
+        elif best.verification.passed:
+            self.passed.append(best)
+        else:
+            self.failed.append(best)
+            name = next(check.name for check in best.verification.checks if not check.passed)
+            self.rejected[REASONS.get(name, name)] += 1
+
+    def _mechanism(self, one: Start, other: Start, pose: Real) -> LinkageMechanism | None:
+        """The linkage of two fitted dyads with the body in its first pose; None where it has no size, or no input."""
+        place, turn = complex(pose[0], pose[1]), complex(math.cos(pose[2]), math.sin(pose[2]))
+        target = self.demands.poses[0]
+        exact = abs(place - complex(target[0], target[1])) == 0.0 and pose[2] == target[2]
+        angle = None if exact else self.problem.positions[0].angle + math.degrees(float(pose[2] - target[2]))
+        p = self.task.to_problem(place)
+
+        def body(z: complex) -> complex:
+            return self.task.to_problem(place + turn * z)
+
+        if one.dyad != "RR":
+            if one.dyad == "RP" or other.dyad != "RR":
+                return None
+            one, other = other, one
+            driven_by = "slider"
+        else:
+            driven_by = "crank"
+        fixed, moving = pivots_of(one.surface, one.numbers)
+        o2, a = self.task.to_problem(fixed), body(moving)
+        if other.dyad == "RR":
+            fixed, moving = pivots_of(other.surface, other.numbers)
+            o4, b = self.task.to_problem(fixed), body(moving)
+            lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
+            if min(lengths) <= SHORTEST_LINK * max(lengths):
+                return None
+            return fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, p), angle)
+        point, _, line = line_of(other.surface, other.numbers)
+        if other.dyad == "PR":
+            b = body(point)
+            if min(abs(a - o2), abs(b - a)) <= SHORTEST_LINK * max(abs(a - o2), abs(b - a)):
+                return None
+            return slider_crank_mechanism(
+                o2, a, b, line, p, driven_by="slider" if driven_by == "slider" else "crank", body_angle=angle
+            )
+        o4 = self.task.to_problem(point)
+        if min(abs(a - o2), abs(o4 - o2), abs(a - o4)) <= SHORTEST_LINK * max(abs(a - o2), abs(o4 - o2)):
+            return None
+        return inverted_slider_crank_mechanism(o2, a, o4, line + float(pose[2]), p, body_angle=angle)
+
+    def result(self) -> MotionResult:
+        """The answer."""
+        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
+        designs = ranked(shown, self.problem.rank_by)
+        if self.problem.fitted and self.problem.rank_by == "quality":
+            # A fit without limits is asked to be near; among answers that are equally near, quality decides.
+            designs.sort(key=lambda d: (not d.verification.passed, d.metrics.rms_residual))
+        return MotionResult(
+            designs=designs[: self.problem.max_designs],
+            search=Search(
+                method="least_squares",
+                complete=False,
+                candidates=self.count,
+                accepted=len(self.passed),
+                rejected=dict(self.rejected),
+                seed=self.problem.seed,
+            ),
+            summary=self._summary(),
+        )
+
+    def _summary(self) -> str:
+        n = len(self.problem.positions)
+        if self.passed:
+            best = min(self.passed, key=lambda d: d.metrics.rms_residual)
+            share = 100.0 * best.metrics.rms_residual
+            text = (
+                f"{len(self.passed)} of {self.count} fitted linkages meet the demands of the {n} positions; the best "
+                f"has a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian)."
+            )
+        else:
+            listed = ", ".join(f"{name.replace('_', ' ')} {k}" for name, k in self.rejected.items())
+            text = f"None of {self.count} fitted linkages satisfies all demands (rejected: {listed or 'none'})."
+        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
+
+
+def _better(design: LinkageDesign, other: LinkageDesign) -> bool:
+    """Whether a design is to be preferred to the same linkage driven at its other side."""
+    ours, theirs = design.verification.passed, other.verification.passed
+    return ours > theirs or (ours == theirs and design.metrics.quality > other.metrics.quality)

@@ -1,0 +1,567 @@
+"""Motion generation: a linkage whose coupler carries a body through positions."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from synthesis.model.linkage_statement import LinkageProblem, Region
+from synthesis.model.statement import (
+    Contradiction,
+    Flag,
+    Number,
+    PartialPoint,
+    Point,
+    PositiveNumber,
+    Sizable,
+    Statement,
+)
+
+LEAST_LENGTH = 1e-12
+"""Positions that differ, but by less than this many length units, are refused as absurd."""
+
+LEAST_MOTION = 1e-3
+"""A motion of P below this share of the way to stated pivots does not set the size of the task."""
+
+EQUAL_POSITIONS = 1e-9
+"""Positions closer than this share of the coordinates' size, and this many radians, count as equal.
+
+Double precision keeps about 1e-16 of the largest coordinate, so a displacement below 1e-9 of it has lost
+half its digits and no residual of 1e-9 could be shown for it."""
+
+
+PARALLEL = 1e-9
+"""Component of a unit vector below which a line counts as parallel to an axis."""
+
+ON_LINE = 1e-9
+"""Share of the task's size by which a stated pivot may lie off a stated line: rounding."""
+
+MOST_HELD = 5
+"""Positions that a linkage of two dyads can take exactly, in general (Norton, Table 5-3)."""
+
+
+class Tolerance(Statement):
+    """How far a position may be missed, coordinate by coordinate; what is left out is met exactly."""
+
+    x: PositiveNumber | None = Field(default=None, description="Length units, either way.")
+    y: PositiveNumber | None = Field(default=None, description="Length units, either way.")
+    angle: Annotated[float, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
+        default=None, description="Degrees, either way."
+    )
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> Self:
+        if self.x is None and self.y is None and self.angle is None:
+            raise ValueError("give a tolerance of x, y or angle; a position without tolerance is met exactly")
+        return self
+
+
+class Position(Statement):
+    """Where the body is: its reference point P and the angle of a line fixed in it."""
+
+    x: Number
+    y: Number
+    angle: Number = Field(description="Angle of the body's line, degrees, counter-clockwise from +x.")
+    tolerance: PositiveNumber | Tolerance | None = Field(
+        default=None,
+        description="How far the position may be missed: by coordinate, or a length for x and y, the angle then being "
+        "allowed to move a point one task size away by as much.",
+    )
+    exact: Flag = Field(default=False, description="Met exactly, although positions are fitted by least squares.")
+
+    @property
+    def point(self) -> complex:
+        """The reference point as a complex number, in length units."""
+        return complex(self.x, self.y)
+
+
+def whole_point(point: PartialPoint | None) -> complex | None:
+    """A stated point as a complex number; None where it, or one of its coordinates, is left open."""
+    if point is None or point[0] is None or point[1] is None:
+        return None
+    return complex(point[0], point[1])
+
+
+class GroundLine(Statement):
+    """A straight line on which both fixed pivots lie."""
+
+    point: Point
+    angle: Number = Field(description="Direction of the line, degrees.")
+
+    def offset(self, point: complex) -> float:
+        """Signed distance of a point from the line, in length units."""
+        return ((point - complex(*self.point)) * cmath.exp(-1j * math.radians(self.angle))).imag
+
+    def foot(self, point: complex) -> complex:
+        """The point of the line that is nearest to a point."""
+        return point - 1j * cmath.rect(self.offset(point), math.radians(self.angle))
+
+
+class CouplerVector(Statement):
+    """Vector Z from the moving pivot to the body's point P in the first position; each part may be left open."""
+
+    length: PositiveNumber | None = None
+    angle: Number | None = Field(default=None, description="Angle of Z in the first position, degrees.")
+
+
+class DyadChoices(Statement):
+    """What the client fixes of one dyad (link and coupler side); all that is left out is searched.
+
+    Norton's letters: ``link_angle`` is θ (output side: σ), ``coupler_vector`` is Z at φ (S at ψ), ``rotations``
+    are β₂, β₃ (γ₂, γ₃).
+    """
+
+    dyad: Literal["any", "RR", "PR", "RP"] = Field(
+        default="any",
+        description="What joins the body to the ground. RR: a link with two pins. PR: a pin of the body slides on a "
+        "line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
+        "pins, and a slider where pins cannot do what is asked.",
+    )
+    fixed_pivot: PartialPoint | None = Field(default=None, description="null leaves a coordinate open.")
+    moving_pivot: PartialPoint | None = Field(
+        default=None, description="Moving pivot in the first position; null leaves a coordinate open."
+    )
+    rotations: list[Number | None] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=8,
+        description="Rotation of the link from the first position to the 2nd, 3rd, ..., degrees; null leaves one open.",
+    )
+    link_angle: Number | None = Field(
+        default=None, description="Angle of the link, fixed pivot to moving pivot, in the first position, degrees."
+    )
+    coupler_vector: CouplerVector | None = None
+    slide_angle: Number | None = Field(
+        default=None,
+        description="For PR: angle of the slide's line, degrees. For RP: of the body's line in the first position.",
+    )
+
+    def count(self) -> int:
+        """How many numbers are fixed."""
+        vector = self.coupler_vector or CouplerVector()
+        pivots = [*(self.fixed_pivot or ()), *(self.moving_pivot or ())]
+        scalars = [self.link_angle, self.slide_angle, vector.length, vector.angle, *(self.rotations or []), *pivots]
+        return sum(s is not None for s in scalars)
+
+    @property
+    def one_pivot(self) -> bool:
+        """Whether one whole pivot is all that is fixed."""
+        pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)
+        return self.count() == 2 and pivots.count(None) == 1
+
+
+class DriverDyad(Statement):
+    """A crank and a link that are added to drive the linkage between its end positions."""
+
+    link: Literal["any", "input", "output", "coupler"] = Field(
+        default="any",
+        description="The link that is driven; any: input or output, and the coupler where neither can be driven well.",
+    )
+    pivot_region: Region | None = Field(default=None, description="Where the crank's fixed pivot may lie.")
+
+
+class MotionProblem(LinkageProblem):
+    """Motion generation: a fourbar whose coupler carries a body through two to five positions.
+
+    Each side of the linkage is a dyad: a link from a fixed pivot to a moving pivot on the body. n positions leave 5 − n
+    free choices per dyad (Norton, Table 5-3). Choices that are not stated are searched, and the best distinct linkages
+    are returned; for five positions there are six linkages at most, and all that are sound are returned.
+    """
+
+    model_config = ConfigDict(
+        title="Motion generation",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 40.0, "y": 15.0, "angle": -25.0},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0},
+                    ],
+                    "constraints": {"min_transmission_angle": 35.0},
+                    "max_designs": 5,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 40.0, "y": 15.0, "angle": -25.0},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0},
+                    ],
+                    "ground_line": {"point": [0.0, -60.0], "angle": 0.0},
+                    "input_side": {"fixed_pivot": [0.0, None]},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": -9.0, "y": 7.0, "angle": -14.0},
+                        {"x": -13.0, "y": 18.0, "angle": -28.0},
+                        {"x": -5.0, "y": 33.0, "angle": -46.0},
+                    ],
+                    "constraints": {"min_transmission_angle": 40.0, "max_link_ratio": 5.0},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": -4.0, "y": 4.0, "angle": 6.0},
+                        {"x": -25.0, "y": 11.0, "angle": 30.0},
+                        {"x": -32.0, "y": 10.0, "angle": 38.0},
+                        {"x": -37.0, "y": 8.0, "angle": 44.0},
+                    ],
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0, "exact": True},
+                        {"x": 12.0, "y": 7.0, "angle": -9.0},
+                        {"x": 26.0, "y": 12.0, "angle": -17.0},
+                        {"x": 41.0, "y": 14.0, "angle": -27.0},
+                        {"x": 55.0, "y": 13.0, "angle": -38.0},
+                        {"x": 68.0, "y": 9.0, "angle": -50.0},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0, "exact": True},
+                    ],
+                    "method": "least_squares",
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 12.0, "y": 7.0, "angle": -9.0, "tolerance": {"x": 1.0, "y": 1.0, "angle": 3.0}},
+                        {"x": 26.0, "y": 12.0, "angle": -17.0, "tolerance": 1.0},
+                        {"x": 41.0, "y": 14.0, "angle": -27.0, "tolerance": 1.0},
+                        {"x": 55.0, "y": 13.0, "angle": -38.0, "tolerance": {"angle": 5.0}},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0},
+                    ],
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 40.0, "y": 15.0, "angle": -25.0},
+                        {"x": 75.0, "y": 5.0, "angle": -60.0},
+                    ],
+                    "output_side": {"dyad": "PR", "slide_angle": 15.0},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 30.0, "y": 20.0, "angle": 45.0},
+                    ],
+                    "driver_dyad": {"link": "input", "pivot_region": {"x": [-150.0, 150.0], "y": [-150.0, 0.0]}},
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 30.0, "y": 20.0, "angle": 45.0},
+                    ],
+                    "driver_dyad": {"link": "coupler"},
+                    "max_designs": 3,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["motion"]
+    positions: list[Position] = Field(min_length=2, max_length=200)
+    input_side: DyadChoices = DyadChoices()
+    output_side: DyadChoices = DyadChoices()
+    ground_line: GroundLine | None = Field(default=None, description="Both fixed pivots lie on this line.")
+    method: Literal["auto", "exact", "least_squares"] = Field(
+        default="auto",
+        description="How positions are met: exactly (five at most) or as nearly as can be. auto: exactly up to five.",
+    )
+
+    driver_dyad: Flag | DriverDyad = Field(
+        default=False,
+        description="Add a crank that turns through and moves the linkage from the first position to the last.",
+    )
+
+    @property
+    def slider(self) -> Literal["PR", "RP"] | None:
+        """The slider that is asked for on one side, if one is."""
+        for side in (self.output_side, self.input_side):
+            if side.dyad in ("PR", "RP"):
+                return side.dyad
+        return None
+
+    @property
+    def driver(self) -> DriverDyad | None:
+        """What is wanted of the driver dyad, if one is."""
+        if isinstance(self.driver_dyad, DriverDyad):
+            return self.driver_dyad
+        return DriverDyad() if self.driver_dyad else None
+
+    @property
+    def limits(self) -> list[tuple[float, float, float]]:
+        """How far each position may be missed in x, y (length units) and angle (degrees).
+
+        0 where a coordinate is met exactly; infinite where it is fitted without a limit.
+        """
+        fitted = self.fitted
+        return [self._limits_of(position, fitted) for position in self.positions]
+
+    def _limits_of(self, position: Position, fitted: bool) -> tuple[float, float, float]:
+        tolerance = position.tolerance
+        if isinstance(tolerance, Tolerance):
+            return tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0
+        if tolerance is not None:
+            return tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi))
+        return (math.inf, math.inf, math.inf) if fitted and not position.exact else (0.0, 0.0, 0.0)
+
+    @property
+    def fitted(self) -> bool:
+        """Whether positions without a tolerance are fitted: more than five of them, or least squares asked for.
+
+        Where some position has a tolerance, the others are met exactly.
+        """
+        if any(position.tolerance is not None for position in self.positions):
+            return False
+        enough = len(self.positions) >= MOST_HELD + (self.method == "auto")
+        return self.method != "exact" and enough
+
+    @property
+    def approximate(self) -> bool:
+        """Whether the positions are fitted, with tolerances or without.
+
+        Up to four positions are met exactly although they have tolerances: enough linkages do.
+        """
+        toleranced = any(position.tolerance is not None for position in self.positions)
+        return self.fitted or (toleranced and len(self.positions) >= MOST_HELD)
+
+    @property
+    def task_size(self) -> float:
+        """The length that tolerances and free choices are measured by, in length units.
+
+        The greatest distance between two positions of P; where P moves by less than a thousandth of the way to the
+        pivots and regions that the client stated, that way; where nothing is stated either, 1.
+        """
+        points = [position.point for position in self.positions]
+        moved = max(abs(p - q) for p in points for q in points)
+        reach = max((abs(z - points[0]) for z in self._stated_points()), default=0.0)
+        return max(moved, 0.0 if moved >= LEAST_MOTION * reach else reach) or 1.0
+
+    @property
+    def turns(self) -> list[float]:
+        """Rotation of the body from the first position to each, radians in [−π, π]."""
+        first = self.positions[0].angle
+        return [math.radians(math.remainder(position.angle - first, 360.0)) for position in self.positions]
+
+    def _stated_points(self) -> list[complex]:
+        first = self.positions[0]
+        points = [] if self.ground_line is None else [self.ground_line.foot(first.point)]
+        for side in (self.input_side, self.output_side):
+            for pivot in (side.fixed_pivot, side.moving_pivot):
+                if pivot is not None:
+                    x, y = pivot
+                    points.append(complex(first.x if x is None else x, first.y if y is None else y))
+        for region in (self.constraints.fixed_pivot_region, self.constraints.moving_pivot_region):
+            if region is not None:
+                points += [complex(x, y) for x in region.x for y in region.y]
+        return points
+
+    def contradictions(self) -> list[Contradiction]:
+        """Faults that no single field shows: equal positions, too many or colliding choices."""
+        return [
+            *self._equal_positions(),
+            *self._misplaced_tolerances(),
+            *self._too_many_held(),
+            *self._choices_of_fits(),
+            *self._choices_of_sliders(),
+            *self._overstated_sides(),
+            *self._coinciding_pivots(),
+            *self._pivots_off_the_ground_line(),
+            *self._pivots_outside_regions(),
+            *self.constraints.contradictions(),
+        ]
+
+    def _equal_positions(self) -> list[Contradiction]:
+        size = max(max(abs(p.x), abs(p.y)) for p in self.positions)
+        moved = max(abs(p.point - q.point) for p in self.positions for q in self.positions)
+        if 0.0 < moved < LEAST_LENGTH:
+            return [
+                Contradiction("/positions", f"less than {LEAST_LENGTH} {self.length_unit} apart; take a smaller unit")
+            ]
+        found = []
+        for k, later in enumerate(self.positions):
+            for j, earlier in enumerate(self.positions[:k]):
+                turn = math.remainder(later.angle - earlier.angle, 360.0)
+                near = abs(later.point - earlier.point) <= EQUAL_POSITIONS * size
+                if near and abs(math.radians(turn)) <= EQUAL_POSITIONS:
+                    found.append(Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ"))
+        return found
+
+    def _misplaced_tolerances(self) -> list[Contradiction]:
+        return [
+            Contradiction(f"/positions/{k}/exact", "a position that is met exactly has no tolerance; give one of them")
+            for k, position in enumerate(self.positions)
+            if position.exact and position.tolerance is not None
+        ]
+
+    def _too_many_held(self) -> list[Contradiction]:
+        if self.method == "exact" and len(self.positions) > MOST_HELD and not self.approximate:
+            return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
+        if self.method == "least_squares" and not self.approximate:
+            return [Contradiction("/method", "fewer than five positions can be met exactly; leave the method out")]
+        held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
+        if len(held) > MOST_HELD:
+            detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"
+            return [Contradiction(f"/positions/{held[MOST_HELD]}", detail)]
+        return []
+
+    def _choices_of_fits(self) -> list[Contradiction]:
+        """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""
+        found = []
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            if not self.approximate:
+                break
+            vector = side.coupler_vector
+            if side.rotations is not None or side.link_angle is not None:
+                field = "link_angle" if side.rotations is None else "rotations"
+                found.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
+            if vector is not None and (vector.length is None or vector.angle is None):
+                found.append(
+                    Contradiction(f"/{name}/coupler_vector", "state length and angle where positions are fitted")
+                )
+            if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
+                found.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
+            found += self._partial_pivots(name, side, "where positions are fitted")
+        if self.approximate and self.ground_line is not None:
+            found.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
+        return found
+
+    @staticmethod
+    def _partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
+        return [
+            Contradiction(f"/{name}/{field}", f"state both coordinates {where}")
+            for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot))
+            if pivot is not None and whole_point(pivot) is None
+        ]
+
+    def _choices_of_sliders(self) -> list[Contradiction]:
+        """A slider has one pivot, no link, and one free choice less than a link with two pins."""
+        found = []
+        sides = ("input_side", self.input_side), ("output_side", self.output_side)
+        for name, side in sides:
+            if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
+                found.append(Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP"))
+            if side.dyad not in ("PR", "RP"):
+                continue
+            absent = ["link_angle", "rotations"]
+            absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
+            for field in absent:
+                if getattr(side, field) is not None:
+                    found.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
+            found += self._partial_pivots(name, side, "of a slider's pivot")
+            if self.ground_line is not None:
+                found.append(Contradiction("/ground_line", "cannot be stated with a slider"))
+            free = max(4 - len(self.positions), 0)
+            if not self.approximate and side.count() > free and not side.one_pivot:
+                detail = f"states {side.count()} numbers, but {len(self.positions)} positions leave a slider {free}"
+                found.append(Contradiction(f"/{name}", detail))
+        if self.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
+            found.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
+        if self.input_side.dyad == "RP":
+            found.append(Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side"))
+        if all(side.dyad in ("PR", "RP") for _, side in sides):
+            found.append(Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins"))
+        return found
+
+    def _overstated_sides(self) -> list[Contradiction]:
+        free = 5 - len(self.positions)
+        found = []
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            if self.approximate or side.dyad in ("PR", "RP"):
+                continue
+            if side.rotations is not None and len(side.rotations) != len(self.positions) - 1:
+                found.append(
+                    Contradiction(
+                        f"/{name}/rotations",
+                        f"expected {len(self.positions) - 1} rotations (one for each later position), "
+                        f"got {len(side.rotations)}",
+                    )
+                )
+            if side.moving_pivot is not None and side.coupler_vector is not None:
+                found.append(
+                    Contradiction(
+                        f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
+                    )
+                )
+            elif side.count() > free and not (len(self.positions) > 3 and side.one_pivot):
+                found.append(
+                    Contradiction(
+                        f"/{name}",
+                        f"states {side.count()} numbers, but {len(self.positions)} positions leave {free} free choices "
+                        f"per side; leave some out{' or state one pivot' if len(self.positions) > 3 else ''}",
+                    )
+                )
+            elif self.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
+                found.append(
+                    Contradiction(
+                        "/ground_line",
+                        f"is one number more than the {free} free choices that {len(self.positions)} positions leave "
+                        f"for {name}, which states {side.count()}",
+                    )
+                )
+        return found
+
+    def _pivots_outside_regions(self) -> list[Contradiction]:
+        found = []
+        for path, pivot in self._stated_pivots():
+            region = getattr(self.constraints, f"{path.rsplit('/')[-1]}_region")
+            # An open coordinate cannot lie outside: the region's own stands for it.
+            if region is not None:
+                x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
+                if not region.contains(complex(x, y)):
+                    found.append(Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region"))
+        return found
+
+    def _stated_pivots(self) -> Iterator[tuple[str, PartialPoint]]:
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            for field, pivot in (("fixed_pivot", side.fixed_pivot), ("moving_pivot", side.moving_pivot)):
+                if pivot is not None:
+                    yield f"/{name}/{field}", pivot
+
+    def _pivots_off_the_ground_line(self) -> list[Contradiction]:
+        line = self.ground_line
+        if line is None:
+            return []
+        found = []
+        along = cmath.rect(1.0, math.radians(line.angle))
+        for path, pivot in self._stated_pivots():
+            if path.endswith("/fixed_pivot"):
+                whole = whole_point(pivot)
+                parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
+                if whole is not None and abs(line.offset(whole)) > ON_LINE * self.task_size:
+                    found.append(Contradiction(path, "does not lie on ground_line"))
+                elif whole is None and parallel:
+                    found.append(
+                        Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
+                    )
+        return found
+
+    def _coinciding_pivots(self) -> list[Contradiction]:
+        found = []
+        for pivot in ("fixed_pivot", "moving_pivot"):
+            one, other = getattr(self.input_side, pivot), getattr(self.output_side, pivot)
+            if whole_point(one) is not None and one == other:
+                found.append(
+                    Contradiction(
+                        f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost"
+                    )
+                )
+        return found

@@ -1,0 +1,397 @@
+"""Screening of all pairs of an input dyad and an output dyad, in a compiled kernel.
+
+Both dyads carry the same body, so the positions of all four joints at every target are known; no linkage is solved for.
+What has to be decided for a pair is whether one motion of the input meets the targets:
+
+* Assembly. At target k the sign of (B − A) × (B − O4) tells the assembly; all targets must agree.
+* Order. The input turns one way: its rotations ρ_k from the first target, taken modulo a full turn, must rise
+  (turning counter-clockwise) or fall (clockwise). With two targets both ways are open, and the shorter is taken. The
+  input dyad alone decides it; where it fails and order is demanded, that is the verdict on all its pairs.
+* Toggles and transmission. The diagonal f = |O4 − A| decides both. While the input turns, f has its extremes at the
+  ends of the range or where the input lies on the ground line, so the range holds no toggle when
+  cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the least
+  transmission angle.
+
+The score of a sound pair is :func:`synthesis.outcome.ranking.quality`. The verdicts are for choosing among candidates
+only; what is returned to a client is verified by the analysis core from the dimensions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.task import MotionTask
+from synthesis.model.linkage_statement import Constraints
+from synthesis.outcome.ranking import quality
+
+REASONS = (
+    "sound",
+    "degenerate",
+    "link_length",
+    "link_ratio",
+    "grashof",
+    "full_rotation",
+    "circuit_defect",
+    "branch_defect",
+    "order_defect",
+    "transmission_angle",
+)
+"""What becomes of a pair; the kernel returns the index."""
+
+(
+    SOUND,
+    DEGENERATE,
+    LINK_LENGTH,
+    LINK_RATIO,
+    GRASHOF,
+    FULL_ROTATION,
+    CIRCUIT_DEFECT,
+    BRANCH_DEFECT,
+    ORDER_DEFECT,
+    TRANSMISSION_ANGLE,
+) = range(len(REASONS))
+
+FOLDED = 1.0 - 1e-9
+"""|cos γ| from which coupler and output count as in line: a toggle or change point, to the rounding of long links."""
+
+SHORTEST_LINK = 1e-4
+"""A link shorter than this share of the longest is no link: the linkage is degenerate."""
+
+ANY, CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, NON_GRASHOF = range(5)
+_GRASHOF_DEMAND = {
+    "any": ANY,
+    "crank_rocker": CRANK_ROCKER,
+    "double_crank": DOUBLE_CRANK,
+    "double_rocker": DOUBLE_ROCKER,
+    "non_grashof": NON_GRASHOF,
+}
+
+
+BY_QUALITY, BY_SIZE, BY_TRANSMISSION = range(3)
+_RANKING = {"quality": BY_QUALITY, "accuracy": BY_QUALITY, "size": BY_SIZE, "transmission_angle": BY_TRANSMISSION}
+"""What the score goes by. Exact designs are all alike in accuracy."""
+
+PAST_TOGGLE = 1e-3
+"""Sine that stands for the transmission angle of a motion past a toggle in a score, so that it counts for little."""
+
+
+class Demands(NamedTuple):
+    """The client's constraints as the kernel takes them; lengths in task units."""
+
+    least_transmission_cosine: float
+    grashof: int
+    full_rotation: bool
+    same_branch: bool
+    in_order: bool
+    shortest: float
+    longest: float
+    link_ratio: float
+    rank_by: int
+
+
+class Screening(NamedTuple):
+    """Verdicts of all pairs, index into :data:`REASONS`, and scores, shape (inputs, outputs).
+
+    Scores are positive for sound pairs, higher is better, and 0 for all others.
+    """
+
+    verdict: NDArray[np.int8]
+    score: NDArray[np.float32]
+
+    def rejected(self) -> dict[str, int]:
+        """How many pairs were rejected for each reason that occurred."""
+        counts = np.bincount(self.verdict.ravel(), minlength=len(REASONS))
+        return {name: int(n) for name, n in zip(REASONS, counts, strict=True) if n and name != "sound"}
+
+
+def demands(
+    constraints: Constraints, task: MotionTask, least_transmission_angle: float, rank_by: str = "quality"
+) -> Demands:
+    """Constraints in task units; the least transmission angle, degrees, is given apart."""
+    limits = constraints.link_length
+    return Demands(
+        least_transmission_cosine=math.cos(math.radians(least_transmission_angle)),
+        grashof=_GRASHOF_DEMAND[constraints.grashof],
+        full_rotation=constraints.full_rotation,
+        same_branch=constraints.same_branch,
+        in_order=constraints.in_order,
+        shortest=0.0 if limits is None else limits.min / task.size,
+        longest=math.inf if limits is None or limits.max is None else limits.max / task.size,
+        link_ratio=math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio,
+        rank_by=_RANKING[rank_by],
+    )
+
+
+def screen(task: MotionTask, inputs: Dyads, outputs: Dyads, wanted: Demands) -> Screening:
+    """Screen every pair of an input and an output dyad.
+
+    Parameters
+    ----------
+    task : MotionTask
+        n positions.
+    inputs, outputs : Dyads
+        Shapes (i,) and (o,), task coordinates.
+    wanted : Demands
+        What a pair must satisfy.
+    """
+    shape = (len(inputs.fixed), len(outputs.fixed))
+    verdict, score = np.full(shape, ORDER_DEFECT, np.int8), np.zeros(shape, np.float32)
+    _screen(
+        np.ascontiguousarray(task.images(inputs.moving)),
+        np.ascontiguousarray(inputs.fixed),
+        np.ascontiguousarray(task.images(outputs.moving)),
+        np.ascontiguousarray(outputs.fixed),
+        task.points,
+        wanted,
+        verdict,
+        score,
+    )
+    return Screening(verdict, score)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _screen(
+    a_images: NDArray[np.complex128],
+    o2s: NDArray[np.complex128],
+    b_images: NDArray[np.complex128],
+    o4s: NDArray[np.complex128],
+    points: NDArray[np.complex128],
+    wanted: Demands,
+    verdict: NDArray[np.int8],
+    score: NDArray[np.float32],
+) -> None:
+    """Judge all pairs; those that are not judged keep the verdict and score that they have."""
+    n = a_images.shape[1]
+    turned = np.empty((2, n))
+    inputs, outputs = _lengths(a_images, o2s), _lengths(b_images, o4s)
+    for i in range(len(o2s)):
+        o2 = o2s[i]
+        in_order = _turns(a_images[i], o2, turned)
+        if wanted.in_order and not (in_order[0] or in_order[1]):
+            continue  # an order defect with every output
+        around = np.sort(turned[0])
+        _judge(
+            i, a_images, o2, inputs[i], b_images, o4s, outputs, turned, around, in_order, points, wanted, verdict, score
+        )
+
+
+@njit(cache=True, nogil=True)
+def _lengths(images: NDArray[np.complex128], pivots: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Link lengths of dyads."""
+    lengths = np.empty(len(pivots))
+    for i in range(len(pivots)):
+        lengths[i] = abs(images[i, 0] - pivots[i])
+    return lengths
+
+
+@njit(cache=True, nogil=True)
+def _cross(u: complex, v: complex) -> float:
+    return u.real * v.imag - u.imag * v.real
+
+
+@njit(cache=True, nogil=True)
+def _size_of(z: complex) -> float:
+    """|z| of a number near one in size: without the care for overflow that abs takes."""
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+@njit(cache=True, nogil=True)
+def _turns(a: NDArray[np.complex128], o2: complex, turned: NDArray[np.float64]) -> tuple[bool, bool]:
+    """Input rotations from the first target, counter-clockwise (row 0) and clockwise; which way they are in order."""
+    n = len(a)
+    first = (a[0] - o2).conjugate()
+    for k in range(n):
+        rotation = 0.0
+        if k > 0:
+            z = (a[k] - o2) * first
+            rotation = math.atan2(z.imag, z.real)
+        turned[0, k] = rotation if rotation >= 0.0 else rotation + 2.0 * math.pi
+        turned[1, k] = rotation if rotation <= 0.0 else rotation - 2.0 * math.pi
+    rising = falling = True
+    for k in range(1, n):
+        rising = rising and turned[0, k] > turned[0, k - 1]
+        falling = falling and turned[1, k] < turned[1, k - 1]
+    return rising, falling
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _judge(
+    i: int,
+    a_images: NDArray[np.complex128],
+    o2: complex,
+    a: float,
+    b_images: NDArray[np.complex128],
+    o4s: NDArray[np.complex128],
+    outputs: NDArray[np.float64],
+    turned: NDArray[np.float64],
+    around: NDArray[np.float64],
+    in_order: tuple[bool, bool],
+    points: NDArray[np.complex128],
+    wanted: Demands,
+    verdict: NDArray[np.int8],
+    score: NDArray[np.float32],
+) -> None:
+    """Judge the pairs of one input dyad with all outputs.
+
+    One long loop: handing arrays to a function for each pair would cost more than what is decided there.
+    """
+    n = a_images.shape[1]
+    for j in range(len(o4s)):
+        o4, c = o4s[j], outputs[j]
+        ground = o4 - o2
+        b, d = _size_of(b_images[j, 0] - a_images[i, 0]), _size_of(ground)
+        shortest, longest = min(a, b, c, d), max(a, b, c, d)
+        if shortest <= SHORTEST_LINK * longest:
+            verdict[i, j] = DEGENERATE
+            continue
+        if shortest < wanted.shortest or longest > wanted.longest:
+            verdict[i, j] = LINK_LENGTH
+            continue
+        if longest > wanted.link_ratio * shortest:
+            verdict[i, j] = LINK_RATIO
+            continue
+        grashof = 2.0 * (shortest + longest) < a + b + c + d
+        if wanted.grashof != ANY:
+            crank = grashof and shortest == a
+            good = (
+                (wanted.grashof == CRANK_ROCKER and crank)
+                or (wanted.grashof == DOUBLE_CRANK and grashof and shortest == d)
+                or (wanted.grashof == DOUBLE_ROCKER and grashof and shortest == b)
+                or (wanted.grashof == NON_GRASHOF and not grashof)
+            )
+            if not good:
+                verdict[i, j] = GRASHOF
+                continue
+        input_turns_through = grashof and shortest in (a, d)
+        if wanted.full_rotation and not input_turns_through:
+            verdict[i, j] = FULL_ROTATION
+            continue
+
+        one_assembly = True
+        first_cross = _cross(b_images[j, 0] - a_images[i, 0], b_images[j, 0] - o4)
+        for k in range(1, n):
+            if not first_cross * _cross(b_images[j, k] - a_images[i, k], b_images[j, k] - o4) > 0.0:
+                one_assembly = False
+                break
+        if input_turns_through and not one_assembly:
+            verdict[i, j] = CIRCUIT_DEFECT
+            continue
+        if grashof and not input_turns_through:
+            one_side = True
+            first_lateral = _cross(ground, a_images[i, 0] - o2)
+            for k in range(1, n):
+                one_side = one_side and first_lateral * _cross(ground, a_images[i, k] - o2) > 0.0
+            if not one_side:
+                verdict[i, j] = CIRCUIT_DEFECT
+                continue
+
+        best = 2.0  # largest |cos γ| on the way that is taken; above 1 none is free of toggles
+        if one_assembly:
+            first, last = (a_images[i, 0] - o2) * ground.conjugate(), (a_images[i, n - 1] - o2) * ground.conjugate()
+            near, far = min(first.real, last.real) / (a * d), max(first.real, last.real) / (a * d)
+            shorter = 0 if turned[0, n - 1] <= -turned[1, n - 1] else 1
+            for way in (1 - shorter, shorter):  # the shorter way that is free of toggles has the last word
+                if in_order[way]:
+                    folded, stretched = _ground_line_passed(first, last, turned[way, n - 1])
+                    worst = _larger_cosine(a, b, c, d, -1.0 if folded else near, 1.0 if stretched else far)
+                    if worst < FOLDED:
+                        best = worst
+            if best >= FOLDED:
+                out_of_order = _out_of_order(a, b, c, d, math.atan2(first.imag, first.real), around)
+                if out_of_order < FOLDED:
+                    if wanted.in_order:
+                        verdict[i, j] = ORDER_DEFECT
+                        continue
+                    best = out_of_order
+        if best >= FOLDED:
+            if wanted.same_branch:
+                verdict[i, j] = BRANCH_DEFECT
+                continue
+            best = 1.0
+        if best > wanted.least_transmission_cosine:
+            verdict[i, j] = TRANSMISSION_ANGLE
+            continue
+        sine = max(math.sqrt(1.0 - best * best), PAST_TOGGLE)
+        verdict[i, j] = SOUND
+        if wanted.rank_by == BY_TRANSMISSION:
+            score[i, j] = sine
+        elif wanted.rank_by == BY_SIZE:
+            score[i, j] = 1.0 / _size(a_images, i, o2, b_images, j, o4, points)
+        else:
+            reach = max(longest, _size_of(a_images[i, 0]), _size_of(b_images[j, 0]))
+            score[i, j] = quality(sine, reach, longest / shortest)
+
+
+@njit(cache=True, nogil=True)
+def _size(
+    a_images: NDArray[np.complex128],
+    i: int,
+    o2: complex,
+    b_images: NDArray[np.complex128],
+    j: int,
+    o4: complex,
+    points: NDArray[np.complex128],
+) -> float:
+    """Diagonal of the box around all joints and the body's point at all targets."""
+    left, right = min(o2.real, o4.real), max(o2.real, o4.real)
+    low, high = min(o2.imag, o4.imag), max(o2.imag, o4.imag)
+    for k in range(len(points)):
+        for z in (a_images[i, k], b_images[j, k], points[k]):
+            left, right = min(left, z.real), max(right, z.real)
+            low, high = min(low, z.imag), max(high, z.imag)
+    return math.hypot(right - left, high - low)
+
+
+@njit(cache=True, nogil=True)
+def _out_of_order(a: float, b: float, c: float, d: float, delta: float, around: NDArray[np.float64]) -> float:
+    """Largest |cos γ| over the shortest toggle-free range that covers all targets; 2 when there is none.
+
+    Such a range leaves out one of the gaps between neighbouring targets, which are given in their order.
+    """
+    best, longest = 2.0, 0.0
+    for k in range(len(around)):
+        after = around[k + 1] if k + 1 < len(around) else around[0] + 2.0 * math.pi
+        gap = after - around[k]
+        worst = _worst_cosine(a, b, c, d, delta + after, delta + around[k] + 2.0 * math.pi)
+        if worst < FOLDED and gap > longest:
+            best, longest = worst, gap
+    return best
+
+
+@njit(cache=True, nogil=True)
+def _worst_cosine(a: float, b: float, c: float, d: float, start: float, end: float) -> float:
+    """Largest |cos γ| while the input turns from start up to end (from the ground line); above 1 past a toggle."""
+    turn = 2.0 * math.pi
+    near, far = min(math.cos(start), math.cos(end)), max(math.cos(start), math.cos(end))
+    if math.floor(end / turn) >= math.ceil(start / turn):
+        far = 1.0
+    if math.floor((end - math.pi) / turn) >= math.ceil((start - math.pi) / turn):
+        near = -1.0
+    return _larger_cosine(a, b, c, d, near, far)
+
+
+@njit(cache=True, nogil=True)
+def _ground_line_passed(first: complex, last: complex, turned: float) -> tuple[bool, bool]:
+    """Whether an input that turns from first to last points away from O4 on its way, and whether towards it.
+
+    The two are directions as seen from the ground line; the turn, within a full one, tells the way between them.
+    """
+    start, end = (first.imag, last.imag) if turned >= 0.0 else (-first.imag, -last.imag)
+    if abs(turned) <= math.pi:
+        return start >= 0.0 and end <= 0.0, start <= 0.0 and end >= 0.0
+    return not (start < 0.0 and end > 0.0), not (start > 0.0 and end < 0.0)
+
+
+@njit(cache=True, nogil=True)
+def _larger_cosine(a: float, b: float, c: float, d: float, near: float, far: float) -> float:
+    """The larger |cos γ| of two inputs, given by the cosines of their angles from the ground line."""
+    constant = b * b + c * c - a * a - d * d
+    gamma_one = (constant + 2.0 * a * d * far) / (2.0 * b * c)
+    gamma_two = (constant + 2.0 * a * d * near) / (2.0 * b * c)
+    return max(abs(gamma_one), abs(gamma_two))

@@ -1,0 +1,253 @@
+"""All dyads that meet linear conditions, as the points where a linear space cuts the variety of dyads.
+
+Write a dyad with fixed pivot o/o₀ and moving pivot a/a₀ (homogeneous, so that either may lie at infinity) as the point
+
+    x = (p, A, O, d + ie) = (o₀a₀, o₀a, a₀o, conj(o)a)          (seven real coordinates, up to a factor).
+
+Points of that kind are those with
+
+    p · (d + ie) = conj(O) A,                                    (two quadrics; a variety of dimension 4 and degree 4)
+
+and the condition that the link keeps its length from position 1 to k (:mod:`synthesis.kinds.motion.dyads`) is linear in
+x,
+
+    p|c|²/2 + Re(conj(c) r A) − Re(conj(c) O) − Re((r − 1)(d + ie)) = 0.
+
+So are a coordinate of a pivot, the angle of the link, the angle of the coupler vector, a whole pivot (O = O* p and
+d + ie = conj(O*) A), and a rotation of the link (p c + r A − O = e^{iβ}(A − O)). Four conditions leave a plane, which
+the two quadrics cut in four points: Burmester's four dyads of five positions, counted with the complex ones and with
+multiplicity. Three conditions leave a space of three dimensions, in which the quadrics meet in a curve: Burmester's
+curve of four positions (:mod:`synthesis.kinds.motion.burmester`). A length of the coupler vector is a third quadric.
+
+p = 0 stands for a slider: with O ≠ 0 the fixed pivot is at infinity, and A moves on a straight line (PR); with A ≠ 0
+the moving pivot is, and a line of the body passes through O (RP). They are answers as good as the others here, hence
+no dyad is lost that runs away.
+
+The seven coordinates are those of planar kinematic mapping without its two isotropic ones (Bottema & Roth,
+*Theoretical Kinematics*, ch. 11; McCarthy, *Geometric Design of Linkages*, ch. 5), whose two points the cubic curves of
+Burmester have in common at infinity in addition to the four.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from synthesis.kinds.motion.dyads import (
+    DEPENDENT,
+    FAR,
+    DyadConditions,
+    Dyads,
+    directions_hold,
+)
+from synthesis.kinds.motion.task import MotionTask, Real
+from synthesis.numerics.quadrics import common_points
+
+BLANK = 1e-10
+"""Norm of a quadric on the linear space below which it vanishes there; its matrix has unit size in all."""
+
+AT_INFINITY = 1e-5
+"""p of a unit point x, about task size over distance squared, below which a solution that is not simple lies at
+infinity: conditions on the coupler's length have double solutions there, which show half of their digits."""
+
+NOWHERE = 1e-6
+"""A and O of a unit point x below which both pivots are at infinity: it guides nothing. Where the solution is double,
+as it is for a stated coupler length, rounding leaves half of the digits of a zero."""
+
+
+class SliderDyad(NamedTuple):
+    """A dyad with a pivot at infinity, in task coordinates.
+
+    PR: the point ``point`` of the body (in the first position) moves on a line with the normal ``normal``. RP: the line
+    of the body that, in the first position, passes through ``point`` with the normal ``normal`` always does.
+    """
+
+    kind: Literal["PR", "RP"]
+    point: complex
+    normal: complex
+
+
+class Section(NamedTuple):
+    """Dyads that meet linear conditions.
+
+    Attributes
+    ----------
+    dyads : Dyads
+        Those with both pivots within reach, shape (k,), task coordinates.
+    double : bool, shape (k,)
+        Two or more dyads lie here, to rounding.
+    sliders : tuple of SliderDyad
+        Those with a pivot at infinity, or farther away than :data:`~synthesis.kinds.motion.dyads.FAR`.
+    finite : bool
+        False where a whole family of dyads meets the conditions; then none is returned.
+    proved : bool
+        All solutions, the complex ones included, are accounted for, but for what lies at infinity: these are all dyads.
+    """
+
+    dyads: Dyads
+    double: np.ndarray
+    sliders: tuple[SliderDyad, ...]
+    finite: bool
+    proved: bool
+
+
+def pose_rows(task: MotionTask) -> Real:
+    """Conditions that the link keeps its length from the first position to each later one: unit rows (n − 1, 7)."""
+    r = task.turns[1:]
+    c = task.points[1:] - r * task.points[0]
+    forward = np.conj(r) * c
+    rows = np.stack([np.abs(c) ** 2 / 2.0, forward.real, forward.imag, -c.real, -c.imag, 1.0 - r.real, r.imag], axis=1)
+    return _unit(rows)
+
+
+def condition_rows(task: MotionTask, conditions: DyadConditions) -> Real:
+    """The client's linear conditions: unit rows (count, 7); a coupler length is none of them."""
+    rows: list[Real] = []
+
+    def add(p: complex, a: complex, o: complex, de: complex = 0.0) -> None:
+        """The row of Re(p) p + Re(conj(a) A) + Re(conj(o) O) + Re(conj(de) (d + ie)) = 0."""
+        rows.append(np.array([p.real, a.real, a.imag, o.real, o.imag, de.real, de.imag]))
+
+    for k, rotation in enumerate(conditions.rotations, start=1):
+        if rotation is not None:
+            r, spin = complex(task.turns[k]), complex(np.exp(1j * rotation))
+            c = complex(task.points[k]) - r * complex(task.points[0])
+            for u in (1.0, 1j):  # real and imaginary part
+                add((np.conj(u) * c).real, np.conj(r - spin) * u, np.conj(spin - 1.0) * u)
+    for line in conditions.fixed_lines:
+        add(complex(-line.offset), 0.0, line.normal)
+    for line in conditions.moving_lines:
+        add(complex(-line.offset), line.normal, 0.0)
+    if conditions.fixed_pivot is not None:
+        pivot = complex(conditions.fixed_pivot)
+        for u in (1.0, 1j):
+            add(-(np.conj(u) * pivot).real, 0.0, u)
+            add(0.0, -pivot * u, 0.0, u)
+    if conditions.moving_pivot is not None:
+        pivot = complex(conditions.moving_pivot)
+        for u in (1.0, 1j):
+            add(-(np.conj(u) * pivot).real, u, 0.0)
+            add(0.0, 0.0, -pivot * np.conj(u), u)
+    if conditions.link_angle is not None:
+        normal = 1j * complex(np.exp(1j * conditions.link_angle))
+        add(0.0, normal, -normal)
+    if conditions.coupler_angle is not None:
+        normal = 1j * complex(np.exp(1j * conditions.coupler_angle))
+        add((np.conj(normal) * complex(task.points[0])).real, -normal, 0.0)
+    return _unit(np.array(rows)) if rows else np.empty((0, 7))
+
+
+def null_space(rows: Real) -> Real:
+    """Orthonormal columns (7, m) that span what the rows leave."""
+    _, s, vh = np.linalg.svd(rows)
+    rank = int(np.sum(s > DEPENDENT))
+    basis: Real = vh[rank:].T
+    return basis
+
+
+def variety_forms(basis: Real) -> Real:
+    """The two quadrics p(d + ie) = conj(O)A, real and imaginary part, on the space of ``basis``: (2, m, m)."""
+    forms: Real = np.einsum("im,qij,jn->qmn", basis, VARIETY, basis)
+    return forms
+
+
+def section(task: MotionTask, conditions: DyadConditions) -> Section:
+    """All dyads of as many conditions as a dyad has freedoms, or more.
+
+    Parameters
+    ----------
+    task : MotionTask
+        n positions.
+    conditions : DyadConditions
+        Numbers, not arrays. 5 − n of them at least; at most one of them a coupler length.
+    """
+    basis = null_space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
+    m = basis.shape[1]
+    none = Section(Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128)), np.empty(0, np.bool_), (), True, True)
+    if m == 0:
+        return none
+    forms = list(variety_forms(basis))
+    if conditions.coupler_length is not None:
+        forms.append(basis.T @ _length_form(task, float(conditions.coupler_length)) @ basis)
+    independent = _independent(forms)
+    if len(independent) < m - 1:
+        return none._replace(finite=False, proved=False)
+    if m == 1:
+        points, double, proved = basis.T, np.zeros(1, np.bool_), True
+        met = len(independent) == 0
+        return _sorted_out(task, conditions, points, double, proved) if met else none
+    solved = common_points(independent[: m - 1])
+    if not solved.finite:
+        return none._replace(finite=False, proved=False)
+    met = np.abs(np.einsum("qij,ki,kj->kq", independent[m - 1 :], solved.real, solved.real)).max(axis=1, initial=0.0)
+    kept = met <= DEPENDENT
+    proved = bool(np.all(np.abs(solved.unproved @ basis[0]) <= AT_INFINITY))
+    return _sorted_out(task, conditions, solved.real[kept] @ basis.T, solved.double[kept], proved)
+
+
+def split(points: Real) -> tuple[Dyads, np.ndarray, tuple[SliderDyad, ...]]:
+    """Dyads of real points x (k, 7) with both pivots in reach, which points they are (bool, k), and the sliders."""
+    p = points[:, 0]
+    moving, fixed = points[:, 1] + 1j * points[:, 2], points[:, 3] + 1j * points[:, 4]
+    mixed = points[:, 5] + 1j * points[:, 6]
+    reach = np.maximum(np.abs(moving), np.abs(fixed))
+    near = (reach < FAR * np.abs(p)) & (reach > NOWHERE)
+    far = ~near & (reach > NOWHERE)
+    sliders: list[SliderDyad] = []
+    for a, o, de in zip(moving[far], fixed[far], mixed[far], strict=True):
+        if abs(o) > abs(a):
+            sliders.append(SliderDyad("PR", complex(de * o) / abs(o) ** 2, complex(o / abs(o))))
+        else:
+            sliders.append(SliderDyad("RP", complex(np.conj(de) * a) / abs(a) ** 2, complex(a / abs(a))))
+    scale = p[near].astype(np.complex128)
+    return Dyads(fixed[near] / scale, moving[near] / scale), near, tuple(sliders)
+
+
+def _sorted_out(
+    task: MotionTask, conditions: DyadConditions, points: Real, double: np.ndarray, proved: bool
+) -> Section:
+    dyads, near, sliders = split(points)
+    good = directions_hold(task, conditions, dyads)
+    return Section(Dyads(dyads.fixed[good], dyads.moving[good]), double[near][good], sliders, True, proved)
+
+
+def _unit(rows: Real) -> Real:
+    unit: Real = rows / np.linalg.norm(rows, axis=-1, keepdims=True)
+    return unit
+
+
+def _independent(forms: list[Real]) -> Real:
+    """Combinations of the forms that are independent, of unit norm."""
+    m = forms[0].shape[-1]
+    _, s, vh = np.linalg.svd(np.array(forms).reshape(len(forms), m * m), full_matrices=False)
+    kept: Real = vh[s > BLANK].reshape(-1, m, m)
+    return kept
+
+
+def _length_form(task: MotionTask, length: float) -> Real:
+    """|A − P₁ p|² = z² p² as a symmetric matrix of unit norm."""
+    point = complex(task.points[0])
+    form = np.zeros((7, 7))
+    form[0, 0] = abs(point) ** 2 - length**2
+    form[0, 1:3] = form[1:3, 0] = -point.real, -point.imag
+    form[1, 1] = form[2, 2] = 1.0
+    unit: Real = form / np.linalg.norm(form)
+    return unit
+
+
+def _variety() -> Real:
+    p, ar, ai, or_, oi, d, e = range(7)
+    forms = np.zeros((2, 7, 7))
+    for form, terms in zip(
+        forms,
+        (((p, d, 1.0), (or_, ar, -1.0), (oi, ai, -1.0)), ((p, e, 1.0), (or_, ai, -1.0), (oi, ar, 1.0))),
+        strict=True,
+    ):
+        for i, j, value in terms:
+            form[i, j] = form[j, i] = value / 2.0
+    return forms
+
+
+VARIETY = _variety()
+"""The two quadrics as symmetric matrices, shape (2, 7, 7)."""

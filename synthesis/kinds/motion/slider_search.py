@@ -1,0 +1,423 @@
+"""Slider-cranks and inverted slider-cranks that carry the body: pairs of a link and a slider, screened and verified.
+
+Both dyads carry the same body, so all joints at the targets are known, as for fourbars. What the screening decides:
+
+* Assembly. A PR dyad's pin stays ahead of the crank pin along its line, or behind; the same of the block at O4 along
+  the body's line of an RP dyad. Where the slider drives, the crank pin stays on one side of the line from slider to O2.
+* Order. The driving crank turns one way (or the driving slider moves one way) through the targets.
+* Transmission. With a PR dyad the sine is √(1 − (h/b)²), h the crank pin's distance from the slide's line; with an RP
+  dyad √(1 − (ρ/f)²), ρ the pin's distance from the body's line and f its distance from O4; with a driving slider that
+  of the angle between crank and coupler. h, f and the diagonal have their extremes at the ends of the used range, or
+  where the crank is square to the line, in line with O4, or where the slider passes the foot of O2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.choices import side_dyads
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.problem import (
+    DyadChoices,
+    MotionProblem,
+    whole_point,
+)
+from synthesis.kinds.motion.sections import SliderDyad
+from synthesis.kinds.motion.sliders import Sliders, sliders
+from synthesis.kinds.motion.task import (
+    Complex,
+    MotionTask,
+    Real,
+    motion_task,
+)
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
+from synthesis.model.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
+from synthesis.outcome.ranking import (
+    BULKY,
+    UNEVEN,
+    distinct,
+    ranked,
+)
+
+REASONS = {
+    "reaches_targets": "residual",
+    "same_circuit": "circuit_defect",
+    "same_branch": "branch_defect",
+    "visits_in_order": "order_defect",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+USABLE_TRANSMISSION_ANGLE = 30.0
+"""Degrees; where the client sets no limit, pairs below this are tried only if none reaches it."""
+
+SHORTEST_LINK = 1e-3
+"""A link shorter than this share of the longest is none."""
+
+LEAST_ATTEMPTS = 40
+"""Pairs driven at least before the search gives up; at most three for each design wanted."""
+
+APART = 0.25
+"""Distinct designs move some joint by at least this share of the task's size, or by half of it, and so on."""
+
+REJECTED = (
+    "sound",
+    "degenerate",
+    "circuit_defect",
+    "order_defect",
+    "branch_defect",
+    "transmission_angle",
+    "link_length",
+)
+"""Verdicts of the screening."""
+
+
+class _Screened(NamedTuple):
+    """Verdicts (index into REJECTED) and scores of all pairs, shape (links, sliders); positive scores are sound."""
+
+    verdict: NDArray[np.int64]
+    score: Real
+
+
+LINKS, SLIDERS = 500, 160
+"""Dyads of both sides where both are drawn from families."""
+
+ALONE = 6000
+"""Dyads of a side that is drawn where the other is determined."""
+
+_OPEN = {"degenerate", "residual", "cannot_be_driven", "outranked"}
+"""Reasons that say what was not shown of a pair, not what cannot be."""
+
+
+def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: Progress) -> MotionResult:
+    """Linkages with the slider that is asked for on one side, for two to five positions."""
+    task = motion_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    progress(0.0, "finding sliders")
+    stated = problem.output_side if problem.output_side.dyad == kind else problem.input_side
+    linked = problem.input_side if stated is problem.output_side else problem.output_side
+    found = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
+    if not len(found.points):
+        return _none(problem, found.reason, complete=not found.sampled)
+    progress(0.1, "finding links")
+    links = side_dyads(task, problem, linked, rng, LINKS if found.sampled else ALONE)
+    if not len(links.dyads.fixed):
+        return _none(problem, links.reason.replace("the side", "the side with pins"), complete=links.complete)
+    if found.sampled and not links.sampled:
+        found = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
+    within = _inside(problem, task, found, kind)
+    found = found._replace(points=found.points[within], angles=found.angles[within])
+    return slider_linkages(problem, task, links.dyads, found, kind, progress)
+
+
+def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
+    """The answer to a problem that no fourbar solves: with a slider, where the client leaves that open.
+
+    A search that merely met no fourbar is left as it is: sliders are then to be asked for.
+    """
+    if result.search.candidates and not result.search.complete:
+        return result
+    for kind, asked in _asking_for_sliders(problem):
+        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        if found.designs:
+            text = f"{result.summary} A slider does what pins cannot: {found.summary}"
+            return found.model_copy(update={"summary": text})
+    return result
+
+
+def beside_sliders(
+    problem: MotionProblem, result: MotionResult, known: tuple[SliderDyad, ...], progress: Progress
+) -> MotionResult:
+    """The answer to a problem whose dyads are all known, where some of them, ``known``, are sliders.
+
+    The linkages with a slider are as good as the others. Each way of driving one counts as a candidate. Choices that
+    belong to pins leave sliders out.
+    """
+    parts: list[MotionResult] = []
+    kinds = {slider.kind for slider in known}
+    met: dict[str, bool] = {}
+    for kind, asked in _asking_for_sliders(problem):
+        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        met[kind] = met.get(kind, False) or found.search.candidates > 0
+        if found.search.candidates:
+            parts.append(found)
+    if not met:
+        return result
+    missing = {kind for kind in kinds if not met.get(kind, True)}
+    rejected = Counter(result.search.rejected)
+    for part in parts:
+        rejected.update(part.search.rejected)
+    designs = [*result.designs, *(design for part in parts for design in part.designs)]
+    accepted = sum(part.search.accepted for part in parts)
+    search = result.search.model_copy(
+        update={
+            "method": f"{result.search.method}, slider_search",
+            "complete": result.search.complete and not missing and not _OPEN & rejected.keys(),
+            "candidates": result.search.candidates + sum(part.search.candidates for part in parts),
+            "accepted": result.search.accepted + accepted,
+            "rejected": dict(rejected),
+        }
+    )
+    noun = "linkage with a slider carries" if accepted == 1 else "linkages with a slider carry"
+    text = f"{result.summary} {accepted or 'No'} {noun} the body through all positions."
+    designs = ranked(designs, problem.rank_by)[: problem.max_designs]
+    return result.model_copy(update={"designs": designs, "search": search, "summary": text})
+
+
+def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", "RP"], MotionProblem]]:
+    """The problem with a slider asked for on each side that is open to it."""
+    kinds: tuple[Literal["PR", "RP"], ...] = ("PR", "RP")
+    for kind in kinds:
+        for name in ("output_side", "input_side") if kind == "PR" else ("output_side",):
+            choices: DyadChoices = getattr(problem, name)
+            if choices.dyad != "any" or problem.ground_line is not None:
+                continue
+            asked = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
+            if not asked.contradictions():
+                yield kind, asked
+
+
+def _inside(problem: MotionProblem, task: MotionTask, found: Sliders, kind: str) -> NDArray[np.bool_]:
+    """Which sliders have their pivot in the client's region for it."""
+    constraints = problem.constraints
+    region = constraints.moving_pivot_region if kind == "PR" else constraints.fixed_pivot_region
+    if region is None:
+        return np.ones(len(found.points), np.bool_)
+    return np.array([region.contains(z) for z in task.origin + found.points * task.size], np.bool_)
+
+
+def _none(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResult:
+    """The answer where one side has no dyad at all."""
+    search = Search(method="slider_search", complete=complete, candidates=0, accepted=0, rejected={}, seed=problem.seed)
+    return MotionResult(designs=[], search=search, summary=reason)
+
+
+def slider_linkages(
+    problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, kind: str, progress: Progress
+) -> MotionResult:
+    """Linkages of a link with two pins and a slider (``kind`` PR or RP), the best distinct ones verified.
+
+    The slider drives where the client asks for it on the input side.
+    """
+    driving = problem.input_side.dyad == "PR"
+    limit = problem.constraints.min_transmission_angle
+    progress(0.3, f"screening {len(links.fixed) * len(sliders.points)} pairs of links and sliders")
+    few = len(links.fixed) * len(sliders.points) <= LEAST_ATTEMPTS  # then all are driven
+    wanted = (0.0 if few else USABLE_TRANSMISSION_ANGLE) if limit is None else limit
+    screened = _screen(problem, task, links, sliders, kind, driving, wanted)
+    if limit is None and not screened.score.any():
+        screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
+    counts = np.bincount(screened.verdict.ravel(), minlength=len(REJECTED))
+    rejected = Counter({name: int(n) for name, n in zip(REJECTED, counts, strict=True) if n and name != "sound"})
+    passed: list[LinkageDesign] = []
+    failed: list[LinkageDesign] = []
+    chosen = _best(task, links, sliders, screened, max(3 * problem.max_designs, LEAST_ATTEMPTS))
+    tried = 0
+    for i, j in chosen:
+        progress(0.5 + 0.5 * tried / len(chosen), "driving the best pairs")
+        tried += 1
+        design = verify(problem, _mechanism(problem, task, links, sliders, kind, driving, i, j))
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            passed.append(design)
+        else:
+            failed.append(design)
+            name = next(check.name for check in design.verification.checks if not check.passed)
+            rejected[REASONS.get(name, name)] += 1
+        if len(passed) == problem.max_designs:
+            break
+    sound = int(np.count_nonzero(screened.score))
+    if sound > tried:
+        rejected["outranked"] = sound - tried
+    progress(1.0, "verified")
+    shown = [*passed, *(failed if problem.include_failed else [])]
+    word = "slider-crank" if kind == "PR" else "inverted slider-crank"
+    text = f"{len(passed)} distinct {word}s were driven and verified, of {screened.verdict.size} pairs of dyads."
+    if not passed:
+        listed = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
+        text = f"No {word} was found that satisfies all demands (rejected: {listed or 'none'})."
+    return MotionResult(
+        designs=ranked(shown, problem.rank_by)[: problem.max_designs],
+        search=Search(
+            method="slider_search",
+            complete=False,
+            candidates=screened.verdict.size,
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=text,
+    )
+
+
+def _screen(
+    problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, kind: str, driving: bool, least: float
+) -> _Screened:
+    """Verdicts and scores; axes are link, slider, target."""
+    pins = task.images(links.moving)[:, None, :]
+    pivots = links.fixed[:, None, None]
+    crank = np.abs(links.moving - links.fixed)[:, None]
+    if kind == "PR":
+        others = task.images(sliders.points)[None]
+        reach = others[..., 0] - pins[..., 0]
+        line = np.exp(1j * sliders.angles)[None, :, None]
+        rod = np.abs(reach)
+        lengths = np.stack(np.broadcast_arrays(crank, rod))
+        if driving:
+            ahead = (np.conj(others - pivots) * (pins - pivots)).imag
+            sines, moved, clear = _driven_by_slider(pins, pivots, others, line, rod)
+        else:
+            ahead = (np.conj(line) * (others - pins)).real
+            moved, turned = _turned(pins, pivots)
+            foot = ((pivots - others[..., :1]) * np.conj(line)).imag[..., 0]
+            # h(θ) = foot + a sin(θ − σ)
+            start = np.angle((pins[..., :1] - pivots) * np.conj(line))[..., 0]
+            farthest = np.maximum(
+                foot + crank * _greatest_sine(start, turned), -(foot - crank * _greatest_sine(-start, -turned))
+            )
+            sines, clear = _sine_of(farthest, rod), np.abs(farthest) < rod
+    else:
+        others = np.broadcast_to(sliders.points[None, :, None], (1, len(sliders.points), 1))
+        line = np.exp(1j * sliders.angles)[None, :, None] * task.turns
+        ahead = (np.conj(line) * (others - pins)).real
+        offset = np.abs((np.conj(line) * (others - pins)).imag[..., 0])
+        moved, turned = _turned(pins, pivots)
+        ground = np.abs(sliders.points[None, :] - links.fixed[:, None])
+        start = np.angle((pins[..., :1] - pivots) * np.conj(others - pivots))[..., 0]
+        cosine = _greatest_sine(start + 0.5 * np.pi, turned)
+        nearest = np.sqrt(np.maximum(crank**2 + ground**2 - 2.0 * crank * ground * cosine, 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sines = np.sqrt(np.maximum(1.0 - (offset / nearest) ** 2, 0.0))
+        clear = nearest > offset
+        lengths = np.stack(np.broadcast_arrays(crank, ground, np.maximum(offset, ground * 0.2)))
+    return _judged(problem, task, lengths, ahead, moved, clear, sines, least, links, kind, sliders)
+
+
+def _judged(
+    problem: MotionProblem,
+    task: MotionTask,
+    lengths: Real,
+    ahead: Real,
+    moved: NDArray[np.bool_],
+    clear: NDArray[np.bool_],
+    sines: Real,
+    least: float,
+    links: Dyads,
+    kind: str,
+    sliders: Sliders,
+) -> _Screened:
+    shape = lengths.shape[1:]
+    limits, ratio = problem.constraints.link_length, lengths.max(axis=0) / np.maximum(lengths.min(axis=0), 1e-12)
+    one_side = np.all(ahead > 0.0, axis=-1) | np.all(ahead < 0.0, axis=-1)
+    verdict = np.zeros(shape, np.int64)
+    verdict[sines < math.sin(math.radians(least)) * (1.0 - 1e-9)] = REJECTED.index("transmission_angle")
+    verdict[~np.broadcast_to(clear, shape)] = REJECTED.index("branch_defect")
+    verdict[~np.broadcast_to(moved, shape)] = REJECTED.index("order_defect")
+    verdict[~one_side] = REJECTED.index("circuit_defect")
+    real = lengths[:2] * task.size
+    if limits is not None:
+        outside = (real < limits.min) | (real > (limits.max or math.inf))
+        verdict[outside.any(axis=0)] = REJECTED.index("link_length")
+    if problem.constraints.max_link_ratio is not None:
+        verdict[ratio > problem.constraints.max_link_ratio] = REJECTED.index("link_length")
+    verdict[lengths[:2].min(axis=0) < SHORTEST_LINK * lengths.max(axis=0)] = REJECTED.index("degenerate")
+    arms = np.abs(links.moving - task.points[0])[:, None]
+    if kind == "PR":
+        arms = np.maximum(arms, np.abs(sliders.points - task.points[0])[None])
+    reach = np.maximum(lengths.max(axis=0), arms)
+    score = sines / ((1.0 + (reach / BULKY) ** 2) * (1.0 + (ratio / UNEVEN) ** 2))
+    return _Screened(verdict, np.where(verdict == 0, score, 0.0))
+
+
+def _turned(pins: Complex, pivots: Complex) -> tuple[NDArray[np.bool_], Real]:
+    """Whether a crank turns one way through the targets, and how far it turns to the last one; shape (links, 1)."""
+    rotation = np.angle((pins - pivots) * np.conj(pins[..., :1] - pivots))
+    rotation[..., 0] = 0.0
+    onward = np.mod(rotation, 2.0 * np.pi)
+    backward = np.where(onward > 0.0, onward - 2.0 * np.pi, 0.0)
+    rises, falls = np.all(np.diff(onward) > 0.0, axis=-1), np.all(np.diff(backward) < 0.0, axis=-1)
+    forth, back = onward[..., -1], backward[..., -1]
+    both = np.where(np.abs(back) < forth, back, forth)
+    return rises | falls, np.where(rises & falls, both, np.where(rises, forth, back))
+
+
+def _greatest_sine(start: Real, turned: Real) -> Real:
+    """Greatest sine of an angle that runs from ``start`` by ``turned``."""
+    low, high = np.minimum(start, start + turned), np.maximum(start, start + turned)
+    crest = np.floor((high - 0.5 * np.pi) / (2.0 * np.pi)) >= np.ceil((low - 0.5 * np.pi) / (2.0 * np.pi))
+    return np.where(crest, 1.0, np.maximum(np.sin(low), np.sin(high)))
+
+
+def _sine_of(height: Real, rod: Real) -> Real:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.sqrt(np.maximum(1.0 - (height / rod) ** 2, 0.0))
+
+
+def _driven_by_slider(
+    pins: Complex, pivots: Complex, others: Complex, line: Complex, rod: Real
+) -> tuple[Real, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Least sine of the angle between crank and coupler, whether the slider moves one way, and whether it is clear."""
+    places = ((others - others[..., :1]) * np.conj(line)).real
+    steps = np.diff(places)
+    moved = np.all(steps > 0.0, axis=-1) | np.all(steps < 0.0, axis=-1)
+    crank = np.abs(pins[..., 0] - pivots[..., 0])
+    foot = (pivots - others[..., :1]) * np.conj(line)
+    low, high = places.min(axis=-1, keepdims=True), places.max(axis=-1, keepdims=True)
+    inner = np.clip(foot.real, low, high)
+    squares = np.concatenate([(x - foot.real) ** 2 + foot.imag**2 for x in (low, inner, high)], axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = (crank[..., None] ** 2 + rod[..., None] ** 2 - squares) / (2.0 * crank * rod)[..., None]
+    worst = np.abs(cosine).max(axis=-1)
+    return np.sqrt(np.maximum(1.0 - worst**2, 0.0)), moved, worst < 1.0
+
+
+def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, count: int) -> list[tuple[int, int]]:
+    """The best-scored pairs that differ from one another."""
+    score = screened.score.ravel()
+    order = np.argsort(-score, kind="stable")[: 20 * count]
+    order = order[score[order] > 0.0]
+    i, j = np.unravel_index(order, screened.score.shape)
+    joints = np.stack([links.fixed[i], links.moving[i], sliders.points[j], np.exp(2j * sliders.angles[j])], axis=1)
+    chosen: list[int] = []
+    for apart in APART * 0.5 ** np.arange(5):
+        chosen = distinct(joints, count, float(apart))
+        if len(chosen) >= min(count, len(order)):
+            break
+    return [(int(i[k]), int(j[k])) for k in chosen]
+
+
+def _mechanism(
+    problem: MotionProblem,
+    task: MotionTask,
+    links: Dyads,
+    sliders: Sliders,
+    kind: str,
+    driving: bool,
+    i: int,
+    j: int,
+) -> LinkageMechanism:
+    """The linkage of a link and a slider in the problem's coordinates; what the client stated as it was stated."""
+    side, other = problem.input_side, problem.output_side
+    if driving:
+        side, other = other, side
+    fixed, moving = whole_point(side.fixed_pivot), whole_point(side.moving_pivot)
+    o2 = task.to_problem(complex(links.fixed[i])) if fixed is None else fixed
+    a = task.to_problem(complex(links.moving[i])) if moving is None else moving
+    point = whole_point(other.moving_pivot if kind == "PR" else other.fixed_pivot)
+    z = task.to_problem(complex(sliders.points[j])) if point is None else point
+    angle = float(sliders.angles[j])
+    if kind == "PR":
+        return slider_crank_mechanism(o2, a, z, angle, task.origin, driven_by="slider" if driving else "crank")
+    return inverted_slider_crank_mechanism(o2, a, z, angle, task.origin)

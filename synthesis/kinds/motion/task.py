@@ -1,0 +1,62 @@
+"""The motion to be generated, as numbers: positions and rotations of the body.
+
+Solvers work in *task coordinates*: the origin is P in the first position and the unit is the task's size, so that
+tolerances are relative to the problem.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.problem import MotionProblem
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class MotionTask(NamedTuple):
+    """Positions of the body.
+
+    Attributes
+    ----------
+    points : complex, shape (n,)
+        The body's point P in each position; in task coordinates ``points[0]`` is 0.
+    turns : complex, shape (n,)
+        Rotation e^{iα} of the body from the first position to each; ``turns[0]`` is 1.
+    origin, size : complex, float
+        P in the first position and the size of the task, in the problem's coordinates and length unit.
+    """
+
+    points: Complex
+    turns: Complex
+    origin: complex
+    size: float
+
+    def images(self, points: Complex) -> Complex:
+        """Where points of the body, given in the first position, come to lie in each position: shape (..., n)."""
+        images: Complex = self.points + self.turns * (np.asarray(points)[..., None] - self.points[0])
+        return images
+
+    def inverted_images(self, points: Complex) -> Complex:
+        """Fixed points as the body sees them, moved back to the first position: shape (..., n)."""
+        images: Complex = self.points[0] + self.turns.conj() * (np.asarray(points)[..., None] - self.points)
+        return images
+
+    def to_task(self, z: complex) -> complex:
+        """A point of the problem in task coordinates."""
+        return (z - self.origin) / self.size
+
+    def to_problem(self, z: complex) -> complex:
+        """A point in task coordinates in the problem's."""
+        return self.origin + z * self.size
+
+
+def motion_task(problem: MotionProblem) -> MotionTask:
+    """The problem's positions in task coordinates."""
+    points = np.array([p.point for p in problem.positions])
+    size = problem.task_size
+    turns = np.exp(1j * np.array(problem.turns))
+    return MotionTask((points - points[0]) / size, turns, complex(points[0]), size)

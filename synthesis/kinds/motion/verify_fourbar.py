@@ -1,0 +1,191 @@
+"""Verification of the fourbar in closed form.
+
+Where all targets are held, the demanded position of the coupler gives the pin A, and with it the input angle; the
+linkage is then driven to that angle in both assemblies, and what stands there is compared with what was demanded. Where
+targets are fitted, the input at which the body comes nearest is looked for in both assemblies. The motion between the
+targets is followed in closed form: toggles have closed-form angles, and so has the least transmission angle over a
+range.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import (
+    BARKER,
+    Fourbar,
+    barker_type,
+    positions,
+    transmission_extremes,
+    traverse,
+)
+from synthesis.kinds.motion.closest import Motion, closest_inputs
+from synthesis.kinds.motion.demanded import (
+    Complex,
+    Demanded,
+    Real,
+)
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.model.answer import Verification
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    LinkageDesign,
+    LinkageMetrics,
+)
+from synthesis.model.linkages import (
+    DrivenFourbar,
+    body_shift,
+    driven_fourbar,
+)
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import (
+    Driven,
+    Side,
+    choice_checks,
+    constraint_checks,
+    motion_checks,
+    targets,
+)
+
+OWN = 1.5
+"""A fitted target counts as met in the reference's own assembly unless the other one misses it this many times less."""
+
+
+class _Met(NamedTuple):
+    """The linkage at the targets: input angles, assembly signs, rotations of the body, and all joints there."""
+
+    angles: Real
+    assemblies: NDArray[np.int64]
+    turns: Real
+    joints: Complex
+
+
+def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: Demanded) -> LinkageDesign | None:
+    """Drive a fourbar through a problem's targets and measure it; see :mod:`~synthesis.kinds.motion.verification`."""
+    try:
+        fourbar = driven_fourbar(mechanism)
+    except DimensionError:
+        return None
+    linkage = fourbar.linkage
+    kind = int(barker_type(linkage))
+    if not kind:
+        return None
+    shift = body_shift(mechanism, problem.positions[0].angle)
+    met = _held(target, fourbar, shift) if target.held.all() else _fitted(target, fourbar, shift)
+    if met is None:
+        return None
+    way = traverse(linkage, met.angles, met.assemblies)
+    barker = BARKER[kind - 1]
+    least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
+    links, point = mechanism.links, complex(linkage.coupler_point)
+    lengths = [links.ground, links.input, links.coupler, links.output]
+    reach = max(*lengths, abs(point), abs(point - links.coupler))
+    ratio = max(lengths) / min(lengths)
+    pin_a, pin_b, p, o2, o4 = met.joints
+    driven = Driven(
+        p,
+        met.turns,
+        target.offsets(p, met.turns),
+        Side(complex(o2[0]), pin_a),
+        Side(complex(o4[0]), pin_b),
+    )
+    span = np.ptp(met.joints.view(np.float64).reshape(-1, 2), axis=0)
+    metrics = LinkageMetrics(
+        grashof=barker.motion,
+        barker=barker.code,
+        min_transmission_angle=math.degrees(least),
+        transmission_angles={"coupler": math.degrees(least)},
+        same_branch=way.same_branch,
+        visits_in_order=way.in_order,
+        full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
+        link_ratio=ratio,
+        rms_residual=target.rms(driven.offsets),
+        size=math.hypot(*span),
+        quality=quality(math.sin(least), reach / target.size, ratio),
+    )
+    checks = [*motion_checks(target, driven, way.same_circuit), *choice_checks(problem, target, driven)]
+    checks += constraint_checks(
+        problem.constraints,
+        lengths,
+        [complex(o2[0]), complex(o4[0])],
+        [complex(pin_a[0]), complex(pin_b[0])],
+        metrics,
+    )
+    inputs = np.degrees(way.angles)
+    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
+    return LinkageDesign(
+        mechanism=mechanism,
+        targets=targets(inputs, target, driven),
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
+    """Drive the linkage to where each target demands its input, in both assemblies; None if it stands nowhere."""
+    linkage = fourbar.linkage
+    reference = positions(linkage, fourbar.reference, fourbar.assembly)
+    if not reference.valid:
+        return None
+    coupler_angles = target.turns + (float(reference.coupler_angle) - shift)
+    pins = target.points - complex(linkage.coupler_point) * np.exp(1j * coupler_angles)
+    angles = np.angle(pins - complex(linkage.input_pivot))
+    signs = np.array([fourbar.assembly, -fourbar.assembly])
+    found = positions(linkage, angles, signs)
+    off = found.coupler_angle - coupler_angles
+    turned_off = np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
+    residuals = np.where(found.valid, np.maximum(np.abs(found.p - target.points) / target.size, turned_off), np.inf)
+    # The first target is met by the reference configuration itself, or not at all.
+    first = abs(complex(reference.p) - target.points[0]) / target.size
+    off_reference = residuals[0, 0] < first
+    residuals[0, 0] = max(residuals[0, 0], first)
+    residuals[1, 0] = np.inf
+    # The reference's own assembly stands first, and is taken at a toggle, where both meet the target.
+    best = residuals.argmin(axis=0), np.arange(len(target.points))
+    if not np.all(np.isfinite(residuals[best])):
+        return None
+    turns = found.coupler_angle[best] - reference.coupler_angle + shift
+    points = found.p[best]
+    if off_reference:
+        points[0], turns[0] = reference.p, shift
+    return _Met(angles, signs[best[0]], turns, _joints(linkage, found.a[best], found.b[best], points))
+
+
+def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
+    """Drive the linkage to where the body comes nearest to each target; None where it has no position at all."""
+    linkage = fourbar.linkage
+    reference = positions(linkage, fourbar.reference, fourbar.assembly)
+    if not reference.valid:
+        return None
+    signs = np.array([fourbar.assembly, -fourbar.assembly])
+
+    def motion_in(assembly: int) -> Motion:
+        def motion(inputs: Real) -> tuple[Complex, Real]:
+            at = positions(linkage, inputs.ravel(), assembly)
+            p = np.where(at.valid, at.p, np.nan).reshape(inputs.shape)
+            return p, (at.coupler_angle - reference.coupler_angle + shift).reshape(inputs.shape)
+
+        return motion
+
+    found = [closest_inputs(motion_in(int(sign)), target, -math.pi, math.pi) for sign in signs]
+    misses = np.stack([missed for _, missed in found])
+    row = np.where(misses[0] <= OWN * misses[1], 0, 1)
+    row[0] = 0
+    angles = np.stack([inputs for inputs, _ in found])[row, np.arange(len(row))]
+    if not np.all(np.isfinite(angles)):
+        return None
+    at = positions(linkage, angles, signs)
+    best = row, np.arange(len(row))
+    turns = at.coupler_angle[best] - reference.coupler_angle + shift
+    return _Met(angles, signs[row], turns, _joints(linkage, at.a[best], at.b[best], at.p[best]))
+
+
+def _joints(linkage: Fourbar, a: Complex, b: Complex, p: Complex) -> Complex:
+    fixed = [np.full(len(p), complex(pivot)) for pivot in (linkage.input_pivot, linkage.output_pivot)]
+    return np.array([a, b, p, *fixed])

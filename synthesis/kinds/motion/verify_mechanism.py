@@ -1,0 +1,285 @@
+"""Verification of any linkage that is driven through its closures: slider-cranks, and fourbars with a driver dyad.
+
+The branches of the mechanism are found by root finding in the analysis core; on each of them the input is looked for at
+which the body comes nearest to each target. What the reference's own branch meets as well as any other counts as met
+there. The motion is then one input range on one branch, and over it, or over the whole cycle of a driver's crank, the
+least transmission angle at each closure is looked for.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.limits import (
+    branches,
+    holding_reference,
+    limit_positions,
+)
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from synthesis.kinds.motion.closest import closest_inputs
+from synthesis.kinds.motion.demanded import (
+    Complex,
+    Demanded,
+    Real,
+)
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import (
+    InvertedSliderCrankMechanism,
+    LinkageDesign,
+    LinkageMechanism,
+    LinkageMetrics,
+    SixbarMechanism,
+    SliderCrankMechanism,
+)
+from synthesis.model.linkages import body_shift
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import (
+    Driven,
+    Side,
+    choice_checks,
+    constraint_checks,
+    motion_checks,
+    targets,
+)
+from synthesis.proof.closer import least_angles
+
+OWN = 1.5
+"""A target counts as met on the reference's branch unless another one misses it this many times less."""
+
+SAME_MISS = 1e-10
+"""Misses, in units of the limits or the task's size, that differ by less are equal: what rounding leaves."""
+
+AT_LIMIT = 1e-7
+"""Radians that the driven link may turn beyond its place at the first and last target: at a limit its angle goes with
+the square of the crank's, so this is far above what rounding leaves and far below what can be seen."""
+
+RANGE_GRID = 721
+"""Inputs at which the driven link's way is looked at."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class _Met(NamedTuple):
+    """Where the targets are met: inputs, and the row of the branch in the list of all."""
+
+    inputs: Real
+    rows: NDArray[np.int64]
+
+
+class _Way(NamedTuple):
+    """The motion through the targets: inputs in one continuous run, and whether they are met in order."""
+
+    inputs: Real
+    in_order: bool
+
+
+def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: Demanded) -> LinkageDesign | None:
+    """Drive a linkage through a problem's targets and measure it; see :mod:`~synthesis.kinds.motion.verification`."""
+    # Where dimensions say it all the skeleton is not looked at; a sixbar's dimensions are its skeleton.
+    told = design.model_dump(exclude=None if isinstance(design, SixbarMechanism) else {"skeleton"})
+    try:
+        mechanism = _GIVEN.validate_python(told).mechanism()
+        found = branches(mechanism)
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None  # ValidationError: a length beyond what any statement may hold
+    here = holding_reference(mechanism, found)
+    if here is None:
+        return None
+    body = _Body(mechanism, body_shift(design, problem.positions[0].angle))
+    met = _closest(body, target, found, here)
+    if met is None:
+        return None
+    same_branch = bool(np.all(met.rows == found.index(here)))
+    on_circuit = bool(all(found[row].circuit == here.circuit for row in met.rows))
+    way = _way(mechanism, here, met.inputs) if same_branch else _Way(met.inputs, False)
+    joints, turns = _at_targets(body, found, met)
+    fixed = list(mechanism.links[GROUND])
+    driven = _driven(design, mechanism, joints, turns, target)
+    whole = isinstance(design, SixbarMechanism)
+    used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
+    least = least_angles(lambda inputs: body.drive(inputs, here), *used) if same_branch else {}
+    angle = min(least.values(), default=0.0)
+    lengths = _lengths(design)
+    arms = [float(abs(joints["P"][0] - joints[pin][0])) for pin in ("A", "B") if pin in joints]
+    ratio = max(lengths) / min(lengths)
+    everything = np.array(list(joints.values()))
+    span = np.ptp(everything.view(np.float64).reshape(-1, 2), axis=0)
+    barker = _barker(design)
+    degrees = (lambda x: x) if mechanism.driven_by_slide else np.degrees
+    metrics = LinkageMetrics(
+        grashof=None if barker is None else barker[0],
+        barker=None if barker is None else barker[1],
+        min_transmission_angle=math.degrees(angle),
+        transmission_angles={link: math.degrees(x) for link, x in least.items()},
+        same_branch=same_branch,
+        visits_in_order=way.in_order,
+        full_rotation=here.full,
+        input_rotation=float(degrees(way.inputs[-1] - way.inputs[0])),
+        link_ratio=ratio,
+        rms_residual=target.rms(driven.offsets),
+        size=math.hypot(*span),
+        quality=quality(math.sin(angle), max([*lengths, *arms]) / target.size, ratio),
+    )
+    checks = [*motion_checks(target, driven, on_circuit), *choice_checks(problem, target, driven)]
+    pins = [complex(joints[pin][0]) for pin in ("A", "B") if pin in joints]
+    pivots = [complex(joints[joint][0]) for joint in fixed if joint != "O6"]
+    checks += constraint_checks(problem.constraints, lengths, pivots, pins, metrics)
+    if isinstance(design, SixbarMechanism):
+        checks += _driver_checks(problem, design, mechanism, here, way)
+    return LinkageDesign(
+        mechanism=design,
+        targets=targets(np.asarray(degrees(way.inputs)), target, driven),
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+class _Body:
+    """The body on the coupler: its pose at inputs, on any branch."""
+
+    def __init__(self, mechanism: Mechanism, shift: float) -> None:
+        self.mechanism, self.shift = mechanism, shift
+        self.reference = float(mechanism.link_angle("coupler"))
+        self._steps = decompose(mechanism).steps
+
+    def drive(self, inputs: Real, branch: Branch) -> MechanismMotion:
+        """The mechanism at inputs of shape (n,) on a branch."""
+        signs = None
+        if branch.signs:
+            left = iter(branch.signs)
+            signs = tuple(np.asarray(next(left) if step.has_two_solutions else 1) for step in self._steps)
+        return drive(self.mechanism, inputs, signs=signs, order=0)
+
+    def pose(self, inputs: Real, branch: Branch) -> tuple[Complex, Real]:
+        """P and the body's rotation from the first demanded pose, at inputs of any shape."""
+        motion = self.drive(inputs.ravel(), branch)
+        points = motion.joints["P"][0].reshape(inputs.shape)
+        return points, (motion.angles["coupler"][0] - self.reference + self.shift).reshape(inputs.shape)
+
+
+def _closest(body: _Body, target: Demanded, found: list[Branch], here: Branch) -> _Met | None:
+    """The inputs at which the targets are met best, on the reference's branch where that is as good as any."""
+    own = found.index(here)
+    rows = [own, *(n for n, branch in enumerate(found) if n != own and branch.signs)]
+    inputs, misses = [], []
+    for n in rows:
+        low, high = _range(body.mechanism, found[n])
+        at, missed = closest_inputs(partial(body.pose, branch=found[n]), target, low, high)
+        inputs.append(at)
+        misses.append(missed)
+    missed = np.stack(misses)
+    best = missed.argmin(axis=0)
+    best = np.where(missed[0] <= OWN * missed.min(axis=0) + SAME_MISS, 0, best)
+    # The reference is the first target's configuration: it is met there, or not at all.
+    best[0] = 0
+    columns = np.arange(missed.shape[1])
+    at = np.stack(inputs)[best, columns]
+    return _Met(at, np.array(rows)[best]) if np.all(np.isfinite(at)) else None
+
+
+def _range(mechanism: Mechanism, branch: Branch) -> tuple[float, float]:
+    """The branch's inputs as they follow on from the reference input."""
+    if mechanism.driven_by_slide:
+        return branch.low, branch.high
+    at, period = float(mechanism.reference_input), cycle(mechanism)
+    if branch.full:
+        return at - 0.5 * period, at + 0.5 * period
+    low = branch.low + period * round((at - 0.5 * (branch.low + branch.high)) / period)
+    return low, low + branch.high - branch.low
+
+
+def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
+    """One run of the input through the targets: on a full branch the way round that meets them in order."""
+    if not here.full or mechanism.driven_by_slide:
+        steps = np.diff(inputs)
+        return _Way(inputs, bool(np.all(steps > 0.0) or np.all(steps < 0.0)))
+    period = cycle(mechanism)
+    onward = np.mod(inputs - inputs[0], period)
+    onward[0] = 0.0
+    backward = np.where(onward > 0.0, onward - period, 0.0)
+    ways = [way for way in (onward, backward) if np.all(np.diff(way) > 0.0) or np.all(np.diff(way) < 0.0)]
+    if not ways:
+        return _Way(inputs, False)
+    return _Way(inputs[0] + min(ways, key=lambda way: abs(float(way[-1]))), True)
+
+
+def _at_targets(body: _Body, found: list[Branch], met: _Met) -> tuple[dict[str, Complex], Real]:
+    """All joints at the targets, and the body's rotations there."""
+    joints: dict[str, list[complex]] = {}
+    turns = []
+    for at, row in zip(met.inputs, met.rows, strict=True):
+        motion = body.drive(np.array([at]), found[row])
+        for name, point in motion.joints.items():
+            joints.setdefault(name, []).append(complex(point[0, 0]))
+        turns.append(float(motion.angles["coupler"][0, 0]) - body.reference + body.shift)
+    return {name: np.array(points) for name, points in joints.items()}, np.array(turns)
+
+
+def _driven(
+    design: LinkageMechanism, mechanism: Mechanism, joints: dict[str, Complex], turns: Real, target: Demanded
+) -> Driven:
+    """The linkage at the targets, by its two sides."""
+    link = Side(complex(joints["O2"][0]), joints["A"])
+    if isinstance(design, SliderCrankMechanism):
+        slide = Side(None, joints["B"], math.radians(design.slide.angle))
+        sides = (slide, link) if design.driven_by == "slider" else (link, slide)
+    elif isinstance(design, InvertedSliderCrankMechanism):
+        sides = (link, Side(complex(joints["O4"][0]), None, float(mechanism.slides[0].angle)))
+    else:
+        sides = (link, Side(complex(joints["O4"][0]), joints["B"]))
+    return Driven(joints["P"], turns, target.offsets(joints["P"], turns), *sides)
+
+
+def _lengths(design: LinkageMechanism) -> list[float]:
+    """Lengths of the links; a block's arm of no length is none."""
+    links = design.links if isinstance(design, SixbarMechanism) else design.links.model_dump()
+    return [length for length in links.values() if length > 0.0]
+
+
+def _barker(design: LinkageMechanism) -> tuple[str, str] | None:
+    """Grashof's class and Barker's code of the fourbar that a sixbar drives."""
+    if not isinstance(design, SixbarMechanism):
+        return None
+    links = design.links
+    row = barker_class(Fourbar(0.0, links["ground"], links["input"], links["coupler"], links["output"]))
+    return row.motion, row.code
+
+
+def _driver_checks(
+    problem: MotionProblem, design: SixbarMechanism, mechanism: Mechanism, here: Branch, way: _Way
+) -> list[Check]:
+    """A driver's crank turns through, and the link that it drives has its limits at the first and the last target."""
+    held = next(name for name, listed in mechanism.links.items() if "C" in listed and name != "driver_coupler")
+    # The coupler may turn back on its way; the input, which took the fourbar through its targets, does not.
+    driven = "input" if held == "coupler" else held
+    run = np.linspace(way.inputs[0], way.inputs[-1], RANGE_GRID)
+    turned = np.unwrap(drive(mechanism, run, order=0).angles[driven][0])
+    (span,), _ = limit_positions(mechanism, here, [driven], [])
+    # From end to end and no farther: the swing alone tells, as each end lies within it.
+    beyond = math.inf if span is None else (span[1] - span[0]) - abs(float(turned[-1] - turned[0]))
+    checks = [
+        Check(name="crank_turns", passed=here.full),
+        Check(name="limits", passed=beyond <= AT_LIMIT, value=beyond, limit=AT_LIMIT),
+    ]
+    wanted = problem.driver
+    if wanted is not None and wanted.pivot_region is not None:
+        pivot = complex(*design.fixed_pivots["O6"])
+        checks.append(Check(name="driver_pivot_region", passed=wanted.pivot_region.contains(pivot)))
+    return checks

@@ -1,0 +1,65 @@
+"""Answers to problems of parallel motion."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Result,
+    Verification,
+)
+from synthesis.model.linkage_answer import (
+    CouplerPoint,
+    LinkageMetrics,
+    Skeleton,
+    Target,
+)
+
+
+class ParallelMotionMechanism(Answer):
+    """Watt's sixbar of the first kind that carries the link P–Q without turning it.
+
+    A fourbar O2 A B O4 with the coupler point P, a pin C on its input, the guide C–Q and the body P–Q.
+    """
+
+    type: Literal["watt_1"] = "watt_1"
+    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2 and O4.")
+    links: dict[str, float] = Field(
+        description="ground, input (O2–A), coupler (A–B), output (O4–B), input_arm (O2–C), guide (C–Q), body (P–Q)."
+    )
+    coupler_point: CouplerPoint
+    reference_input_angle: float = Field(description="Input angle of the skeleton, absolute, degrees.")
+    skeleton: Skeleton
+
+
+class ParallelMotionMetrics(LinkageMetrics):
+    """What is measured of a parallel motion beside what is of any linkage.
+
+    Lengths of the links count the input arm, the guide and the body; residuals are those of the path's points.
+    """
+
+    base: Literal["source", "left_cognate", "right_cognate", "path"] = Field(
+        description="The fourbar that the sixbar is made of."
+    )
+    input_side: Literal["input", "output"] = Field(description="Which of its fixed pivots the input turns about.")
+    rotation: float = Field(description="The greatest rotation of the body, degrees: rounding.")
+    translation: Point = Field(description="From P to Q, constant.")
+    curve_distance: float | None = Field(description="Greatest distance of P from the given curve; null for a path.")
+    input_range: tuple[float, float] = Field(description="Input angles between which it was driven, degrees.")
+
+
+class ParallelMotionDesign(Answer):
+    """A sixbar for parallel motion with the proof of what it does."""
+
+    mechanism: ParallelMotionMechanism
+    targets: list[Target] = Field(description="The points of the path; empty where a linkage was given.")
+    verification: Verification
+    metrics: ParallelMotionMetrics
+
+
+class ParallelMotionResult(Result[ParallelMotionDesign]):
+    """Sixbars for parallel motion, best first."""

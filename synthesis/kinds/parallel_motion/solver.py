@@ -1,0 +1,219 @@
+"""Parallel motion: sixbars from a fourbar, its cognates, or the fourbars of a path problem, and their verification."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+from kinematics.linkage import (
+    Fourbar,
+    cognates,
+    parallel_motion,
+    positions,
+)
+from synthesis.kinds.parallel_motion.design import (
+    ParallelMotionDesign,
+    ParallelMotionMechanism,
+    ParallelMotionResult,
+)
+from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
+from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
+from synthesis.kinds.path.solver import solve_path
+from synthesis.mechanisms import GivenFourbar, MechanismError
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import (
+    CouplerPoint,
+    FourbarMechanism,
+    Link,
+    Skeleton,
+)
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    driven_fourbar,
+    to_point,
+)
+from synthesis.model.statement import Contradiction, ContradictionError
+
+Base = Literal["source", "left_cognate", "right_cognate", "path"]
+InputSide = Literal["input", "output"]
+
+PATH_SHARE = 0.9
+"""Share of the work that a path problem is."""
+
+
+class _Fourbar(NamedTuple):
+    """A fourbar that traces the curve, as it stands at the first position."""
+
+    base: Base
+    input_side: InputSide
+    joints: FourbarConfiguration
+
+
+def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) -> ParallelMotionResult:
+    """Solve a problem of parallel motion."""
+    if problem.path is not None:
+        found = solve_path(problem.path, lambda share, words: progress(PATH_SHARE * share, words))
+        mechanisms = [design.mechanism for design in found.designs]
+        fourbars = list(_of_path([one for one in mechanisms if isinstance(one, FourbarMechanism)]))
+    else:
+        assert problem.linkage is not None
+        fourbars = list(_of_linkage(problem.linkage, cognates_too=problem.include_cognates))
+    passed: list[ParallelMotionDesign] = []
+    failed: list[ParallelMotionDesign] = []
+    rejected: Counter[str] = Counter()
+    for n, fourbar in enumerate(fourbars):
+        progress(PATH_SHARE + (1.0 - PATH_SHARE) * n / len(fourbars), "driving sixbars")
+        mechanism = _sixbar(fourbar.joints)
+        design = verify_parallel_motion(problem, mechanism, fourbar.base, fourbar.input_side)
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            passed.append(design)
+        else:
+            failed.append(design)
+            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    progress(1.0, "verified")
+    designs = sorted(passed, key=lambda design: _key(problem, design))
+    if problem.include_failed:
+        designs += sorted(failed, key=lambda design: _key(problem, design))
+    return ParallelMotionResult(
+        designs=designs[: problem.max_designs],
+        search=Search(
+            method="cognates, one of them moved to the other's pivot",
+            complete=False,
+            candidates=len(fourbars),
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=_summary(len(fourbars), designs[: len(passed)], rejected),
+    )
+
+
+def warm_up() -> None:
+    """Load the kernels by the fourbar of the example."""
+    extra = ParallelMotionProblem.model_config["json_schema_extra"]
+    assert isinstance(extra, dict)
+    examples = extra["examples"]
+    assert isinstance(examples, list)
+    solve_parallel_motion(ParallelMotionProblem.model_validate(examples[0]), lambda fraction, message: None)
+
+
+def _key(problem: ParallelMotionProblem, design: ParallelMotionDesign) -> tuple[bool, float]:
+    metrics = design.metrics
+    by = {
+        "quality": -metrics.quality,
+        "accuracy": metrics.rms_residual,
+        "size": metrics.size,
+        "transmission_angle": -metrics.min_transmission_angle,
+    }[problem.rank_by]
+    # A crank goes all along the curve, a rocker along a part of it.
+    return not metrics.full_rotation, by
+
+
+def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
+    """The given fourbar and both cognates, each with either fixed pivot as the input's."""
+    stated = {"type": "fourbar", **given.model_dump(exclude_none=True)}
+    try:
+        mechanism = GivenFourbar.model_validate(stated).mechanism()
+    except MechanismError as error:
+        raise ContradictionError(Contradiction(f"/linkage{error.path}", error.detail)) from None
+    joints = FourbarConfiguration(*(complex(mechanism.joints[name]) for name in ("O2", "A", "B", "O4", "P")))
+    yield _Fourbar("source", "input", joints)
+    if not cognates_too:
+        return
+    yield _Fourbar("source", "output", _reversed(joints))
+    linkage, angle, side = _as_linkage(joints)
+    pair = cognates(linkage)
+    names: tuple[Base, Base] = ("left_cognate", "right_cognate")
+    for name, cognate in zip(names, pair, strict=True):
+        stands = cognate.configuration(angle, side)
+        at = positions(cognate.linkage, float(stands.input_angle), int(stands.assembly))
+        own = FourbarConfiguration(
+            complex(cognate.linkage.input_pivot),
+            complex(at.a),
+            complex(at.b),
+            complex(cognate.linkage.output_pivot),
+            complex(at.p),
+        )
+        yield _Fourbar(name, "input", own)
+        yield _Fourbar(name, "output", _reversed(own))
+
+
+def _of_path(mechanisms: list[FourbarMechanism]) -> Iterator[_Fourbar]:
+    for mechanism in mechanisms:
+        linkage, side, reference = driven_fourbar(mechanism)
+        at = positions(linkage, reference, side)
+        pivots = complex(linkage.input_pivot), complex(linkage.output_pivot)
+        yield _Fourbar(
+            "path", "input", FourbarConfiguration(pivots[0], complex(at.a), complex(at.b), pivots[1], complex(at.p))
+        )
+
+
+def _reversed(joints: FourbarConfiguration) -> FourbarConfiguration:
+    """The same with the output link as the input."""
+    return FourbarConfiguration(joints.o4, joints.b, joints.a, joints.o2, joints.p)
+
+
+def _as_linkage(joints: FourbarConfiguration) -> tuple[Fourbar, float, int]:
+    """The analysis core's value of a fourbar that stands so, its input angle and its assembly."""
+    o2, a, b, o4, p = joints
+    coupler = b - a
+    linkage = Fourbar(o2, o4, abs(a - o2), abs(coupler), abs(b - o4), (p - a) / coupler * abs(coupler))
+    side = 1 if ((o4 - a).conjugate() * coupler).imag >= 0.0 else -1
+    return linkage, cmath.phase(a - o2), side
+
+
+def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
+    """The fourbar with pin C on its input, the guide C–Q and the body P–Q."""
+    o2, a, b, o4, p = joints
+    linkage, angle, _ = _as_linkage(joints)
+    made = parallel_motion(linkage)
+    places = {
+        "O2": o2,
+        "O4": o4,
+        "A": a,
+        "B": b,
+        "C": o2 + complex(made.crank_point) * cmath.exp(1j * angle),
+        "P": p,
+        "Q": p + complex(made.translation),
+    }
+    links = {
+        "ground": ["O2", "O4"],
+        "input": ["O2", "A", "C"],
+        "coupler": ["A", "B", "P"],
+        "output": ["O4", "B"],
+        "guide": ["C", "Q"],
+        "body": ["P", "Q"],
+    }
+    point = (p - a) / ((b - a) / abs(b - a))
+    return ParallelMotionMechanism(
+        fixed_pivots={name: to_point(places[name]) for name in links["ground"]},
+        links={
+            **{name: abs(places[listed[1]] - places[listed[0]]) for name, listed in links.items()},
+            "input_arm": abs(places["C"] - o2),
+        },
+        coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point))),
+        reference_input_angle=math.degrees(angle),
+        skeleton=Skeleton(
+            joints={name: to_point(z) for name, z in places.items()},
+            links=[Link(name=name, joints=listed) for name, listed in links.items()],
+            input_link="input",
+        ),
+    )
+
+
+def _summary(candidates: int, passed: list[ParallelMotionDesign], rejected: Counter[str]) -> str:
+    if not passed:
+        reasons = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items()) or "no fourbar"
+        return f"None of {candidates} sixbars carries the body along the curve ({reasons})."
+    best = passed[0].metrics
+    return (
+        f"{len(passed)} of {candidates} sixbars carry the body along the curve without turning it; the first transmits "
+        f"force at {best.min_transmission_angle:.1f}° at least, from Q at ({best.translation[0]:.6g}, "
+        f"{best.translation[1]:.6g}) of P."
+    )

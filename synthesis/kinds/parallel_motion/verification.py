@@ -1,0 +1,221 @@
+"""Verification of a parallel motion: the sixbar is driven from its skeleton, and the body's rotation is measured.
+
+P is held against the given fourbar without driving that: a point is on its curve where the coupler, laid with A on the
+input's circle and P on the point, has B at the output's length from O4.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from synthesis.analyses.cycle import cycle_of
+from synthesis.kinds.parallel_motion.design import (
+    ParallelMotionDesign,
+    ParallelMotionMechanism,
+    ParallelMotionMetrics,
+)
+from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
+from synthesis.kinds.path.verification import verify_path
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import Target
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import constraint_checks
+from synthesis.proof.closer import least_of, sine_at
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+GRID = 1441
+"""Inputs of the range that are looked at."""
+
+TRANSLATES = 1e-9
+"""Most that the body may turn, radians, and most that P may be off the curve, as a share of the curve's size."""
+
+FAR = 64.0 * float(np.finfo(np.float64).eps)
+"""What rounding adds to that, as a share of the largest coordinate over the body's length or the curve's size."""
+
+NO_TOGGLE = 1e-6
+"""The least sine of a transmission angle at which the mechanism still moves one way."""
+
+WITHIN = 0.01
+"""An input between toggles is driven up to this share of its range from each."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class _Path(NamedTuple):
+    """What verification of the fourbar itself says, where the points of a path are asked for."""
+
+    checks: list[Check]
+    targets: list[Target]
+    rotation: float
+    rms: float
+
+
+def verify_parallel_motion(
+    problem: ParallelMotionProblem,
+    design: ParallelMotionMechanism,
+    base: Literal["source", "left_cognate", "right_cognate", "path"],
+    input_side: Literal["input", "output"],
+) -> ParallelMotionDesign | None:
+    """Drive a sixbar and measure whether its body translates along the curve of a problem.
+
+    Parameters
+    ----------
+    problem : ParallelMotionProblem
+        What was asked.
+    design : ParallelMotionMechanism
+        Dimensions.
+    base, input_side
+        What the design is called in its metrics.
+
+    Returns
+    -------
+    ParallelMotionDesign or None
+        None where the dimensions are no mechanism that can be driven.
+    """
+    try:
+        mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None  # ValidationError: a length beyond what any statement may hold
+    place = {name: complex(z) for name, z in mechanism.joints.items()}
+    configuration = FourbarConfiguration(*(place[name] for name in ("O2", "A", "B", "O4", "P")))
+    path = _path(problem, configuration)
+    if problem.path is not None and path is None:
+        return None
+    barker = barker_class(
+        Fourbar(
+            place["O2"],
+            place["O4"],
+            abs(place["A"] - place["O2"]),
+            abs(place["B"] - place["A"]),
+            abs(place["B"] - place["O4"]),
+        )
+    )
+    turns = barker.motion in ("double_crank", "crank_rocker")
+    inputs = _inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
+    motion = drive(mechanism, inputs, order=1)
+    if not motion.smooth.all():
+        return None
+    p, q = motion.joints["P"][0], motion.joints["Q"][0]
+    curve_size = math.hypot(float(np.ptp(p.real)), float(np.ptp(p.imag)))
+    joints = np.concatenate([jet[0] for jet in motion.joints.values()])
+    reach = float(np.abs(joints).max())
+    body = motion.angles["body"][0]
+    rotation = float(np.abs(np.angle(np.exp(1j * (body - body[0])))).max())
+    least = {
+        link: math.degrees(math.asin(min(least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)), 1.0)))
+        for link in motion.sines
+    }
+    same_branch = min(least.values()) > math.degrees(NO_TOGGLE) and (path is None or _kept(path, "same_branch"))
+    lengths = list(design.links.values())
+    off_curve = None if problem.linkage is None else float(_off_curve(problem.linkage, p).max())
+    task = curve_size if problem.path is None else problem.path.task_size
+    metrics = ParallelMotionMetrics(
+        grashof=barker.motion,
+        barker=barker.code,
+        min_transmission_angle=min(least.values()),
+        transmission_angles=least,
+        same_branch=same_branch,
+        visits_in_order=path is None or _kept(path, "visits_in_order"),
+        full_rotation=turns,
+        input_rotation=math.degrees(float(inputs[-1] - inputs[0])),
+        link_ratio=max(lengths) / min(lengths),
+        rms_residual=0.0 if path is None else path.rms,
+        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
+        quality=quality(
+            math.sin(math.radians(min(least.values()))),
+            max(*lengths, design.coupler_point.distance) / task,
+            max(lengths) / min(lengths),
+        ),
+        base=base,
+        input_side=input_side,
+        rotation=math.degrees(rotation),
+        translation=(float((q[0] - p[0]).real), float((q[0] - p[0]).imag)),
+        curve_distance=off_curve,
+        input_range=(math.degrees(float(inputs[0])), math.degrees(float(inputs[-1]))),
+    )
+    limit = TRANSLATES + FAR * reach / abs(complex(q[0] - p[0]))
+    checks = [Check(name="translates", passed=rotation <= limit, value=rotation, limit=limit)]
+    if off_curve is not None:
+        limit = TRANSLATES + FAR * reach / curve_size
+        checks.append(
+            Check(name="on_curve", passed=off_curve <= limit * curve_size, value=off_curve / curve_size, limit=limit)
+        )
+    if path is not None:
+        checks += path.checks
+    pins = [place[name] for name in ("A", "B", "C")]
+    pivots = [place[name] for name in mechanism.links[GROUND]]
+    named = {check.name for check in checks}
+    own = constraint_checks(problem.constraints, lengths, pivots, pins, metrics)
+    checks += [check for check in own if check.name not in named]
+    return ParallelMotionDesign(
+        mechanism=design,
+        targets=[] if path is None else path.targets,
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -> _Path | None:
+    """The fourbar of the sixbar, driven past the points of the path that is asked for."""
+    if problem.path is None:
+        return None
+    driven = verify_path(problem.path, fourbar_mechanism(configuration))
+    if driven is None:
+        return None
+    metrics = driven.metrics
+    return _Path(driven.verification.checks, driven.targets, math.radians(metrics.input_rotation), metrics.rms_residual)
+
+
+def _kept(path: _Path, name: str) -> bool:
+    """Whether a check of the path, where it is demanded, was passed."""
+    return all(check.passed for check in path.checks if check.name == name)
+
+
+def _inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Real:
+    """Inputs of the range: a whole turn, the path's rotation, or nearly from toggle to toggle."""
+    at = float(mechanism.reference_input)
+    if turns:
+        return np.asarray(np.linspace(at, at + 2.0 * np.pi, GRID))
+    if rotation is not None:
+        return np.asarray(np.linspace(at, at + rotation, GRID))
+    fourbar = Mechanism(
+        {name: mechanism.joints[name] for name in ("O2", "O4", "A", "B")},
+        {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")},
+        "input",
+    )
+    low, high = cycle_of(fourbar)
+    spare = WITHIN * (high - low)
+    return np.asarray(np.linspace(low + spare, high - spare, GRID))
+
+
+def _off_curve(linkage: SourceLinkage, points: Complex) -> Real:
+    """How far points are off the coupler curve of a fourbar: by how much B misses the output's circle, nearly."""
+    o2, o4 = complex(*linkage.fixed_pivots.input), complex(*linkage.fixed_pivots.output)
+    a, b, c = linkage.links.input, linkage.links.coupler, linkage.links.output
+    arm = linkage.coupler_point.distance * np.exp(1j * math.radians(linkage.coupler_point.angle))
+    reach = points - o2
+    f = np.maximum(np.abs(reach), np.finfo(np.float64).tiny)
+    cosine = np.clip((a * a + f * f - abs(arm) ** 2) / (2.0 * a * f), -1.0, 1.0)
+    misses = []
+    for side in (1.0, -1.0):
+        pin = o2 + a * reach / f * (cosine + 1j * side * np.sqrt(1.0 - cosine**2))
+        turned = (points - pin) / arm
+        misses.append(np.abs(np.abs(pin + b * turned - o4) - c))
+    return np.asarray(np.minimum(*misses))

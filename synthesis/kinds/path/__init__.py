@@ -1,0 +1,24 @@
+"""Path generation: linkages whose coupler point goes through points or along a curve."""
+
+from __future__ import annotations
+
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.kind import Kind, Progress
+
+__all__ = ["KIND"]
+
+
+def _solve(problem: PathProblem, progress: Progress) -> PathResult:
+    from synthesis.kinds.path.solver import solve_path
+
+    return solve_path(problem, progress)
+
+
+def _warm_up() -> None:
+    from synthesis.kinds.path.solver import warm_up
+
+    warm_up()
+
+
+KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up)

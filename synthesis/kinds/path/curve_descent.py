@@ -1,0 +1,374 @@
+"""Least squares of a traced curve through points, at crank angles that are free: one compiled descent.
+
+The unknowns are the linkage's m numbers x and the crank angle θᵢ at each of n points tᵢ; the residuals are the vectors
+z(x, θᵢ) − tᵢ. Each θᵢ enters its own residual alone, so that Levenberg and Marquardt's equations
+
+    [ A   C ] [δx]     [g]          A = Σ Re(z̄ₓ z̦ₓ),  cᵢ = Re(z̄_θ zₓ),  aᵢ = |z_θ|²
+    [ Cᵀ  D ] [δθ] = − [h],         g = Σ Re(z̄ₓ rᵢ),   hᵢ = Re(z̄_θ rᵢ),   D = diag aᵢ
+
+are solved by elimination of the angles (Schur's complement, m × m) at a cost linear in n: orthogonal distance without
+an inner search for the nearest point (Boggs, Byrd & Schnabel 1987, doi:10.1137/0908085, whose structure this is).
+Points may be weighed. The step is refused where the linkage does not close at some point.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.traced_curves import (
+    FOURBAR,
+    GEARED_FIVEBAR,
+    LARGEST_LOG,
+    OPTIONS,
+    SMALLEST_LOG,
+    natural,
+    place,
+    place_with_slopes,
+)
+from synthesis.numerics.portions import in_portions
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FIRST_DAMPING, EASED, STIFFENED = 1e-2, 0.2, 5.0
+"""Marquardt's damping: at first, after a good step, after a refused one."""
+
+STIFFEST = 1e10
+"""Damping at which no step is left."""
+
+FURTHEST_TURN, FURTHEST_LOG = 0.4, 1.0
+"""Crank angles (radians) and unknowns move no farther than this in one step, where the linear model means something."""
+
+ARRIVED = 1e-12
+"""Relative decrease of the cost below which nothing is gained any more, twice in a row."""
+
+NOTHING = 1e-28
+"""A cost (task sizes squared) below this is rounding."""
+
+TOO_LONG = 4.0
+"""Weight of a length's excess over the longest allowed: only a guide for the search, what is returned is checked."""
+
+ANYWHERE = np.array([[-np.inf, np.inf]] * 4)
+"""Fixed pivots without limits."""
+
+PORTION = 5
+"""Starts that a thread takes at a time; some milliseconds."""
+
+CYCLE_CHECKS = 48
+"""Crank positions a cycle at which a geared fivebar must not jam."""
+
+
+class Descent(NamedTuple):
+    """Where descents have led: unknowns (n, m), crank angles (n, points), and sums of squared distances (n,)."""
+
+    x: Real
+    theta: Real
+    cost: Real
+
+
+@njit(**OPTIONS)
+def _excess(lengths: Real, m: int, x: Real, longest: float) -> float:
+    """Squared excess of links and coupler arm over the longest allowed length, in its shares."""
+    total = 0.0
+    for k in range(len(lengths)):
+        over = abs(lengths[k]) / longest - 1.0
+        if over > 0.0:
+            total += over * over
+    over = math.hypot(x[m - 2], x[m - 1]) / longest - 1.0
+    if over > 0.0:
+        total += over * over
+    return total
+
+
+@njit(**OPTIONS)
+def _cost(
+    family: int,
+    x: Real,
+    lengths: Real,
+    sign: float,
+    ratio: float,
+    theta: Real,
+    points: Complex,
+    weights: Real,
+    cycle: float,
+) -> float:
+    total = 0.0
+    if family == GEARED_FIVEBAR and cycle > 0.0:
+        for k in range(CYCLE_CHECKS):
+            closes, _, _ = place(family, x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS)
+            if not closes:
+                return math.inf
+    for i in range(len(points)):
+        closes, z, _ = place(family, x, lengths, sign, ratio, theta[i])
+        if not closes:
+            return math.inf
+        r = z - points[i]
+        total += weights[i] * (r.real * r.real + r.imag * r.imag)
+    return total
+
+
+@njit(**OPTIONS)
+def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
+    """Sum of squares of what the fixed pivots lie outside their limits; each part, and its slopes in the unknowns."""
+    off[:] = 0.0
+    slopes[:] = 0.0
+    places = np.empty(4)
+    places[0], places[1] = x[0], x[1]
+    known = 2
+    if family <= FOURBAR:
+        cosine, sine = math.cos(x[2]), math.sin(x[2])
+        places[2], places[3] = x[0] + lengths[0] * cosine, x[1] + lengths[0] * sine
+        slopes[2, 2], slopes[3, 2] = -lengths[0] * sine, lengths[0] * cosine
+        for k in range(4):
+            slopes[2, 3 + k], slopes[3, 3 + k] = chart[0, k] * cosine, chart[0, k] * sine
+        slopes[2, 0], slopes[3, 1] = 1.0, 1.0
+        known = 4
+    elif family == GEARED_FIVEBAR:
+        places[2], places[3] = x[2], x[3]
+        slopes[2, 2], slopes[3, 3] = 1.0, 1.0
+        known = 4
+    slopes[0, 0], slopes[1, 1] = 1.0, 1.0
+    total = 0.0
+    for k in range(known):
+        off[k] = min(0.0, places[k] - within[k, 0]) + max(0.0, places[k] - within[k, 1])
+        total += off[k] * off[k]
+    return total
+
+
+@njit(**OPTIONS)
+def _solved(matrix: Real, right: Real) -> bool:
+    """Cholesky's method in place; the solution is left in ``right``; False where not positive definite."""
+    m = len(right)
+    for j in range(m):
+        pivot = matrix[j, j]
+        for k in range(j):
+            pivot -= matrix[j, k] * matrix[j, k]
+        if not pivot > 0.0:
+            return False
+        pivot = math.sqrt(pivot)
+        matrix[j, j] = pivot
+        for i in range(j + 1, m):
+            value = matrix[i, j]
+            for k in range(j):
+                value -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] = value / pivot
+    for i in range(m):
+        for k in range(i):
+            right[i] -= matrix[i, k] * right[k]
+        right[i] /= matrix[i, i]
+    for j in range(m):
+        i = m - 1 - j
+        for k in range(i + 1, m):
+            right[i] -= matrix[k, i] * right[k]
+        right[i] /= matrix[i, i]
+    return True
+
+
+@njit(**OPTIONS)
+def _descend(
+    family: int,
+    x: Real,
+    sign: float,
+    ratio: float,
+    theta: Real,
+    points: Complex,
+    weights: Real,
+    longest: float,
+    cycle: float,
+    within: Real,
+    iterations: int,
+) -> float:
+    """Descend in place; returns the sum of squared distances, infinite where the start does not close."""
+    m, n = len(x), len(points)
+    logs = 4 if family == GEARED_FIVEBAR else 3
+    count = 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    slopes = np.empty(m + 1, np.complex128)
+    a, g = np.empty((m, m)), np.empty(m)
+    c, d, h = np.empty((n, m)), np.empty(n), np.empty(n)
+    work, step = np.empty((m, m)), np.empty(m)
+    x_new, theta_new = np.empty(m), np.empty(n)
+    natural(family, x, lengths, chart)
+    distance: float = _cost(family, x, lengths, sign, ratio, theta, points, weights, cycle)
+    if not distance < math.inf:
+        return math.inf
+    guide = TOO_LONG * TOO_LONG
+    off, off_slopes = np.zeros(4), np.zeros((4, m))
+    distance += _pivots_off(family, x, lengths, chart, within, off, off_slopes)
+    cost = distance + guide * _excess(lengths[:count], m, x, longest)
+    damping, idle = FIRST_DAMPING, 0
+    for _ in range(iterations):
+        natural(family, x, lengths, chart)
+        a[:] = 0.0
+        g[:] = 0.0
+        for i in range(n):
+            _, z = place_with_slopes(family, x, lengths, chart, sign, ratio, theta[i], slopes)
+            r, w, along = z - points[i], weights[i], slopes[m]
+            d[i] = w * (along.real * along.real + along.imag * along.imag)
+            h[i] = w * (along.real * r.real + along.imag * r.imag)
+            for j in range(m):
+                s = slopes[j]
+                g[j] += w * (s.real * r.real + s.imag * r.imag)
+                c[i, j] = w * (along.real * s.real + along.imag * s.imag)
+                for k in range(j + 1):
+                    a[j, k] += w * (s.real * slopes[k].real + s.imag * slopes[k].imag)
+        _pivots_off(family, x, lengths, chart, within, off, off_slopes)
+        for i in range(4):
+            if off[i] != 0.0:
+                for j in range(m):
+                    g[j] += off_slopes[i, j] * off[i]
+                    for k in range(j + 1):
+                        a[j, k] += off_slopes[i, j] * off_slopes[i, k]
+        # The guide for long links, each a residual of its own.
+        for k in range(count):
+            over = abs(lengths[k]) / longest - 1.0
+            if over > 0.0:
+                for j in range(count):
+                    s = chart[k, j] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
+                    g[logs + j] += guide * over * s
+                    for i in range(j + 1):
+                        a[logs + j, logs + i] += guide * s * chart[k, i] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
+        arm = math.hypot(x[m - 2], x[m - 1])
+        if arm > longest:
+            for j in range(2):
+                s = x[m - 2 + j] / (arm * longest)
+                g[m - 2 + j] += guide * (arm / longest - 1.0) * s
+                for i in range(j + 1):
+                    a[m - 2 + j, m - 2 + i] += guide * s * x[m - 2 + i] / (arm * longest)
+        accepted = False
+        while damping < STIFFEST:
+            work[:] = a
+            for j in range(m):
+                work[j, j] = a[j, j] * (1.0 + damping) + 1e-14
+                step[j] = -g[j]
+            for i in range(n):
+                inverse = 1.0 / (d[i] * (1.0 + damping) + 1e-12 * weights[i])
+                for j in range(m):
+                    cij = c[i, j] * inverse
+                    step[j] += cij * h[i]
+                    for k in range(j + 1):
+                        work[j, k] -= cij * c[i, k]
+            if not _solved(work, step):
+                damping *= STIFFENED
+                continue
+            shrink = 1.0
+            for j in range(logs, logs + count):
+                shrink = min(shrink, FURTHEST_LOG / max(FURTHEST_LOG, abs(step[j])))
+            for j in range(m):
+                x_new[j] = x[j] + shrink * step[j]
+            for j in range(logs, logs + count):
+                x_new[j] = min(max(x_new[j], SMALLEST_LOG), LARGEST_LOG)
+            for i in range(n):
+                turn = -h[i]
+                for j in range(m):
+                    turn -= c[i, j] * step[j]
+                turn *= shrink / (d[i] * (1.0 + damping) + 1e-12 * weights[i])
+                theta_new[i] = theta[i] + min(max(turn, -FURTHEST_TURN), FURTHEST_TURN)
+            natural(family, x_new, lengths, chart)
+            distance_new = _cost(family, x_new, lengths, sign, ratio, theta_new, points, weights, cycle)
+            distance_new += _pivots_off(family, x_new, lengths, chart, within, off, off_slopes)
+            cost_new = distance_new + guide * _excess(lengths[:count], m, x_new, longest)
+            if cost_new < cost:
+                accepted = True
+                break
+            damping *= STIFFENED
+        if not accepted:
+            break
+        gain = cost - cost_new
+        x[:] = x_new
+        theta[:] = theta_new
+        cost, distance = cost_new, distance_new
+        damping = max(damping * EASED, 1e-12)
+        idle = idle + 1 if gain <= ARRIVED * cost else 0
+        if idle >= 2 or cost <= NOTHING:
+            break
+    return distance
+
+
+@njit(**OPTIONS)
+def _descend_all(
+    family: int,
+    x: Real,
+    sign: Real,
+    ratio: float,
+    theta: Real,
+    points: Complex,
+    weights: Real,
+    longest: float,
+    cycle: float,
+    within: Real,
+    iterations: int,
+    cost: Real,
+) -> None:
+    for k in range(len(x)):
+        cost[k] = _descend(family, x[k], sign[k], ratio, theta[k], points, weights, longest, cycle, within, iterations)
+
+
+def descend(
+    family: int,
+    x: Real,
+    sign: Real,
+    theta: Real,
+    points: Complex,
+    *,
+    ratio: float = 0.0,
+    weights: Real | None = None,
+    longest: float = math.inf,
+    cycle: float = 0.0,
+    within: Real | None = None,
+    iterations: int = 60,
+) -> Descent:
+    """Descend from every start to the least sum of squared distances of the points from the curve.
+
+    Parameters
+    ----------
+    family : int
+        Of :mod:`synthesis.kinds.path.traced_curves`.
+    x, sign, theta : float, shapes (n, m), (n,), (n, points)
+        Starts: unknowns, assembly signs, crank angles at the points.
+    points : complex, shape (points,)
+        In task sizes.
+    ratio : float
+        Gear ratio, for geared fivebars.
+    weights : float, shape (points,), optional
+        Of the squared distances.
+    longest : float
+        Links longer than this are discouraged.
+    cycle : float
+        For geared fivebars: the crank's full cycle, over which it must not jam; 0 where it need not go round.
+    within : float, shape (4, 2), optional
+        Least and greatest x and y of O2, then of the other fixed pivot: what lies outside counts as a distance, so that
+        a cost of zero keeps them. For slider-cranks the last two rows have no meaning.
+    iterations : int
+        Steps at most.
+    """
+    x, theta = np.array(x, np.float64), np.array(theta, np.float64)
+    w = np.ones(len(points)) if weights is None else np.ascontiguousarray(weights, np.float64)
+    cost = np.empty(len(x))
+    signs, targets = np.ascontiguousarray(sign, np.float64), np.ascontiguousarray(points, np.complex128)
+    inside = ANYWHERE if within is None else np.ascontiguousarray(within, np.float64)
+    limit = longest if math.isfinite(longest) else 1e300
+
+    def work(some: slice) -> None:
+        _descend_all(
+            family,
+            x[some],
+            signs[some],
+            ratio,
+            theta[some],
+            targets,
+            w,
+            limit,
+            cycle,
+            inside,
+            iterations,
+            cost[some],
+        )
+
+    in_portions(work, len(x), PORTION)
+    return Descent(x, theta, cost)

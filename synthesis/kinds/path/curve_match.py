@@ -1,0 +1,524 @@
+"""Whole-curve matching: a fourbar whose coupler point draws a given closed curve or open stroke.
+
+1. *Shape.* Some ten thousand linkages are drawn, and their curves compared with the target with position, size and
+   rotation removed (:mod:`synthesis.kinds.path.curve_shapes`).
+2. *Refinement.* The most alike, placed on the target, go to least squares of the true distance
+   (:mod:`synthesis.kinds.path.curve_descent`), at first at equal steps along the target, then at its own points.
+3. *Limits.* Where a demand is broken the descent is repeated under it (:mod:`synthesis.kinds.path.curve_limits`).
+4. Every linkage is offered with its cognates, which draw the same curve, from either fixed pivot, and verified.
+
+Where fixed pivots are given the shape alone says little, as size and place are not free: linkages are then fitted to
+points along the target, from many starts (:mod:`synthesis.kinds.path.point_fit`), and verified as the others.
+
+A closed curve is to be drawn by a crank that turns through; the families of linkages are written so that it does. A
+stroke may be drawn by any link, between its toggles.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.curve_descent import Descent, descend
+from synthesis.kinds.path.curve_limits import (
+    Limits,
+    descend_within,
+    settle,
+)
+from synthesis.kinds.path.curve_placement import (
+    moved,
+    placement_of,
+    searched,
+    stated,
+)
+from synthesis.kinds.path.curve_shapes import (
+    SHAPE_POINTS,
+    Starts,
+    alike,
+    equal_steps,
+)
+from synthesis.kinds.path.design import (
+    CurveSweep,
+    PathDesign,
+    PathResult,
+)
+from synthesis.kinds.path.point_fit import (
+    configuration_of,
+    fitted,
+    point_task,
+)
+from synthesis.kinds.path.problem import PathPoint, PathProblem
+from synthesis.kinds.path.traced_curves import (
+    CRANK_ROCKER,
+    DOUBLE_CRANK,
+    FOURBAR,
+    natural,
+    place,
+)
+from synthesis.kinds.path.verify_curve import distances, verify_curve
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_statement import LengthLimits
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import distinct
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DRAWN = {
+    (CRANK_ROCKER, True): 65536,
+    (DOUBLE_CRANK, True): 40960,
+    (CRANK_ROCKER, False): 4096,
+    (DOUBLE_CRANK, False): 4096,
+    (FOURBAR, False): 8192,
+}
+"""Linkages drawn, by family and whether the target is closed; an open one is compared with 216 windows of each."""
+
+FOLLOWED = 150
+"""Starts of a family that are refined at equal steps along the target."""
+
+REFINED = 20
+"""Of these, the best that are refined at the target's own points."""
+
+ROUGHLY, SETTLED = 30, 300
+"""Steps of these refinements at most."""
+
+THINNED, ALL = 120, 60
+"""More points than this are thinned at first, and all of them then taken for so many steps at most."""
+
+HOPELESS, SHAPE_ERROR = 100.0, 1e-3
+"""Linkages whose sum of squares at equal steps is this many times the least are given up; below the second, a share of
+the size at every point, that sum says nothing, as the steps lie on straight lines between the points."""
+
+LOOKED_AT = 121
+"""Places on a candidate's curve at which excursions between the points are looked for."""
+
+LIMITED = 7
+"""Refined linkages of a family, all different, that are brought within the problem's limits."""
+
+FEW_POINTS, FILL = 12, 0.1
+"""Fewer points than this say little of a curve: the lines between them count too, with this share of the weight."""
+
+HALVES = 0.4
+"""A linkage stays in the running while its error is below the best one's over this; demands may choose among them."""
+
+ALSO_USABLE = 2
+"""Refined linkages of a family that are offered with better force transmission too, at the cost of accuracy."""
+
+OFFERED = 10
+"""Linkages, each with its cognates, that are verified."""
+
+SAME_DESIGN = 1e-4
+"""Designs whose joints agree to this share of the curve's size are one and the same: fits of different accuracy."""
+
+EQUALLY_NEAR, NEARER, NOTHING = 1.1, 1.001, 1e-9
+"""Errors within these factors are alike, and quality decides: where the best design is asked for, and where the most
+accurate is. Errors below the last, a share of the curve's size, are rounding."""
+
+SHORTEST = 1e-7
+"""Links shorter than this share of the curve's size are no links."""
+
+
+class _Candidate(NamedTuple):
+    """A refined linkage: family, unknowns, sign, crank angle at the first point, and error in curve sizes."""
+
+    family: int
+    x: Real
+    sign: float
+    theta: float
+    error: float
+
+
+def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation by matching the whole curve."""
+    target = _Target(problem)
+    sought = searched(problem)
+    limits = Limits.of(sought, target.centre, target.size)
+    sweep = None
+    if sought.fixed_pivots.given():
+        linkages = _at_given_pivots(sought, target, progress)
+    else:
+        candidates, sweep = _alike(problem, target, limits, progress)
+        linkages = [joints for candidate in candidates for joints in with_cognates(_joints(candidate))]
+    designs, rejected = _verified(problem, target, linkages, limits, progress)
+    progress(1.0, "verified")
+    return _result(problem, designs, rejected, sweep)
+
+
+def _alike(
+    problem: PathProblem, target: _Target, limits: Limits, progress: Progress
+) -> tuple[list[_Candidate], CurveSweep]:
+    """The linkages in the running of those whose curves have the target's shape."""
+    families = _families(problem)
+    candidates: list[_Candidate] = []
+    least = math.inf
+    drawn = swept = followed = 0
+    for n, family in enumerate(families):
+        count = DRAWN[family, problem.closed]
+
+        def told(share: float, n: int = n, count: int = count) -> None:
+            fraction = (n + 0.7 * share) / len(families)
+            progress(0.8 * fraction, f"{round(count * share)} of {count} linkages compared")
+
+        starts = alike(
+            family,
+            target.steps,
+            problem.closed,
+            count,
+            FOLLOWED,
+            longest=limits.longest,
+            seed=problem.seed % 2**32,
+            told=told,
+        )
+        drawn, swept, followed = drawn + count, swept + starts.swept, followed + len(starts.x)
+        refined, least = _refined(target, starts, limits, least, traded=problem.rank_by != "accuracy")
+        candidates += refined
+        progress(0.8 * (n + 1.0) / len(families), "best shapes refined")
+    return _running(candidates), CurveSweep(linkages=drawn, curves=swept, refined=followed)
+
+
+def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) -> list[FourbarConfiguration]:
+    """Linkages with fixed pivots where they are demanded, fitted to points along the target; in the target's unit.
+
+    They are fitted to the target's own points, and where these are not many to equal steps too: between points that lie
+    far apart the nearest linkages may go far astray.
+    """
+    lengths = problem.constraints.link_length or LengthLimits()
+    demands = problem.constraints.model_copy(
+        update={"link_length": lengths.model_copy(update={"max": problem.longest_link})}
+    )
+    fits = [target.points, target.steps] if len(target.points) < SHAPE_POINTS else [target.points]
+    found = []
+    for n, along in enumerate(fits):
+
+        def told(share: float, message: str, n: int = n) -> None:
+            progress(0.8 * (n + share) / len(fits), message)
+
+        points = [PathPoint(x=float(z.real), y=float(z.imag)) for z in target.centre + target.size * along]
+        changes = {"method": "least_squares", "points": points, "constraints": demands}
+        task = point_task(fit := problem.model_copy(update=changes))
+        for candidate in fitted(fit, task, np.random.default_rng(problem.seed), told):
+            joints = configuration_of(candidate, task)
+            if joints is not None:
+                found.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
+    return found
+
+
+def warm_up() -> None:
+    """Load the compiled kernels on a small circle, closed and open."""
+    circle = np.exp(2j * np.pi * np.arange(SHAPE_POINTS) / SHAPE_POINTS)
+    gradient = np.empty(9)
+    for family, closed in ((CRANK_ROCKER, True), (FOURBAR, False)):
+        starts = alike(family, circle, closed, 64, 2)
+        fit = descend(family, starts.x, starts.sign, starts.theta, circle, iterations=2)
+        settle(family, fit.x[0], starts.sign[0], fit.theta[0], circle, np.ones(SHAPE_POINTS), gradient)
+
+
+class _Target:
+    """The target, moved to the origin and scaled to a unit diagonal of the box around it."""
+
+    def __init__(self, problem: PathProblem) -> None:
+        given = np.array([point.point for point in problem.points])
+        if problem.closed and len(given) > 3 and given[-1] == given[0]:
+            given = given[:-1]
+        self.closed = problem.closed
+        self.centre = complex(0.5 * (given.real.min() + given.real.max()), 0.5 * (given.imag.min() + given.imag.max()))
+        self.size = math.hypot(float(np.ptp(given.real)), float(np.ptp(given.imag)))
+        self.points = (given - self.centre) / self.size
+        self.steps, self.places = equal_steps(self.points, self.closed, SHAPE_POINTS)
+        few = len(given) < FEW_POINTS
+        self.fitted = np.concatenate([self.points, self.steps]) if few else self.points
+        fill = FILL * len(given) / SHAPE_POINTS
+        self.weights = np.concatenate([np.ones(len(given)), np.full(SHAPE_POINTS if few else 0, fill)])
+
+    def angles(self, theta: Real) -> Real:
+        """Crank angles at the points to be fitted, from those at equal steps along the target."""
+        share = np.linspace(0.0, 1.0, SHAPE_POINTS, endpoint=not self.closed)
+        known = theta
+        if self.closed:
+            turn = math.copysign(2.0 * math.pi, theta[-1] - theta[0])
+            share, known = np.append(share, 1.0), np.append(theta, theta[0] + turn)
+        at = np.interp(self.places, share, known)
+        return np.concatenate([at, theta]) if len(self.fitted) > len(self.points) else at
+
+
+def _families(problem: PathProblem) -> list[int]:
+    """The families that may hold an answer."""
+    grashof = problem.constraints.grashof
+    if grashof == "crank_rocker":
+        return [CRANK_ROCKER]
+    if grashof == "double_crank":
+        return [DOUBLE_CRANK]
+    if problem.closed or problem.constraints.full_rotation:
+        return [CRANK_ROCKER, DOUBLE_CRANK]
+    return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
+
+
+def _refined(
+    target: _Target, starts: Starts, limits: Limits, least: float, *, traded: bool
+) -> tuple[list[_Candidate], float]:
+    """The starts' linkages after least squares, and the least cost at equal steps, of earlier families too.
+
+    ``traded``: with linkages among them that trade accuracy for force transmission.
+    """
+    if not len(starts.x):
+        return [], least
+    family, longest = starts.family, limits.longest
+    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGHLY)
+    least = min(least, float(rough.cost.min()))
+    best = np.argsort(rough.cost, kind="stable")[:REFINED]
+    best = best[rough.cost[best] <= HOPELESS * max(least, SHAPE_POINTS * SHAPE_ERROR**2)]
+    if not len(best):
+        return [], least
+    theta = np.array([target.angles(rough.theta[k]) for k in best])
+    thin = slice(None, None, math.ceil(len(target.fitted) / THINNED))
+    fine = descend(
+        family,
+        rough.x[best],
+        starts.sign[best],
+        theta[:, thin],
+        target.fitted[thin],
+        weights=target.weights[thin],
+        longest=longest,
+        iterations=SETTLED,
+    )
+    signs = starts.sign[best]
+    order = [k for k in np.argsort(fine.cost, kind="stable") if math.isfinite(fine.cost[k])]
+    order = [
+        order[k]
+        for k in _distinct([_rough(family, fine.x[k], float(signs[k]), fine.theta[k]) for k in order], 2 * LIMITED)
+    ]
+    if len(target.fitted) > THINNED:
+        fine = _at_all_points(target, family, fine, signs, thin, longest, order)
+    free = [(_candidate(target, family, fine.x[k], float(signs[k]), fine.theta[k]), k) for k in order]
+    free.sort(key=lambda pair: pair[0].error)
+    found, offered = [], list[_Candidate]()
+    usable = limits.usable() if traded else None
+    for candidate, k in free[:LIMITED]:
+        descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
+        kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, limits)
+        fit = descent if kept is None else kept
+        found.append(candidate if kept is None else _candidate(target, family, kept.x, candidate.sign, kept.theta))
+        if usable is not None and len(found) <= ALSO_USABLE:
+            better = descend_within(family, fit, candidate.sign, target.fitted, target.weights, usable)
+            if better is not None:
+                offered.append(_candidate(target, family, better.x, candidate.sign, better.theta))
+    return found + offered, least
+
+
+def _at_all_points(
+    target: _Target, family: int, thinned: Descent, sign: Real, thin: slice, longest: float, rows: list[int]
+) -> Descent:
+    """Descents from a part of the points go on with all of them."""
+    x, cost = thinned.x.copy(), thinned.cost.copy()
+    theta = np.empty((len(x), len(target.fitted)))
+    every = np.arange(len(target.fitted))
+    known = every[thin]
+    for k in rows:
+        angles, at = thinned.theta[k], known
+        if target.closed:
+            turn = math.copysign(2.0 * math.pi, angles[-1] - angles[0])
+            angles, at = np.append(angles, angles[0] + turn), np.append(known, len(every))
+        theta[k] = np.interp(every, at, angles)
+    whole = descend(
+        family, x[rows], sign[rows], theta[rows], target.fitted, weights=target.weights, longest=longest, iterations=ALL
+    )
+    x[rows], theta[rows], cost[rows] = whole.x, whole.theta, whole.cost
+    return Descent(x, theta, cost)
+
+
+def _rough(family: int, x: Real, sign: float, theta: Real) -> _Candidate:
+    """A linkage whose error is not known yet."""
+    return _Candidate(family, x, sign, float(theta[0]), math.inf)
+
+
+def _candidate(target: _Target, family: int, x: Real, sign: float, theta: Real) -> _Candidate:
+    """A linkage with its error at the target's own points."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    angles = theta[: len(target.points)]
+    misses = [
+        abs(place(family, x, lengths, sign, 0.0, float(at))[1] - point)
+        for point, at in zip(target.points, angles, strict=True)
+    ]
+    end = angles[0] + 2.0 * math.pi if target.closed else angles[-1]
+    run = np.linspace(angles[0], end, LOOKED_AT)
+    curve = np.array([place(family, x, lengths, sign, 0.0, float(at))[1] for at in run])
+    _, beyond = distances(curve, target.points, target.closed, max(misses))
+    error = math.hypot(math.sqrt(float(np.mean(np.square(misses)))), float(beyond.max()))
+    return _Candidate(family, x, sign, float(theta[0]), error)
+
+
+def _distinct(candidates: list[_Candidate], count: int) -> list[int]:
+    """Rows of candidates that differ, in their order."""
+    if not candidates:
+        return []
+    return distinct(np.array([list(_joints(candidate)) for candidate in candidates]), count, SAME_DESIGN)
+
+
+def _running(candidates: list[_Candidate]) -> list[_Candidate]:
+    """Candidates with an error near the least, the best first, each once."""
+    ordered = sorted(candidates, key=lambda candidate: candidate.error)
+    if not ordered:
+        return []
+    worst = max(ordered[0].error / HALVES, NOTHING)
+    ordered = [candidate for candidate in ordered if candidate.error <= worst]
+    return [ordered[k] for k in _distinct(ordered, OFFERED)]
+
+
+def _joints(candidate: _Candidate) -> FourbarConfiguration:
+    """The joints at the first point, in the target's own unit."""
+    x, lengths, chart = candidate.x, np.zeros(4), np.zeros((4, 4))
+    natural(candidate.family, x, lengths, chart)
+    _, p, unit = place(candidate.family, x, lengths, candidate.sign, 0.0, candidate.theta)
+    o2 = complex(x[0], x[1])
+    a = o2 + cmath.rect(float(lengths[1]), candidate.theta)
+    return FourbarConfiguration(o2, a, a + lengths[2] * unit, o2 + cmath.rect(float(lengths[0]), float(x[2])), p)
+
+
+def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
+    """A fourbar and its two cognates (Roberts), each with either fixed pivot as the input's, in one configuration.
+
+    With ζ = (P − A)/(B − A) the third pivot is O2 + ζ (O4 − O2), and O2 A P A′ is a parallelogram (Norton, Sec. 3.7).
+    """
+    found = []
+    o2, a, b, o4, p = joints
+    for start, pin, other, far in ((o2, a, b, o4), (o4, b, a, o2)):
+        found.append(FourbarConfiguration(start, pin, other, far, p))
+        if abs(p - pin) == 0.0 or abs(other - pin) == 0.0:
+            continue
+        zeta = (p - pin) / (other - pin)
+        third = start + zeta * (far - start)
+        new_pin = start + (p - pin)
+        new_other = new_pin + zeta * (pin - start)
+        found.append(FourbarConfiguration(start, new_pin, new_other, third, p))
+        found.append(FourbarConfiguration(third, new_other, new_pin, start, p))
+    return found
+
+
+def _verified(
+    problem: PathProblem,
+    target: _Target,
+    linkages: list[FourbarConfiguration],
+    limits: Limits,
+    progress: Progress,
+) -> tuple[list[PathDesign], Counter[str]]:
+    """Linkages in the target's unit, driven and measured; and what those that fail were rejected for."""
+    designs, rejected = [], Counter[str]()
+    for n, joints in enumerate(linkages):
+        progress(0.8 + 0.2 * n / len(linkages), f"{n} of {len(linkages)} linkages verified")
+        links = (
+            abs(joints.a - joints.o2),
+            abs(joints.b - joints.a),
+            abs(joints.b - joints.o4),
+            abs(joints.o4 - joints.o2),
+        )
+        if min(links) < SHORTEST:
+            rejected["degenerate"] += 1
+            continue
+        if not limits.lengths_kept(links):
+            rejected["link_length"] += 1
+            continue
+        if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
+            rejected["full_rotation"] += 1
+            continue
+        drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
+        alpha, beta = placement_of(problem, drawn)
+        there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
+        at = stated(alpha, beta)
+        design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+            continue
+        designs.append(design if at is None else design.model_copy(update={"placement": at}))
+        if not design.verification.passed:
+            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    return designs, rejected
+
+
+def _result(
+    problem: PathProblem, designs: list[PathDesign], rejected: Counter[str], sweep: CurveSweep | None
+) -> PathResult:
+    kept = [design for design in designs if design.verification.passed]
+    passed = ranked_by_nearness(near_the_nearest(kept, problem), problem)
+    if len(passed) < len(kept):
+        rejected = rejected + Counter(far_from_the_curve=len(kept) - len(passed))
+    shown = list(passed)
+    if problem.include_failed:
+        shown += ranked_by_nearness([design for design in designs if not design.verification.passed], problem)
+    if shown:
+        names = ("O2", "A", "B", "O4")
+        joints = np.array([[complex(*d.mechanism.skeleton.joints[name]) for name in names] for d in shown])
+        shown = [shown[k] for k in distinct(joints, problem.max_designs, SAME_DESIGN * problem.task_size)]
+    if sweep is None:
+        text = (
+            "Linkages on the given pivots were fitted to points along the curve from many starts; "
+            f"{len(passed)} of {len(passed) + rejected.total()} satisfy all demands."
+        )
+    else:
+        text = (
+            f"{sweep.curves} curves of {sweep.linkages} linkages were compared with the target, {sweep.refined} "
+            f"refined; {len(passed)} of {len(passed) + rejected.total()} designs, cognates included, satisfy all "
+            "demands."
+        )
+    if passed:
+        best = passed[0].metrics
+        unit = problem.length_unit
+        text += f" The best draws it with an rms distance of {best.rms_distance:.3g} {unit}, "
+        text += f"at most {best.max_distance:.3g}."
+        if sweep is not None:
+            text += (
+                " Cognates draw the same curve, and quality chose among them: pivots near the curve, force "
+                "transmission, even links."
+            )
+    if rejected:
+        listed = (f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
+        text += f" Rejected: {', '.join(listed)}."
+    return PathResult(
+        designs=shown,
+        search=Search(
+            method="curve_match",
+            complete=False,
+            candidates=len(passed) + rejected.total(),
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=text,
+        sweep=sweep,
+    )
+
+
+def error_of(design: PathDesign, problem: PathProblem) -> float:
+    """How far a design is from the curve: its rms distance from the points, and how far it goes astray between them."""
+    return max(NOTHING * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0))
+
+
+def near_the_nearest(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Designs whose error is not beyond the least one over :data:`HALVES`."""
+    least = min((error_of(design, problem) for design in designs), default=0.0)
+    return [design for design in designs if error_of(design, problem) <= least / HALVES]
+
+
+def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
+    """Designs in the order asked for: the nearest first, among those equally near by quality, unless size or
+    transmission angle are asked for: then these decide among designs whose error is less than twice the least."""
+    if not designs:
+        return []
+    factor = math.log(NEARER if problem.rank_by == "accuracy" else EQUALLY_NEAR)
+    least = min(error_of(design, problem) for design in designs)
+
+    def key(design: PathDesign) -> tuple[float, float, float]:
+        metrics = design.metrics
+        asked = {"size": metrics.size, "transmission_angle": -metrics.min_transmission_angle}.get(problem.rank_by)
+        if asked is not None:
+            return float(error_of(design, problem) > 2.0 * least), asked, -metrics.quality
+        error = error_of(design, problem)
+        return math.floor(math.log(error / least) / factor + 1e-6), -metrics.quality, error
+
+    return sorted(designs, key=key)

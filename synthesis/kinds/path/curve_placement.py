@@ -1,0 +1,134 @@
+"""Where a matched curve is put: what of its position, rotation and size is free goes into pivots and lengths demanded.
+
+Tracing a shape somewhere is tracing it anywhere: a linkage is moved, turned and sized with its curve. With everything
+free both fixed pivots can be given, as z → αz + β is known from two points. With the position free one pivot can, or a
+region for pivots; with the size free the limits of link lengths are met by scale.
+"""
+
+from __future__ import annotations
+
+import math
+
+from synthesis.kinds.path.design import CurvePlacement, PathDesign
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.linkage_statement import Region
+from synthesis.model.linkages import FourbarConfiguration, to_point
+
+
+def searched(problem: PathProblem) -> PathProblem:
+    """The problem as the shape is searched for: without the demands that placing the curve will meet."""
+    free = set(problem.placement_free)
+    demands: dict[str, object] = {}
+    limits: dict[str, object] = {}
+    if _both_pivots(problem) is not None or ("position" in free and _one_pivot(problem) is not None):
+        demands["fixed_pivots"] = type(problem.fixed_pivots)()
+    if "position" in free:
+        limits |= {"fixed_pivot_region": None, "input_pivot_region": None, "moving_pivot_region": None}
+    if "size" in free:
+        limits["link_length"] = None
+    if limits:
+        demands["constraints"] = problem.constraints.model_copy(update=limits)
+    return problem.model_copy(update=demands) if demands else problem
+
+
+def placement_of(problem: PathProblem, joints: FourbarConfiguration) -> tuple[complex, complex]:
+    """α and β of z → αz + β that bring a linkage and its curve to the demands; 1 and 0 where nothing is free."""
+    free = set(problem.placement_free)
+    both = _both_pivots(problem)
+    if both is not None:
+        alpha = (both[1] - both[0]) / (joints.o4 - joints.o2)
+        return alpha, both[0] - alpha * joints.o2
+    alpha = complex(_scale(problem, joints)) if "size" in free else 1.0 + 0j
+    # Sized about its own first point, where it was drawn.
+    beta = (1.0 - alpha) * joints.p
+    if "position" in free:
+        o2, o4 = alpha * joints.o2 + beta, alpha * joints.o4 + beta
+        one = _one_pivot(problem)
+        if one is not None:
+            beta += one[1] - (o2 if one[0] == "input" else o4)
+        else:
+            beta += _into(problem.constraints.fixed_pivot_region, [o2, o4])
+            beta += _into(problem.constraints.input_pivot_region, [alpha * joints.o2 + beta])
+    return alpha, beta
+
+
+def moved(problem: PathProblem, alpha: complex, beta: complex) -> PathProblem:
+    """The problem with its curve under z → αz + β."""
+    points = []
+    for point in problem.points:
+        z = alpha * point.point + beta
+        points.append(point.model_copy(update={"x": z.real, "y": z.imag}))
+    return problem.model_copy(update={"points": points})
+
+
+def placed(problem: PathProblem, design: PathDesign) -> PathProblem:
+    """The problem with its curve where a design traces it."""
+    at = design.placement
+    if at is None:
+        return problem
+    turned = math.radians(at.rotation)
+    return moved(problem, at.size * complex(math.cos(turned), math.sin(turned)), complex(*at.shift))
+
+
+def stated(alpha: complex, beta: complex) -> CurvePlacement | None:
+    """A placement as an answer tells it; None for a curve that stays where it was drawn."""
+    if alpha == 1.0 and beta == 0.0:
+        return None
+    return CurvePlacement(
+        size=abs(alpha), rotation=math.degrees(math.atan2(alpha.imag, alpha.real)), shift=to_point(beta)
+    )
+
+
+def _both_pivots(problem: PathProblem) -> tuple[complex, complex] | None:
+    """Both given pivots, where the curve may go wherever they ask."""
+    if set(problem.placement_free) != {"position", "rotation", "size"} or problem.fixed_pivots.given() != 4:
+        return None
+    pair = [complex(*map(float, pivot)) for pivot in _whole(problem).values()]
+    return pair[0], pair[1]
+
+
+def _one_pivot(problem: PathProblem) -> tuple[str, complex] | None:
+    """The side and place of the one pivot that is given whole."""
+    whole = _whole(problem)
+    if len(whole) != 1 or problem.fixed_pivots.given() != 2:
+        return None
+    ((side, pivot),) = whole.items()
+    return side, complex(*pivot)
+
+
+def _whole(problem: PathProblem) -> dict[str, tuple[float, float]]:
+    found = {}
+    for side, pivot in (("input", problem.fixed_pivots.input), ("output", problem.fixed_pivots.output)):
+        if pivot is not None and pivot[0] is not None and pivot[1] is not None:
+            found[side] = (pivot[0], pivot[1])
+    return found
+
+
+def _scale(problem: PathProblem, joints: FourbarConfiguration) -> float:
+    """The size nearest to 1 at which the links are within their limits; 1 where there is none."""
+    limit = problem.constraints.link_length
+    if limit is None:
+        return 1.0
+    links = (
+        abs(joints.o4 - joints.o2),
+        abs(joints.a - joints.o2),
+        abs(joints.b - joints.a),
+        abs(joints.b - joints.o4),
+    )
+    least, most = limit.min / min(links), math.inf if limit.max is None else limit.max / max(links)
+    return min(max(1.0, least), most) if least <= most else 1.0
+
+
+def _into(region: Region | None, pivots: list[complex]) -> complex:
+    """The shortest shift that brings pivots into a region, where they fit into it."""
+    if region is None:
+        return 0j
+    shift = []
+    for values, (low, high) in (
+        ([pivot.real for pivot in pivots], region.x),
+        ([pivot.imag for pivot in pivots], region.y),
+    ):
+        below, above = low - min(values), high - max(values)
+        # Inside where the shift lies between the two.
+        shift.append(min(max(0.0, below), above) if below <= above else 0.5 * (below + above))
+    return complex(*shift)

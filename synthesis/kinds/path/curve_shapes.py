@@ -1,0 +1,505 @@
+"""Which of many coupler curves have the shape of a given one: sweep, resample by arc length, compare, place.
+
+Shapes are compared with position, size and rotation removed. A curve is N points at equal distances along it, less its
+centroid, of unit norm. Two closed ones are as like as
+
+    ρ = max over s and direction of |Σⱼ z̄ⱼ tⱼ₊ₛ| ≤ 1,
+
+because √(1 − ρ²) is the norm of what the best similarity transformation leaves; all shifts s come from one inverse
+transform of the product of their Fourier descriptors (Zahn & Roskies 1972, doi:10.1109/TC.1972.5008949). Mirror images
+count as alike: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point and needs no
+shift; it is compared with windows of every candidate, of several lengths and places along it.
+
+Candidates are drawn at run time, by lengths relative to the crank, and swept by the compiled kernel.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.stats import qmc
+
+from synthesis.kinds.path.traced_curves import (
+    CRANK_ROCKER,
+    DOUBLE_CRANK,
+    FOURBAR,
+    GEARED_FIVEBAR,
+    OPTIONS,
+    SLIDER_CRANK,
+    SLIDER_ROCKER,
+    UNKNOWNS,
+    natural,
+    sweep,
+)
+from synthesis.numerics.portions import THREADS
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Mask = NDArray[np.bool_]
+
+SHAPE_POINTS = 48
+"""Points of a shape: descriptors up to the 24th, far more than coupler curves have."""
+
+SWEEP_STEPS = 96
+"""Crank positions a candidate is swept at, before it is resampled."""
+
+CHUNK = 2048
+"""Candidates that are compared at a time; what they need stays in the cache."""
+
+WINDOW_LENGTHS = (1.0, 0.85, 0.7, 0.58, 0.47, 0.38, 0.3, 0.22, 0.15)
+"""Shares of a closed curve's length that are compared with an open stroke."""
+
+WINDOW_STARTS = 24
+"""Places along the curve at which a window begins."""
+
+WINDOW_POINTS = 24
+"""Points in which a window is compared with a stroke: half of a shape's, as there are so many windows."""
+
+SAME_PLACE = 0.12
+"""Starts whose pivots agree to this share of the task's size lead to the same linkage; one of them is followed."""
+
+OVERSUPPLY = 6
+"""The most alike candidates are many times the same; so many times what is wanted are looked through."""
+
+OVERSIZE = 2.0
+"""Starts this many times too long are still followed: most shrink on the way."""
+
+
+class Starts(NamedTuple):
+    """Linkages of one family placed on the target, most alike first.
+
+    Attributes
+    ----------
+    family : int
+    x, sign : float, shapes (n, m), (n,)
+    theta : float, shape (n, SHAPE_POINTS)
+        Crank angles at the target's shape points.
+    unlike : float, shape (n,)
+        √(1 − ρ²).
+    swept : int
+        Curves that were compared: candidates, or windows of them.
+    """
+
+    family: int
+    x: Real
+    sign: Real
+    theta: Real
+    unlike: Real
+    swept: int
+
+
+def equal_steps(points: Complex, closed: bool, count: int) -> tuple[Complex, Real]:
+    """Points at equal distances along a polyline, and the places of its corners along it as shares of its length.
+
+    A closed one does not repeat its first point, in ``points`` or in the answer. The length must not be zero.
+    """
+    whole = np.concatenate([points, points[:1]]) if closed else points
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))])
+    at = np.linspace(0.0, along[-1], count, endpoint=not closed)
+    return np.interp(at, along, whole.real) + 1j * np.interp(at, along, whole.imag), along[: len(points)] / along[-1]
+
+
+@njit(**OPTIONS)
+def _resample(curves: Complex, closed: bool, shapes: Complex) -> None:
+    """Equal steps along every curve."""
+    n, steps = curves.shape
+    count = shapes.shape[1]
+    pieces = steps if closed else steps - 1
+    along = np.empty(pieces + 1)
+    for i in range(n):
+        along[0] = 0.0
+        for k in range(pieces):
+            along[k + 1] = along[k] + abs(curves[i, (k + 1) % steps] - curves[i, k])
+        k = 0
+        for j in range(count):
+            at = along[pieces] * j / (count if closed else count - 1)
+            while k < pieces - 1 and along[k + 1] < at:
+                k += 1
+            length = along[k + 1] - along[k]
+            share = (at - along[k]) / length if length > 0.0 else 0.0
+            shapes[i, j] = curves[i, k] + share * (curves[i, (k + 1) % steps] - curves[i, k])
+
+
+@njit(**OPTIONS)
+def _windows(
+    curves: Complex, ring: bool, lengths: Real, starts: int, target: Complex, best: Real, where: NDArray[np.int64]
+) -> None:
+    """The window of each curve (equal steps) most like an open target, forth or back, itself or mirrored.
+
+    ``best`` is ρ, ``where`` (n, 3): length, start, and the manner: 0 forth, 1 back, +2 mirrored.
+    """
+    n, count = curves.shape
+    points = len(target)
+    window = np.empty(points, np.complex128)
+    for i in range(n):
+        best[i] = -1.0
+        for a in range(len(lengths)):
+            size = lengths[a]
+            for s in range(starts):
+                if ring:
+                    begin = s / starts
+                elif size >= 1.0:
+                    if s > 0:
+                        break
+                    begin = 0.0
+                else:
+                    begin = (1.0 - size) * s / (starts - 1)
+                middle, norm = 0j, 0.0
+                for j in range(points):
+                    at = begin + size * j / (points - 1)
+                    at *= count if ring else count - 1
+                    k = int(at)
+                    if not ring and k >= count - 1:
+                        k = count - 2
+                    one, two = curves[i, k % count], curves[i, (k + 1) % count]
+                    window[j] = one + (at - k) * (two - one)
+                    middle += window[j]
+                middle /= points
+                f0, f1, b0, b1 = 0j, 0j, 0j, 0j
+                for j in range(points):
+                    w = window[j] - middle
+                    norm += w.real * w.real + w.imag * w.imag
+                    t, r = target[j], target[points - 1 - j]
+                    f0 += w.conjugate() * t
+                    b0 += w.conjugate() * r
+                    f1 += w * t
+                    b1 += w * r
+                if norm <= 0.0:
+                    continue
+                root = math.sqrt(norm)
+                for manner, value in enumerate((f0, b0, f1, b1)):
+                    rho = abs(value) / root
+                    if rho > best[i]:
+                        best[i] = rho
+                        where[i, 0], where[i, 1], where[i, 2] = a, s, manner
+
+
+class _Found(NamedTuple):
+    """Candidates of a chunk: how alike, and how the target lies on them (shift or window, and the manner)."""
+
+    rho: Real
+    where: NDArray[np.int64]
+
+
+def _alike_closed(curves: Complex, target: Complex) -> _Found:
+    shapes = np.empty((len(curves), SHAPE_POINTS), np.complex128)
+    _resample(curves, True, shapes)
+    shapes -= shapes.mean(axis=1, keepdims=True)
+    norms = np.linalg.norm(shapes, axis=1)
+    shapes /= np.where(norms > 0.0, norms, np.inf)[:, None]
+    descriptors = fft.fft(shapes.astype(np.complex64), axis=1)
+    rho, where = np.full(len(curves), -1.0), np.zeros((len(curves), 3), np.int64)
+    for manner in range(4):
+        asked = target[::-1] if manner % 2 else target
+        if manner >= 2:
+            # Σ z t̄... : the mirrored candidate, z̄, against t is z against t̄, conjugated.
+            asked = asked.conj()
+        product = fft.ifft(fft.fft(asked).astype(np.complex64) * descriptors.conj(), axis=1)
+        sizes = np.abs(product)
+        shift = sizes.argmax(axis=1)
+        found = sizes[np.arange(len(curves)), shift]
+        better = found > rho
+        rho[better] = found[better]
+        where[better, 1], where[better, 2] = shift[better], manner
+    return _Found(np.minimum(rho, 1.0), where)
+
+
+def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Found:
+    shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
+    _resample(curves, ring, shapes)
+    rho, where = np.empty(len(curves)), np.zeros((len(curves), 3), np.int64)
+    few, _ = equal_steps(target, False, WINDOW_POINTS)
+    few -= few.mean()
+    _windows(shapes, ring, np.array(WINDOW_LENGTHS), WINDOW_STARTS, few / np.linalg.norm(few), rho, where)
+    return _Found(np.minimum(rho, 1.0), where)
+
+
+class Draw(NamedTuple):
+    """Candidates of one family: unknowns at unit crank, signs, and the crank's range (begin, end), shape (n,)."""
+
+    x: Real
+    sign: Real
+    begin: Real
+    end: Real
+
+
+def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
+    """Linkages of a family with O2 at the origin and shapes spread evenly in the logarithms of their lengths."""
+    m = UNKNOWNS[family]
+    u = qmc.Sobol(m, seed=seed).random_base2(max(0, math.ceil(math.log2(count))))[:count]
+    x = np.zeros((count, m))
+    begin, end = np.zeros(count), np.full(count, 2.0 * math.pi)
+    sign = np.ones(count)
+    if family in (CRANK_ROCKER, DOUBLE_CRANK):
+        x[:, 4:7] = np.log(0.05) + u[:, 2:5] * np.log(12.0 / 0.05)
+        coupler = 1.0 + 0.5 * (np.exp(x[:, 4]) + np.exp(x[:, 5]))
+        _point(x, u, coupler)
+    elif family == FOURBAR:
+        x[:, 3:7] = np.log(0.2) + u[:, 2:6] * np.log(5.0 / 0.2)
+        lengths = np.exp(x[:, 3:7])
+        _point(x, u, lengths[:, 2])
+        begin, end = _fourbar_range(lengths)
+    elif family == SLIDER_CRANK:
+        x[:, 4] = np.log(0.05) + u[:, 2] * np.log(12.0 / 0.05)
+        x[:, 5] = 3.0 * (u[:, 3] - 0.5)
+        _point(x, u, 1.0 + np.exp(x[:, 4]))
+    elif family == SLIDER_ROCKER:
+        x[:, 4] = np.log(0.2) + u[:, 2] * np.log(5.0 / 0.2)
+        x[:, 5] = 4.0 * (u[:, 3] - 0.5)
+        _point(x, u, np.exp(x[:, 4]))
+        begin, end = _slider_range(np.exp(x[:, 4]), x[:, 5])
+    else:
+        x[:, 4:8] = np.log(0.3) + u[:, 2:6] * np.log(8.0 / 0.3)
+        x[:, 4] = 0.0
+        distance = np.exp(np.log(0.2) + u[:, 6] * np.log(8.0 / 0.2))
+        x[:, 2] = distance
+        x[:, 8] = 2.0 * math.pi * u[:, 7]
+        _point(x, u, np.exp(x[:, 5]))
+        end = np.full(count, cycle_of(ratio))
+    return Draw(x, sign, begin, end)
+
+
+def cycle_of(ratio: float) -> float:
+    """The crank's rotation after which a geared fivebar stands as at first, radians; one turn for other linkages."""
+    turns = 1
+    while turns < LONGEST_CYCLE and abs(ratio * turns - round(ratio * turns)) > WHOLE_TURN:
+        turns += 1
+    return 2.0 * math.pi * turns
+
+
+LONGEST_CYCLE = 60
+"""Turns of the crank that are followed for a geared fivebar; gear ratios of more teeth than this come round later."""
+
+WHOLE_TURN = 1e-9
+"""A ratio is taken for a fraction that it differs from by less than this."""
+
+
+def _point(x: Real, u: Real, coupler: Real) -> None:
+    """Coupler points about the coupler's middle, most within a few couplers of it."""
+    reach = coupler * np.exp(np.log(0.03) + u[:, 0] * np.log(4.0 / 0.03))
+    point = 0.5 * coupler + reach * np.exp(2j * math.pi * u[:, 1])
+    x[:, -2], x[:, -1] = point.real, point.imag
+
+
+INSIDE = 0.999
+"""Share of the range between two toggles that is swept: at the toggles themselves the slopes have no bound."""
+
+
+def _fourbar_range(lengths: Real) -> tuple[Real, Real]:
+    """The crank's range from the ground line (γ = 0): the whole turn, or from toggle to toggle on the upper side."""
+    d, a, b, c = lengths.T
+    most = (a * a + d * d - (b + c) ** 2) / (2.0 * a * d)
+    least = (a * a + d * d - (b - c) ** 2) / (2.0 * a * d)
+    # The crank turns where cos θ lies between: |A O4| between |b − c| and b + c.
+    low, high = np.arccos(np.clip(least, -1.0, 1.0)), np.arccos(np.clip(most, -1.0, 1.0))
+    turns = (most <= -1.0) & (least >= 1.0)
+    through_zero, through_pi = (least >= 1.0) & ~turns, (most <= -1.0) & ~turns
+    begin = np.where(turns, 0.0, np.where(through_zero, -high, low))
+    end = np.where(turns, 2.0 * np.pi, np.where(through_pi, 2.0 * np.pi - low, high))
+    middle, half = 0.5 * (begin + end), 0.5 * INSIDE * (end - begin)
+    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
+
+
+def _slider_range(coupler: Real, offset: Real) -> tuple[Real, Real]:
+    """The crank's range from the slide's direction (σ = 0, crank of length one)."""
+    low, high = offset - coupler, offset + coupler
+    turns = (low <= -1.0) & (high >= 1.0)
+    bottom, top = np.arcsin(np.clip(low, -1.0, 1.0)), np.arcsin(np.clip(high, -1.0, 1.0))
+    begin = np.where(high >= 1.0, bottom, np.where(low <= -1.0, np.pi - top, bottom))
+    end = np.where(high >= 1.0, np.pi - bottom, np.where(low <= -1.0, 2.0 * np.pi + top, top))
+    middle, half = 0.5 * (begin + end), 0.5 * INSIDE * (end - begin)
+    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
+
+
+def alike(
+    family: int,
+    target: Complex,
+    closed: bool,
+    count: int,
+    keep: int,
+    *,
+    ratio: float = 0.0,
+    longest: float = math.inf,
+    seed: int = 0,
+    told: Callable[[float], None] | None = None,
+) -> Starts:
+    """The candidates of a family whose curves are most like the target, placed on it.
+
+    Parameters
+    ----------
+    family : int
+        Of :mod:`synthesis.kinds.path.traced_curves`.
+    target : complex, shape (SHAPE_POINTS,)
+        Equal steps along the target.
+    closed : bool
+        Whether it is a closed curve; an open one is compared with windows of the candidates.
+    count, keep : int
+        How many candidates are drawn, and how many at most come back.
+    ratio, longest : float
+        Gear ratio; longest link, in the target's units, of what is kept.
+    seed : int
+        Of the draw.
+    told : callable, optional
+        Called with the share done.
+    """
+    centre = target.mean()
+    norm = float(np.linalg.norm(target - centre))
+    shape = (target - centre) / norm
+    drawn = draw(family, count, ratio, seed)
+    rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
+    swept = 0
+
+    def compare(first: int) -> list[tuple[NDArray[np.int64], _Found]]:
+        curves, _, good, rings = _swept(drawn, family, slice(first, min(first + CHUNK, count)), ratio)
+        found = []
+        for ring in (True, False):
+            chosen = np.flatnonzero(good & (rings == ring))
+            if (ring or not closed) and len(chosen):
+                some = curves[chosen]
+                found.append((first + chosen, _alike_closed(some, shape) if closed else _alike_open(some, ring, shape)))
+        return found
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        chunks = range(0, count, CHUNK)
+        for first, parts in zip(chunks, pool.map(compare, chunks), strict=True):
+            for chosen, found in parts:
+                rho[chosen], where[chosen] = found.rho, found.where
+                swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
+            if told is not None:
+                told(min(first + CHUNK, count) / count)
+    order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
+    order = order[rho[order] > 0.0]
+    x, theta, sign = _placed(family, drawn, order, where[order], target, closed, ratio)
+    chosen = _different(x, theta, sign, np.ptp(target.real) + np.ptp(target.imag), longest, family, keep)
+    unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[chosen]] ** 2))
+    return Starts(family, x[chosen], sign[chosen], theta[chosen], unlike, swept)
+
+
+def _swept(drawn: Draw, family: int, rows: Any, ratio: float) -> tuple[Complex, Real, Mask, Mask]:
+    """P and θ over the crank's range of each candidate; which do not jam; and which come round."""
+    x, sign, begin, end = drawn.x[rows], drawn.sign[rows], drawn.begin[rows], drawn.end[rows]
+    turn = cycle_of(ratio) if family == GEARED_FIVEBAR else 2.0 * math.pi
+    rings = end - begin >= turn * (1.0 - 1e-12)
+    curves, theta = np.empty((len(x), SWEEP_STEPS), np.complex128), np.empty((len(x), SWEEP_STEPS))
+    good = np.empty(len(x), np.bool_)
+    sweep(family, x, sign, ratio, begin, end, rings, curves, theta, good)
+    return curves, theta, good, rings
+
+
+def _placed(
+    family: int,
+    drawn: Draw,
+    order: NDArray[np.int64],
+    where: NDArray[np.int64],
+    target: Complex,
+    closed: bool,
+    ratio: float,
+) -> tuple[Real, Real, Real]:
+    """The candidates moved, turned, sized and mirrored onto the target; crank angles at its points; signs."""
+    curves, theta, _, rings = _swept(drawn, family, order, ratio)
+    x, sign = drawn.x[order].copy(), drawn.sign[order].copy()
+    at = np.empty((len(order), SHAPE_POINTS))
+    place = np.arange(SHAPE_POINTS)
+    cycles = drawn.end[order] - drawn.begin[order]
+    for i, (length, start, manner) in enumerate(where):
+        ring = bool(rings[i])
+        if closed:
+            share = (place - start) / SHAPE_POINTS
+        else:
+            size = WINDOW_LENGTHS[length]
+            begin = start / WINDOW_STARTS if ring else (1.0 - size) * start / (WINDOW_STARTS - 1)
+            share = begin + size * place / (SHAPE_POINTS - 1)
+        z, at[i] = _at_shares(curves[i], theta[i], ring, float(cycles[i]), share)
+        if manner % 2:
+            z, at[i] = z[::-1], at[i, ::-1].copy()
+        if manner >= 2:
+            z = z.conj()
+            at[i] *= -1.0
+            _mirror(family, x[i], sign, i)
+        about = z - z.mean()
+        alpha = complex(np.vdot(about, target)) / float(np.vdot(about, about).real)
+        _move(family, x[i], ratio, alpha, complex(target.mean()) - alpha * complex(z.mean()))
+        at[i] += cmath.phase(alpha)
+    return x, at, sign
+
+
+@njit(cache=True, nogil=True)
+def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Real) -> tuple[Complex, Real]:
+    """Points and crank angles at shares of a curve's length; of a ring, beyond its end too."""
+    count = len(curve) + 1 if ring else len(curve)
+    points, angles, along = np.empty(count, np.complex128), np.empty(count), np.zeros(count)
+    points[: len(curve)], angles[: len(curve)] = curve, theta
+    if ring:
+        points[-1], angles[-1] = curve[0], theta[0] + cycle
+    for k in range(1, count):
+        along[k] = along[k - 1] + abs(points[k] - points[k - 1])
+    along /= along[-1]
+    turns = np.floor(share) if ring else np.zeros(len(share))
+    inside = share - turns
+    z = np.interp(inside, along, points.real) + 1j * np.interp(inside, along, points.imag)
+    return z, np.interp(inside, along, angles) + cycle * turns
+
+
+def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
+    """The linkage mirrored in the real axis, in place; crank angles change sign with it."""
+    x[1] = -x[1]
+    x[-1] = -x[-1]
+    if family == GEARED_FIVEBAR:
+        x[3], x[8] = -x[3], -x[8]
+    else:
+        x[2] = -x[2]
+    if family in (SLIDER_CRANK, SLIDER_ROCKER):
+        x[5] = -x[5]
+    else:
+        sign[i] = -sign[i]
+
+
+def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> None:
+    """The linkage under z → αz + β, in place; crank angles grow by the phase of α."""
+    size, turn = abs(alpha), cmath.phase(alpha)
+    o2 = alpha * complex(x[0], x[1]) + beta
+    x[0], x[1] = o2.real, o2.imag
+    if family == GEARED_FIVEBAR:
+        o5 = alpha * complex(x[2], x[3]) + beta
+        x[2], x[3] = o5.real, o5.imag
+        x[4:8] += math.log(size)
+        x[8] += (1.0 - ratio) * turn
+    else:
+        x[2] += turn
+        x[3:5] += math.log(size)
+        if family == SLIDER_ROCKER:
+            x[5] *= size
+        elif family != SLIDER_CRANK:
+            x[5:7] += math.log(size)
+    x[-2:] *= size
+
+
+def _different(
+    x: Real, theta: Real, sign: Real, size: float, longest: float, family: int, keep: int
+) -> NDArray[np.int64]:
+    """Rows that are not near one another, nor far too large, at most ``keep`` of them."""
+    lengths, chart = np.empty(4), np.empty((4, 4))
+    kept: list[int] = []
+    marks = np.empty((keep, 8 if family == GEARED_FIVEBAR else 7))
+    for i in range(len(x)):
+        lengths[:] = 0.0
+        natural(family, x[i], lengths, chart)
+        if max(float(np.abs(lengths).max()), math.hypot(x[i, -2], x[i, -1])) > OVERSIZE * longest:
+            continue
+        pin = complex(x[i, 0], x[i, 1]) + lengths[0 if family > FOURBAR else 1] * cmath.exp(1j * theta[i, 0])
+        far = lengths[:4] if family == GEARED_FIVEBAR else lengths[1:]
+        mark = np.array([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
+        if (np.abs(marks[: len(kept)] - mark).max(axis=1) > SAME_PLACE * size).all():
+            marks[len(kept)] = mark
+            kept.append(i)
+            if len(kept) == keep:
+                break
+    return np.array(kept, np.int64)

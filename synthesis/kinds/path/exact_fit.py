@@ -1,0 +1,61 @@
+"""Points that are met exactly although they leave freedom: linkages of the family, drawn where they are usable.
+
+Fewer points than a fourbar can meet leave a whole family of linkages. Descents from random starts
+(:mod:`synthesis.kinds.path.point_fit`) end on it at points that are as random as the starts, and within all limits.
+That serves constraints of every kind, given pivots among them. So that the answers are usable, the first rounds add
+limits of their own to the client's: a good transmission angle and links that can be built together.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from synthesis.kinds.path.design import PathDesign
+from synthesis.kinds.path.limits import Usable
+from synthesis.kinds.path.point_fit import (
+    fitted,
+    mechanism_of,
+    point_task,
+)
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+
+Progress = Callable[[float, str], None]
+
+ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 20.0), None)
+"""What is asked of the linkages beyond the client's limits, round by round."""
+
+DRAWN = 40
+"""Linkages that are refined and verified in each round, at most."""
+
+EXACT = 1e-11
+"""Root mean square distance, in task sizes, up to which a descent has ended on the family."""
+
+
+def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | None]:
+    """Linkages through all points, verified; None for one that could not be driven.
+
+    Rounds go on until as many designs are sound as are wanted.
+    """
+    task = point_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    found: list[PathDesign | None] = []
+    sound = 0
+    for n, usable in enumerate(ROUNDS):
+
+        def told(share: float, message: str, n: int = n) -> None:
+            progress((n + share) / len(ROUNDS), message)
+
+        for candidate in fitted(problem, task, rng, told, finalists=DRAWN, usable=usable):
+            if math.sqrt(2.0 * candidate.cost / len(task.rows)) > EXACT:
+                continue
+            mechanism = mechanism_of(candidate, task)
+            design = None if mechanism is None else verify_path(problem, mechanism)
+            found.append(design)
+            sound += design is not None and design.verification.passed
+        if sound >= problem.max_designs:
+            break
+    return found

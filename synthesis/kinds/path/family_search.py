@@ -1,0 +1,217 @@
+"""Three to eight points and demands: the freedom that is left is used to satisfy the demands, and to rank.
+
+Fourbars through fewer than nine points are a family. Members are looked for near a curve that goes smoothly through the
+points: some ten thousand linkages of the demanded type are compared with it, as for whole curves, and the most alike go
+to least squares at the points alone, with given pivots and regions as further distances, until nothing is left of
+either. That is a descent to the nearest member of the family, one for each start; what else is demanded (transmission
+angle, lengths, order) chooses among the members, all of which are driven.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_shapes import (
+    SHAPE_POINTS,
+    alike,
+    equal_steps,
+)
+from synthesis.kinds.path.design import (
+    FamilySearch,
+    PathDesign,
+    PathResult,
+)
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.traced_curves import (
+    CRANK_ROCKER,
+    DOUBLE_CRANK,
+    FOURBAR,
+    natural,
+    place,
+)
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_statement import Region
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import distinct, ranked
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DRAWN = 6144
+"""Linkages of a family that are drawn in each round, and compared by their parts with a curve through the points."""
+
+FOLLOWED = 220
+"""The most alike of them, which are brought to the points."""
+
+SETTLED = 150
+"""Steps of least squares at most; members are reached in some twenty."""
+
+MET = 1e-22
+"""Sum of squared distances, in squares of the task's size, at which a member of the family is reached."""
+
+INSIDE = 1e-7
+"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
+
+LONGEST = 12.0
+"""Links longer than this many task sizes are discouraged, where no limit is stated."""
+
+SMOOTH = 240
+"""Points of the curve through the given ones."""
+
+SAME_DESIGN = 1e-3
+"""Members whose joints agree to this share of the task's size are offered once: the family is continuous."""
+
+SHORTEST = 1e-6
+"""Links shorter than this share of the task's size are no links."""
+
+DRIVEN = 160
+"""Members that are driven at most."""
+
+
+def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of three to eight points with demands."""
+    given = np.array([point.point for point in problem.points])
+    centre, size = complex(given.mean()), problem.task_size
+    points = (given - centre) / size
+    within = _within(problem, centre, size)
+    limit = problem.constraints.link_length
+    longest = LONGEST if limit is None or limit.max is None else limit.max / size
+    smooth, places = _smooth(points)
+    families = _families(problem)
+    found: list[FourbarConfiguration] = []
+    brought = 0
+    for turn in range(problem.rounds):
+        for n, family in enumerate(families):
+            done = (turn + n / len(families)) / problem.rounds
+            progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(found)} linkages meet all points")
+            seed = int(np.random.default_rng([problem.seed, turn, n]).integers(2**31))
+            starts = alike(family, smooth, False, DRAWN, FOLLOWED, longest=longest, seed=seed)
+            brought += len(starts.x)
+            if not len(starts.x):
+                continue
+            along = np.linspace(0.0, 1.0, SHAPE_POINTS)
+            theta = np.array([np.interp(places, along, angles) for angles in starts.theta])
+            ends = descend(
+                family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=SETTLED
+            )
+            for k in np.flatnonzero(ends.cost <= MET):
+                joints = _joints(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
+                found.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
+    return _answer(problem, found, brought, progress)
+
+
+def _families(problem: PathProblem) -> list[int]:
+    grashof = problem.constraints.grashof
+    if grashof == "crank_rocker":
+        return [CRANK_ROCKER]
+    if grashof == "double_crank":
+        return [DOUBLE_CRANK]
+    if problem.closed or problem.constraints.full_rotation:
+        return [CRANK_ROCKER, DOUBLE_CRANK]
+    return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
+
+
+def _within(problem: PathProblem, centre: complex, size: float) -> Real:
+    """Least and greatest coordinates of O2 and O4 in the task's unit, shape (4, 2)."""
+    limits, within = problem.constraints, ANYWHERE.copy()
+
+    def narrow(rows: slice, region: Region | None) -> None:
+        if region is None:
+            return
+        for row, (low, high), middle in zip(
+            range(rows.start, rows.stop), (region.x, region.y), (centre.real, centre.imag), strict=True
+        ):
+            margin = min(INSIDE, 0.25 * (high - low) / size)
+            within[row] = (
+                max(within[row, 0], (low - middle) / size + margin),
+                min(within[row, 1], (high - middle) / size - margin),
+            )
+
+    narrow(slice(0, 2), limits.fixed_pivot_region)
+    narrow(slice(2, 4), limits.fixed_pivot_region)
+    narrow(slice(0, 2), limits.input_pivot_region)
+    for first, pivot in ((0, problem.fixed_pivots.input), (2, problem.fixed_pivots.output)):
+        for row, value, middle in zip(
+            (first, first + 1), pivot or (None, None), (centre.real, centre.imag), strict=True
+        ):
+            if value is not None:
+                within[row] = (value - middle) / size
+    return within
+
+
+def _smooth(points: Complex) -> tuple[Complex, Real]:
+    """Equal steps along a smooth curve through the points, and the points' places on it."""
+    chords = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    dense = np.union1d(np.linspace(0.0, chords[-1], SMOOTH), chords)
+    curve = np.asarray(CubicSpline(chords, points)(dense), np.complex128)
+    steps, shares = equal_steps(curve, False, SHAPE_POINTS)
+    return steps, np.interp(chords, dense, shares)
+
+
+def _joints(family: int, x: Real, sign: float, theta: float) -> FourbarConfiguration:
+    """The joints at the first point, in the task's unit."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    _, p, unit = place(family, x, lengths, sign, 0.0, theta)
+    o2 = complex(x[0], x[1])
+    a = o2 + cmath.rect(float(lengths[1]), theta)
+    return FourbarConfiguration(o2, a, a + lengths[2] * unit, o2 + cmath.rect(float(lengths[0]), float(x[2])), p)
+
+
+def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:
+    """Drive the members, and put those first that are asked for."""
+    size = problem.task_size
+    rejected: Counter[str] = Counter()
+    passed: list[PathDesign] = []
+    failed: list[PathDesign] = []
+    members = (
+        [found[k] for k in distinct(np.array([list(one) for one in found]), DRIVEN, SAME_DESIGN * size)]
+        if found
+        else []
+    )
+    for n, member in enumerate(members):
+        progress(0.6 + 0.4 * n / len(members), f"{n} of {len(members)} linkages driven")
+        o2, a, b, o4, _ = member
+        if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) < SHORTEST * size:
+            rejected["degenerate"] += 1
+            continue
+        design = verify_path(problem, fourbar_mechanism(member))
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            passed.append(design)
+        else:
+            failed.append(design)
+            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    progress(1.0, "verified")
+    shown = ranked(passed, problem.rank_by) + (ranked(failed, problem.rank_by) if problem.include_failed else [])
+    text = (
+        f"{brought} linkages near a curve through the points were brought to them, {len(found)} of them exactly and "
+        f"with the pivots where they are asked for; {len(passed)} of {len(members)} that differ satisfy all demands."
+    )
+    if rejected:
+        listed = (f"{name.replace('_', ' ')} {count}" for name, count in rejected.items())
+        text += f" Rejected: {', '.join(listed)}."
+    if not passed:
+        text += " None was found; others may exist."
+    return PathResult(
+        designs=shown[: problem.max_designs],
+        search=Search(
+            method="family_search",
+            complete=False,
+            candidates=len(members),
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=text,
+        family=FamilySearch(followed=brought, met=len(found)),
+    )

@@ -1,0 +1,130 @@
+"""All fourbars on two given fixed pivots whose coupler point goes through five points.
+
+The 36 solutions of general complex parameters are followed to the points and pivots of the problem
+(:mod:`synthesis.kinds.path.five_point_system`). Where 36 different ones arrive, with the complex conjugate of each and
+none nearly singular, these are all there are. Cognates stand on other pivots and are no answers here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.five_point_start import start
+from synthesis.kinds.path.five_point_system import (
+    GROUPS,
+    PARAMETERS,
+    SCRATCH,
+    SOLUTIONS,
+    UNKNOWNS,
+    conditions,
+    five_point_system,
+    residuals,
+)
+from synthesis.model.linkages import FourbarConfiguration
+from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
+
+Complex = NDArray[np.complex128]
+
+BEND = 2.0
+"""How far the parameters go through complex values on their way, in sizes of the problem."""
+
+WAYS = 4
+"""Ways along which the solutions are followed, until all have arrived."""
+
+RESIDUAL = 1e-9
+"""Of the equations, in squares of the problem's size, at an end point that counts."""
+
+SAME, REAL = 1e-6, 1e-6
+"""Solutions are the same, and real, where they agree to this share of their size (with their conjugate)."""
+
+NEARLY_SINGULAR = 1e9
+"""Condition above which the points' last digits decide how many solutions are real: what is found may not be all."""
+
+
+class FivePoints(NamedTuple):
+    """The fourbars through five points.
+
+    Attributes
+    ----------
+    found : int
+        Solutions, real and complex; 36 for general points.
+    linkages : list of FourbarConfiguration
+        The real ones, in the first position.
+    complete : bool
+        Whether all are known.
+    largest_residual : float
+        Over all solutions.
+    """
+
+    found: int
+    linkages: list[FourbarConfiguration]
+    complete: bool
+    largest_residual: float
+
+
+def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Generator) -> FivePoints:
+    """All fourbars on O2 and O4 through five points.
+
+    Parameters
+    ----------
+    points : complex, shape (5,)
+        Distinct points.
+    o2, o4 : complex
+        The fixed pivots, distinct.
+    rng : Generator
+        Draws the ways along which the parameters move.
+    """
+    moved = np.asarray(points[1:] - points[0], np.complex128)
+    pivots = np.array([o2, o4]) - points[0]
+    size = float(np.sqrt(np.mean(np.abs(np.concatenate([moved, pivots])) ** 2)))
+    moved, pivots = moved / size, pivots / size
+    p = np.concatenate([moved, moved.conj(), np.stack([pivots, pivots.conj()], axis=1).ravel()])
+    begun = start()
+    y = np.empty((0, UNKNOWNS), np.complex128)
+    for way in range(WAYS):
+        bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
+        tolerance = 5e-3 if way == 0 else 1e-3
+        ends = follow(five_point_system, GROUPS, SCRATCH, begun.y, begun.p, p, bend, tolerance=tolerance)
+        arrived = ends.y[(ends.status == REACHED) & np.isfinite(ends.y).all(axis=1)]
+        arrived = arrived[residuals(arrived, p) <= RESIDUAL * np.maximum(1.0, np.abs(arrived[:, :4]).max(axis=1)) ** 2]
+        y = _distinct(np.concatenate([y, arrived, _conjugate(arrived)]), p)
+        if len(y) >= SOLUTIONS:
+            break
+    linkages = [
+        FourbarConfiguration(o2, points[0] + size * complex(x), points[0] + size * complex(z), o4, complex(points[0]))
+        for x, z in _real(y, p)
+    ]
+    sound = len(y) == SOLUTIONS and bool((conditions(y, p) < NEARLY_SINGULAR).all())
+    return FivePoints(len(y), linkages, sound, float(residuals(y, p).max(initial=0.0)))
+
+
+def _conjugate(y: Complex) -> Complex:
+    """The complex conjugates of solutions for real points: the parts of each vector change places."""
+    s = y[..., 4:].conj()
+    return np.concatenate([y[..., [1, 0, 3, 2]].conj(), -s / (1.0 + s)], axis=-1)
+
+
+def _distinct(y: Complex, p: Complex) -> Complex:
+    """Solutions of the system, each once; conjugates that are no solutions are dropped."""
+    good = y[residuals(y, p) <= RESIDUAL * np.maximum(1.0, np.abs(y[:, :4]).max(axis=1, initial=0.0)) ** 2]
+    kept: list[int] = []
+    for n in range(len(good)):
+        apart = np.abs(good[kept] - good[n])
+        scale = np.maximum(np.abs(good[n]), np.abs(good[n]).max() * SAME)
+        if not kept or (apart > SAME * scale).any(axis=1).all():
+            kept.append(n)
+    return np.asarray(good[kept])
+
+
+def _real(y: Complex, p: Complex) -> list[tuple[complex, complex]]:
+    """Moving pivots x₁, x₂ of the real solutions, refined as real ones."""
+    apart = np.abs(y - _conjugate(y)).max(axis=1)
+    near = y[apart <= REAL * np.abs(y).max(axis=1)].copy()
+    near = 0.5 * (near + _conjugate(near))
+    near, _, moved = refine(five_point_system, GROUPS, SCRATCH, near, np.zeros_like(near), p)
+    near = near[moved < CONVERGED]
+    still = np.abs(near - _conjugate(near)).max(axis=1) <= REAL * np.abs(near).max(axis=1)
+    return [(complex(one[0]), complex(one[2])) for one in near[still]]

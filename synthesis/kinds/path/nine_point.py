@@ -1,0 +1,274 @@
+"""All fourbars whose coupler point goes through nine points: every one of the 1442 cognate triples, real and complex.
+
+The orbits of the start are followed to the problem's points (:mod:`synthesis.kinds.path.nine_point_system`). What is
+reached is checked as a whole: residuals, that no two paths ended in one orbit (one of them has then jumped), and that
+with every orbit its complex conjugate is there, as real points demand. Paths that were lost, mostly to linkages of 10⁴
+and more times the size of the data, are followed again in smaller steps, in higher precision and from the other members
+of their orbit; what is still missing is looked for along other ways, on which every orbit ends elsewhere. What cannot
+be found is said: nothing is complete without all 1442.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from synthesis.kinds.path.nine_point_start import is_linkage, start
+from synthesis.kinds.path.nine_point_system import (
+    GROUPS,
+    ORBITS,
+    PARAMETERS,
+    SCRATCH,
+    cognates,
+    conditions,
+    nine_point_system,
+    nine_point_system_extended,
+    orbit_keys,
+    residuals,
+)
+from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
+
+Complex = NDArray[np.complex128]
+Mask = NDArray[np.bool_]
+
+RESIDUAL = 1e-8
+"""Largest residual of a solution, with points of unit mean distance from the first one."""
+
+SAME_ORBIT = 1e-4
+"""Orbits whose keys agree to this share count as the same. An end point far out has lost many digits, while 1442 keys
+of three complex numbers are hardly ever so near to one another."""
+
+REAL = 1e-6
+"""A solution whose conjugate vectors differ by less than this share from conjugates may be real; Newton then decides
+with vectors that are."""
+
+BEND = 0.5
+"""Size of the random bend of the way, beside points of unit distance."""
+
+WAYS = 4
+"""Whole runs at most; the first finds all orbits, or all but some of 1442, in general problems."""
+
+SPECIAL = 0.1
+"""Where more than this share of the paths does not end, the points are special (on a conic, say) and have fewer
+solutions; repeating the run would find the same."""
+
+NEARLY_SINGULAR, FEW = 1e10, 0.01
+"""Of general points at most one in a thousand solutions has a condition above 1e10. Where more than a hundredth have,
+the points are special, and how many solutions there are, and how many real, hangs on their last digits."""
+
+PORTION = 96
+"""Paths between two reports of progress."""
+
+STEPS = 2000
+"""Steps of a path at most; almost all need less than 300, and lost ones are better followed from another member."""
+
+
+class Triples(NamedTuple):
+    """What is known of the fourbars through nine points.
+
+    Attributes
+    ----------
+    y, low : complex, shape (found, 16)
+        One solution of each orbit that was found, and what it has rounded off, for points relative to the first and of
+        unit mean square distance from it.
+    p : complex, shape (16,)
+        The points, relative and scaled, and their conjugates.
+    real : complex, shape (triples, 3, 4)
+        Fixed and moving pivot of the first dyad, fixed and moving pivot of the second, in the first position and in the
+        problem's own coordinates: three cognates for each real orbit.
+    lost : int
+        Orbits missing from 1442.
+    retried : int
+        Paths that had to be followed again.
+    largest_residual : float
+        Over all orbits found.
+    self_conjugate : bool
+        Whether the conjugate of every orbit is among them.
+    nearly_singular : int
+        Orbits whose condition is above :data:`NEARLY_SINGULAR`.
+    """
+
+    y: Complex
+    low: Complex
+    p: Complex
+    real: Complex
+    lost: int
+    retried: int
+    largest_residual: float
+    self_conjugate: bool
+    nearly_singular: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether these are all, and would be with the points' last digits changed."""
+        return self.lost == 0 and self.self_conjugate and self.nearly_singular <= FEW * ORBITS
+
+
+def all_triples(
+    points: Complex, rng: np.random.Generator, progress: Callable[[float], None], threads: int = 1
+) -> Triples:
+    """All cognate triples of fourbars through nine points.
+
+    Parameters
+    ----------
+    points : complex, shape (9,)
+        The points, distinct.
+    rng : Generator
+        Draws the ways along which the parameters move.
+    progress : callable
+        Told the share of the paths that are done.
+    threads : int
+        Paths followed side by side.
+
+    Returns
+    -------
+    Triples
+        ``lost`` is 0 when all 1442 are there.
+    """
+    moved = np.asarray(points[1:] - points[0], np.complex128)
+    size = float(np.sqrt(np.mean(np.abs(moved) ** 2)))
+    p = np.asarray(np.concatenate([moved, moved.conj()]) / size, np.complex128)
+    found = _Orbits(p)
+    retried = 0
+    for way in range(WAYS):
+        bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
+        retried += _run(found, bend, threads, _part(progress, way))
+        if found.missing == 0 or found.missing > SPECIAL * ORBITS:
+            break
+    progress(1.0)
+    return Triples(
+        found.y,
+        found.low,
+        p,
+        _real_linkages(found) * size + points[0],
+        found.missing,
+        retried,
+        float(residuals(found.y, p, found.low).max(initial=0.0)),
+        found.holds(conjugate(found.y)),
+        int(np.count_nonzero(conditions(found.y, p) > NEARLY_SINGULAR)),
+    )
+
+
+def _part(progress: Callable[[float], None], way: int) -> Callable[[float], None]:
+    return lambda share: progress((way + share) / (way + 1.0))
+
+
+def conjugate(y: Complex) -> Complex:
+    """The complex conjugates of solutions for real points: the parts of each vector change places."""
+    s = y[..., 8:].conj()
+    return np.concatenate([_mirrored(y), -s / (1.0 + s)], axis=-1)
+
+
+def _mirrored(y: Complex) -> Complex:
+    return np.asarray(y[..., [1, 0, 3, 2, 5, 4, 7, 6]].conj())
+
+
+class _Orbits:
+    """The orbits found so far, each once."""
+
+    def __init__(self, p: Complex) -> None:
+        self.p = p
+        self.y, self.low = np.empty((2, 0, 16), np.complex128)
+        self._keys = np.empty((0, 3), np.complex128)
+
+    @property
+    def missing(self) -> int:
+        return ORBITS - len(self.y)
+
+    def add(self, y: Complex, low: Complex) -> Mask:
+        """Add those solutions that are sound; tells which of them were new."""
+        keys = orbit_keys(y, self.p, low)
+        new = np.isfinite(keys).all(axis=-1) & is_linkage(y) & (residuals(y, self.p, low) <= RESIDUAL)
+        new[new] = ~self._known(keys[new])
+        first = np.flatnonzero(new)
+        same = _same(keys[first])
+        # Of several paths with one end the first counts.
+        new[first] = ~np.tril(same, -1).any(axis=-1)
+        self.y, self.low = np.concatenate([self.y, y[new]]), np.concatenate([self.low, low[new]])
+        self._keys = np.concatenate([self._keys, keys[new]])
+        return np.asarray(new)
+
+    def holds(self, y: Complex) -> bool:
+        """Whether all these solutions are known."""
+        return bool(self._known(orbit_keys(y, self.p)).all())
+
+    def add_conjugates(self) -> None:
+        """Add the conjugate of every orbit where it is missing."""
+        mirrored = conjugate(self.y)
+        alone = ~self._known(orbit_keys(mirrored, self.p))
+        if alone.any():
+            low = np.concatenate([_mirrored(self.low[alone]), np.zeros((np.count_nonzero(alone), 8))], axis=-1)
+            y, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, mirrored[alone], low, self.p)
+            self.add(y[moved < CONVERGED], low[moved < CONVERGED])
+
+    def _known(self, keys: Complex) -> Mask:
+        if not len(self._keys) or not len(keys):
+            return np.zeros(len(keys), np.bool_)
+        radius = SAME_ORBIT * np.abs(keys).max(axis=-1)
+        near = cKDTree(self._keys.view(np.float64)).query_ball_point(
+            np.ascontiguousarray(keys).view(np.float64), radius, p=np.inf, return_length=True
+        )
+        return np.asarray(near > 0)
+
+
+def _same(keys: Complex) -> Mask:
+    """Which keys of some are which others of them, shape (keys, keys)."""
+    gaps = np.abs(keys[:, None] - keys[None]).max(axis=-1)
+    return np.asarray(gaps <= SAME_ORBIT * np.abs(keys).max(axis=-1, initial=0.0)[:, None])
+
+
+def _run(found: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
+    """Follow all orbits along one way and add what they reach; returns how many had to be followed again."""
+    begun = start()
+    lost: list[int] = []
+    for first in range(0, ORBITS, PORTION):
+        some = np.arange(first, min(first + PORTION, ORBITS))
+        new = _follow(found, nine_point_system, begun.y[some], begun.p, bend, 5e-3, threads)
+        lost += [int(n) for n in some[~new]]
+        progress(0.8 * (first + len(some)) / ORBITS)
+        if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
+            return len(lost)
+    found.add_conjugates()
+    for attempt in range(6):
+        if found.missing == 0:
+            break
+        members = cognates(begun.y[lost], begun.p)[:, attempt % 3]
+        tolerance = 1e-3 if attempt < 3 else 1e-5
+        _follow(found, nine_point_system_extended, members, begun.p, bend, tolerance, threads)
+        found.add_conjugates()
+        progress(0.8 + 0.03 * attempt)
+    return len(lost)
+
+
+def _follow(
+    found: _Orbits, system: Any, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int
+) -> Mask:
+    """Follow solutions of the start to the problem; tells which of them came to an orbit that was not known."""
+    ends = follow(
+        system, GROUPS, SCRATCH, y, begun, found.p, bend, tolerance=tolerance, most_steps=STEPS, threads=threads
+    )
+    new = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
+    # Refined, so that the keys of ill-conditioned solutions have digits to tell them by.
+    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[new], ends.low[new], found.p)
+    new[new] = found.add(y, low)
+    return new
+
+
+def _real_linkages(found: _Orbits) -> Complex:
+    """Pivots of the real orbits' three cognates, in scaled coordinates: shape (triples, 3, 4)."""
+    y = found.y
+    if not len(y):
+        return np.empty((0, 3, 4), np.complex128)
+    apart = np.abs(y[:, :8:2] - y[:, 1:8:2].conj()).max(axis=-1)
+    near = y[apart <= REAL * np.abs(y[:, :8]).max(axis=-1)].copy()
+    near[:, :8:2] = 0.5 * (near[:, :8:2] + near[:, 1:8:2].conj())
+    near[:, 1:8:2] = near[:, :8:2].conj()
+    near, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, near, np.zeros_like(near), found.p)
+    real = (moved < CONVERGED) & (residuals(near, found.p, low) <= RESIDUAL)
+    members = cognates(near[real], found.p)
+    x_1, r_1, x_2, r_2 = (members[..., k] for k in (0, 2, 4, 6))
+    return np.stack([x_1 - r_1, x_1, x_2 - r_2, x_2], axis=-1)

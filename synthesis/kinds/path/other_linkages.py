@@ -1,0 +1,338 @@
+"""Slider-cranks and geared fivebars that guide a point: exactly, by least squares, or along a whole curve.
+
+The same search serves all three: shapes of many linkages are compared with a curve through the points, the most alike
+go to least squares at the points with the crank angle at each as an unknown, and what comes out is driven. At most as
+many points as a linkage has dimensions are met exactly (eight by a slider-crank, eleven by a geared fivebar of given
+ratio); the freedom that fewer leave goes into the demands and the ranking.
+
+A geared fivebar of ratio +1 that draws the curve of a fourbar is known from it (Norton, Sec. 3.7 and Fig. 3-28):
+O2 A P A′ and O4 B P B′ are parallelograms, the cranks O2 A′ and O4 B′ turn with the fourbar's coupler, and P is the pin
+of the couplers A′ P and B′ P. For whole curves these cognates of the fourbar answers are offered too.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_match import (
+    ranked_by_nearness,
+    solve_curve_match,
+    with_cognates,
+)
+from synthesis.kinds.path.curve_shapes import (
+    SHAPE_POINTS,
+    alike,
+    cycle_of,
+    equal_steps,
+)
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.traced_curves import (
+    GEARED_FIVEBAR,
+    SLIDER_CRANK,
+    SLIDER_ROCKER,
+    natural,
+    place,
+)
+from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import (
+    CouplerPoint,
+    FivebarLinks,
+    FixedPivots,
+    GearedFivebarMechanism,
+    GearPair,
+    Link,
+    Skeleton,
+    SliderCrankMechanism,
+)
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    slider_crank_mechanism,
+    to_complex,
+    to_point,
+)
+from synthesis.outcome.ranking import ranked
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Mechanism = SliderCrankMechanism | GearedFivebarMechanism
+
+CLOSED_DRAWN, OPEN_DRAWN = 49152, 8192
+"""Linkages that are drawn of a family: for a closed curve, and for a stroke, which is compared with parts of each."""
+
+FOLLOWED, REFINED, DRIVEN = 150, 24, 16
+"""The most alike that are brought to the points; the best of them that are refined; and those that are driven."""
+
+SETTLED = 250
+"""Steps of least squares at most."""
+
+MET = 1e-22
+"""Sum of squared distances, in squares of the task's size, at which exact points count as met."""
+
+RATIOS = (1.0, -1.0, 2.0, -2.0)
+"""Gear ratios that are tried where none is given."""
+
+FEW_POINTS = 12
+"""Through fewer points a smooth curve is laid; more are joined by straight lines."""
+
+SMOOTH = 240
+"""Points of that curve."""
+
+SAME_DESIGN = 1e-4
+"""Designs whose joints agree to this share of the task's size are one."""
+
+COGNATES = 3
+"""Fourbars whose geared cognates are offered, each with up to three."""
+
+SHORTEST = 1e-6
+"""Links shorter than this share of the task's size are no links."""
+
+
+def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation by a slider-crank or geared fivebar."""
+    given = np.array([point.point for point in problem.points])
+    centre, size = complex(given.mean()), problem.task_size
+    points = (given - centre) / size
+    target, places = _target(points, problem.closed)
+    turns = problem.closed or problem.constraints.full_rotation
+    tasks: list[tuple[int, float]]
+    if problem.mechanism == "slider_crank":
+        tasks = [(SLIDER_CRANK, 0.0)] if turns else [(SLIDER_CRANK, 0.0), (SLIDER_ROCKER, 0.0)]
+    else:
+        tasks = [(GEARED_FIVEBAR, ratio) for ratio in (RATIOS if problem.gear_ratio is None else (problem.gear_ratio,))]
+    within = _within(problem, centre, size)
+    longest = problem.longest_link / size
+    found: list[tuple[float, Mechanism]] = []
+    for n, (family, ratio) in enumerate(tasks):
+
+        def told(share: float, n: int = n) -> None:
+            progress(0.7 * (n + 0.8 * share) / len(tasks), "shapes of linkages compared")
+
+        drawn = (CLOSED_DRAWN if problem.closed else OPEN_DRAWN) // (1 if len(tasks) < 3 else 2)
+        seed = int(np.random.default_rng([problem.seed, n]).integers(2**31))
+        starts = alike(
+            family, target, problem.closed, drawn, FOLLOWED, ratio=ratio, longest=longest, seed=seed, told=told
+        )
+        if not len(starts.x):
+            continue
+        cycle = cycle_of(ratio) if family == GEARED_FIVEBAR else 0.0
+        span = cycle or 2.0 * math.pi
+        theta = np.array([_angles(angles, places, problem.closed, span) for angles in starts.theta])
+        settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
+        rough = descend(family, starts.x, starts.sign, theta, points, iterations=40, **settings)
+        best = np.argsort(rough.cost, kind="stable")[: REFINED if problem.fitted else None]
+        best = best[np.isfinite(rough.cost[best])]
+        if not len(best):
+            continue
+        fine = descend(
+            family, rough.x[best], starts.sign[best], rough.theta[best], points, iterations=SETTLED, **settings
+        )
+        for k in np.argsort(fine.cost, kind="stable"):
+            if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= MET):
+                made = _mechanism(
+                    family, fine.x[k], float(starts.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
+                )
+                if made is not None:
+                    found.append((float(fine.cost[k]), made))
+        progress(0.7 * (n + 1.0) / len(tasks), f"{len(found)} linkages fitted")
+    found.sort(key=lambda pair: pair[0])
+    mechanisms = [made for _, made in _different(found, size)]
+    if problem.matched and (GEARED_FIVEBAR, 1.0) in tasks:
+        mechanisms += _from_fourbars(problem, progress)
+    return _answer(problem, mechanisms, progress)
+
+
+def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
+    """The geared fivebars that draw the curves of the best fourbars."""
+    asked = problem.model_copy(update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": COGNATES})
+    fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
+    found: list[Mechanism] = []
+    for design in fourbars.designs:
+        joints = (to_complex(design.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4", "P"))
+        found += cognate_fivebars(FourbarConfiguration(*joints))
+    return [made for _, made in _different([(0.0, made) for made in found], problem.task_size)]
+
+
+def cognate_fivebars(joints: FourbarConfiguration) -> list[GearedFivebarMechanism]:
+    """The geared fivebars of ratio +1 that draw a fourbar's coupler curve, in its configuration."""
+    found = []
+    for o2, a, b, o4, p in with_cognates(joints):
+        mechanism = geared_fivebar_mechanism(o2, o2 + p - a, p, o4 + p - b, o4, p, 1.0, cmath.phase(p - a))
+        if mechanism is not None:
+            found.append(mechanism)
+    return found
+
+
+def geared_fivebar_mechanism(
+    o2: complex, a: complex, c: complex, b: complex, o5: complex, p: complex, ratio: float, input_angle: float
+) -> GearedFivebarMechanism | None:
+    """Dimensions of the geared fivebar whose joints stand as given; None where a link has no length.
+
+    ``input_angle`` is the crank's, radians; its full turns count where the gear ratio is no whole number.
+    """
+    ground, coupler = o5 - o2, c - a
+    if min(abs(ground), abs(a - o2), abs(coupler), abs(c - b), abs(b - o5)) == 0.0:
+        return None
+    along = cmath.phase(ground)
+    point = (p - a) / (coupler / abs(coupler))
+    phase = cmath.phase(b - o5) - along - ratio * (input_angle - along)
+    joints = {"O2": o2, "O5": o5, "A": a, "B": b, "C": c, "P": p}
+    return GearedFivebarMechanism(
+        fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(o5)),
+        links=FivebarLinks(
+            ground=abs(ground), input=abs(a - o2), coupler_1=abs(coupler), coupler_2=abs(c - b), output=abs(b - o5)
+        ),
+        gear_ratio=ratio,
+        phase=math.degrees(math.remainder(phase, 2.0 * math.pi)),
+        coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point)) if point else 0.0),
+        assembly="open" if ((b - a).conjugate() * coupler).imag >= 0.0 else "crossed",
+        reference_input_angle=math.degrees(input_angle),
+        skeleton=Skeleton(
+            joints={name: to_point(z) for name, z in joints.items()},
+            links=[
+                Link(name="ground", joints=["O2", "O5"]),
+                Link(name="input", joints=["O2", "A"]),
+                Link(name="coupler_1", joints=["A", "C", "P"]),
+                Link(name="coupler_2", joints=["B", "C"]),
+                Link(name="output", joints=["O5", "B"]),
+            ],
+            gears=[GearPair(links=("input", "output"), ratio=ratio)],
+            input_link="input",
+        ),
+    )
+
+
+def _target(points: Complex, closed: bool) -> tuple[Complex, Real]:
+    """Equal steps along a curve through the points, and the points' places on it as shares of its length."""
+    if len(points) >= FEW_POINTS:
+        return equal_steps(points, closed, SHAPE_POINTS)
+    whole = np.append(points, points[0]) if closed else points
+    kept = np.append(True, np.abs(np.diff(whole)) > 0.0)
+    chords = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole[kept])))])
+    dense = np.union1d(np.linspace(0.0, chords[-1], SMOOTH), chords)
+    spline = CubicSpline(chords, whole[kept], bc_type="periodic" if closed else "not-a-knot")
+    curve = np.asarray(spline(dense), np.complex128)
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(curve)))]) / np.abs(np.diff(curve)).sum()
+    steps, _ = equal_steps(curve[:-1] if closed else curve, closed, SHAPE_POINTS)
+    at = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))])[: len(points)]
+    return steps, np.interp(at, dense, along)
+
+
+def _angles(theta: Real, places: Real, closed: bool, cycle: float) -> Real:
+    """Crank angles at the points, from those at equal steps along the target."""
+    share = np.linspace(0.0, 1.0, SHAPE_POINTS, endpoint=not closed)
+    if closed:
+        turn = math.copysign(cycle, theta[-1] - theta[0])
+        share, theta = np.append(share, 1.0), np.append(theta, theta[0] + turn)
+    return np.asarray(np.interp(places, share, theta))
+
+
+def _within(problem: PathProblem, centre: complex, size: float) -> Real:
+    """Least and greatest coordinates of the fixed pivots, in the task's unit."""
+    within, limits = ANYWHERE.copy(), problem.constraints
+    middles = (centre.real, centre.imag)
+    for row in range(4):
+        for region in (limits.fixed_pivot_region, limits.input_pivot_region if row < 2 else None):
+            if region is not None:
+                low, high = ((value - middles[row % 2]) / size for value in (region.x, region.y)[row % 2])
+                within[row] = max(within[row, 0], low), min(within[row, 1], high)
+        pivot = (problem.fixed_pivots.input, problem.fixed_pivots.output)[row // 2]
+        value = None if pivot is None else pivot[row % 2]
+        if value is not None:
+            within[row] = (value - middles[row % 2]) / size
+    return within
+
+
+def _mechanism(
+    family: int, x: Real, sign: float, ratio: float, theta: float, centre: complex, size: float
+) -> Mechanism | None:
+    """Dimensions of a fit, in the problem's own coordinates; None where a link has no length to speak of."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    closes, p, unit = place(family, x, lengths, sign, ratio, theta)
+    if not closes:
+        return None
+
+    def put(z: complex) -> complex:
+        return complex(centre + size * z)
+
+    o2 = complex(x[0], x[1])
+    a = o2 + cmath.rect(float(lengths[0]), theta)
+    if family == GEARED_FIVEBAR:
+        o5 = complex(x[2], x[3])
+        b, c = o5 + cmath.rect(float(lengths[3]), ratio * theta + float(x[8])), a + lengths[1] * unit
+        if min(*lengths, abs(o5 - o2)) < SHORTEST:
+            return None
+        return geared_fivebar_mechanism(put(o2), put(a), put(c), put(b), put(o5), put(p), ratio, theta)
+    if min(lengths[0], lengths[1]) < SHORTEST:
+        return None
+    return slider_crank_mechanism(put(o2), put(a), put(a + lengths[1] * unit), float(x[2]), put(p))
+
+
+def _different(found: list[tuple[float, Mechanism]], size: float) -> list[tuple[float, Mechanism]]:
+    """Fits that differ in some joint, best first, no more than are driven."""
+    kept: list[tuple[float, Mechanism]] = []
+    marks: list[Complex] = []
+    for cost, made in found:
+        mark = np.array([to_complex(point) for point in made.skeleton.joints.values()])
+        if all(float(np.abs(mark - other).max()) > SAME_DESIGN * size for other in marks):
+            kept.append((cost, made))
+            marks.append(mark)
+            if len(kept) == DRIVEN:
+                break
+    return kept
+
+
+def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:
+    """Drive the mechanisms, and rank what passes."""
+    passed: list[PathDesign] = []
+    failed: list[PathDesign] = []
+    rejected: Counter[str] = Counter()
+    for n, made in enumerate(mechanisms):
+        progress(0.7 + 0.3 * n / len(mechanisms), f"{n} of {len(mechanisms)} linkages driven")
+        design = verify_traced(problem, made)
+        if design is None:
+            rejected["cannot_be_driven"] += 1
+        elif design.verification.passed:
+            passed.append(design)
+        else:
+            failed.append(design)
+            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    progress(1.0, "verified")
+
+    def in_rank(designs: list[PathDesign]) -> list[PathDesign]:
+        return ranked_by_nearness(designs, problem) if problem.fitted else ranked(designs, problem.rank_by)
+
+    shown = in_rank(passed) + (in_rank(failed) if problem.include_failed else [])
+    name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ") + "s"
+    text = f"{len(passed)} of {len(mechanisms)} {name} that were fitted satisfy all demands."
+    if passed and problem.fitted:
+        best = in_rank(passed)[0].metrics
+        text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."
+    if rejected:
+        listed = (f"{key.replace('_', ' ')} {count}" for key, count in rejected.items())
+        text += f" Rejected: {', '.join(listed)}."
+    if not passed:
+        text += " None was found; others may exist."
+    return PathResult(
+        designs=shown[: problem.max_designs],
+        search=Search(
+            method="curve_match" if problem.matched else "least_squares" if problem.fitted else "family_search",
+            complete=False,
+            candidates=len(mechanisms),
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=text,
+    )

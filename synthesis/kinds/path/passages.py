@@ -1,0 +1,379 @@
+"""Where a driven fourbar's coupler point meets demanded points, or comes nearest to them: three ways of asking.
+
+*At the points*, where they are to be met exactly and timing is free: the pin A lies on the crank's circle and at the
+coupler point's distance from the demanded point, two places, of which the output link excludes one as a rule. They
+give the input angles to which the linkage is driven, in both assemblies. A curve may pass a point twice: the passage on
+the first target's circuit counts.
+
+*At the crank angles*, where these are prescribed: the first is the reference's, the others follow it.
+
+*Nearest, in order*, where points are fitted and timing is free: the input is looked for at which P comes nearest to
+each point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
+which dynamic programming finds the least sum of squares; closer and closer looks then do the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage import full_rotation, positions, same_circuit, toggle_angles
+from synthesis.model.linkages import DrivenFourbar
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+MET = 1e-9
+"""Distance, as a share of the task's size, up to which places count as alike where one circuit is to be chosen."""
+
+ROUNDED = 1e-11
+"""Misses above this share of the task's size may be those of the arc cosine by which inputs are found."""
+
+POLISHED, DIFFERENCE = 4, 1e-7
+"""Steps by which such inputs are polished, and the difference, radians, that their slope is measured over."""
+
+GRID = 360
+"""Inputs that are looked at first: one degree of a full turn."""
+
+STRIDE = 5
+"""A crank's first input is tried at every so many of the grid's: the closer looks move it by more than that."""
+
+SPREAD = 17
+"""Inputs in each closer look at a target, over the two steps around the best of the last."""
+
+CLOSER = 0.25
+"""Each closer look's step as a share of the last's: targets that settle against each other may move on together."""
+
+LOOKS = 24
+"""Closer looks: 4²⁴ times finer than the grid, 1e-16 of a turn."""
+
+OUT_OF_REACH = 1e30
+"""A squared distance where there is no position: never taken where there is another."""
+
+
+class Passages(NamedTuple):
+    """The linkage as it passes the points: input angles, assembly signs, joints A, B and P, and the misses.
+
+    ``run`` tells that the angles are one run of the input from the first target, and not angles modulo full turns.
+    """
+
+    angles: Real
+    assemblies: Whole
+    a: Complex
+    b: Complex
+    p: Complex
+    misses: Real
+    run: bool = False
+
+
+def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P passes each point, on the reference's circuit if it can be; None where no crank angle brings it near."""
+    linkage = fourbar.linkage
+    reference = positions(linkage, fourbar.reference, fourbar.assembly)
+    if not reference.valid:
+        return None
+    reach = points - linkage.input_pivot
+    a, r, f = float(linkage.input), abs(complex(linkage.coupler_point)), np.abs(reach)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lean = np.arccos(np.clip((a * a + f * f - r * r) / (2.0 * a * f), -1.0, 1.0))
+    angles = np.angle(reach) + np.stack([lean, lean, -lean, -lean])
+    assemblies = np.array([1, -1, 1, -1])
+    signs = np.broadcast_to(assemblies[:, None], angles.shape)
+    if not np.isfinite(angles).all():
+        return None
+    at = positions(linkage, angles, assemblies)
+    misses = np.where(at.valid, np.abs(at.p - points), np.inf)
+    here = same_circuit(linkage, fourbar.reference, fourbar.assembly, angles, signs)
+    # The first target is met by the reference configuration itself, or not at all.
+    first = abs(complex(reference.p) - points[0])
+    good = misses <= np.maximum(4.0 * misses.min(axis=0), MET * np.abs(points - points[0]).max())
+    best = np.where(good & here, 0.0, np.where(good, 1.0, 2.0)).argmin(axis=0), np.arange(len(points))
+    if not np.isfinite(misses[best]).all():
+        return None
+    inputs, assembly = angles[best], np.array(signs[best])
+    if misses[best].max() > ROUNDED * np.abs(points - points[0]).max():
+        inputs = _closer(fourbar, points, inputs, assembly)
+    at = positions(linkage, inputs[:, None], assembly)
+    p = at.p[:, 0]
+    passed = Passages(inputs, assembly, at.a[:, 0], at.b[:, 0], p, np.abs(p - points))
+    own = (fourbar.reference, fourbar.assembly, reference.a, reference.b, reference.p, first)
+    for part, value in zip(passed[:6], own, strict=True):
+        part[0] = value
+    return passed
+
+
+def _closer(fourbar: DrivenFourbar, points: Complex, inputs: Real, signs: Whole) -> Real:
+    """Inputs at which P is nearer to the points: Newton's steps along its path, each taken where it brings P nearer.
+
+    An arc cosine leaves half of the digits where the crank points at the target.
+    """
+
+    def place(angles: Real) -> Complex:
+        at = positions(fourbar.linkage, angles[:, None], signs)
+        return np.where(at.valid, at.p, np.nan)[:, 0]
+
+    best = place(inputs)
+    for _ in range(POLISHED):
+        before, after = (place(inputs + way * DIFFERENCE) for way in (-1.0, 1.0))
+        slope = (after - before) / (2.0 * DIFFERENCE)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = (slope.conj() * (points - best)).real / (slope.real**2 + slope.imag**2)
+        tried = inputs + np.where(np.isfinite(step), step, 0.0)
+        there = place(tried)
+        # Not a number is never nearer.
+        nearer = np.abs(there - points) < np.abs(best - points)
+        inputs, best = np.where(nearer, tried, inputs), np.where(nearer, there, best)
+    return inputs
+
+
+def at_angles(fourbar: DrivenFourbar, points: Complex, turns: Real, *, both: bool) -> Passages | None:
+    """Where P is when the input has turned by ``turns`` (radians) from its reference; None where it cannot turn so.
+
+    With ``both`` a point that the other assembly meets, and the reference's does not, counts as met there.
+    """
+    angles = fourbar.reference + turns
+    own = _driven(fourbar, points, angles, run=True)
+    if not both or (own is not None and own.misses.max() <= MET * np.abs(points - points[0]).max()):
+        return own
+    signs = np.array([fourbar.assembly, -fourbar.assembly])
+    at = positions(fourbar.linkage, angles, signs)
+    misses = np.where(at.valid, np.abs(at.p - points), np.inf)
+    # The first target is met by the reference itself.
+    misses[1, 0] = np.inf
+    best = misses.argmin(axis=0), np.arange(len(points))
+    if not np.all(np.isfinite(misses[best])):
+        return None
+    return Passages(angles, np.asarray(signs[best[0]]), at.a[best], at.b[best], at.p[best], misses[best])
+
+
+def in_order(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P comes nearest to the points one after the other, the input turning one way on the reference's branch.
+
+    Of all ways to do so the one with the least sum of squared distances, within one turn of the input.
+    """
+    low, high = _branch(fourbar)
+    period = math.tau if full_rotation(fourbar.linkage) else None
+    return _driven(fourbar, points, ordered_run(_place(fourbar), points, low, high, period), run=True)
+
+
+def nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where P comes nearest to each point, in any order, on the reference's branch."""
+    low, high = _branch(fourbar)
+    step = (high - low) / GRID
+    grid = np.linspace(low, high, GRID + 1)
+    at = positions(fourbar.linkage, grid, fourbar.assembly)
+    path = np.where(at.valid, at.p, np.inf)
+    inputs = np.array([grid[np.abs(path - point).argmin()] for point in points])
+    spread = np.linspace(-1.0, 1.0, SPREAD)
+    for _ in range(LOOKS):
+        tried = np.clip(inputs[:, None] + step * spread, low, high)
+        squares = _squares(fourbar, points, tried)
+        inputs = tried[np.arange(len(points)), squares.argmin(axis=1)]
+        step *= 2.0 / (SPREAD - 1)
+    return _driven(fourbar, points, inputs, run=False)
+
+
+def _driven(fourbar: DrivenFourbar, points: Complex, angles: Real, *, run: bool) -> Passages | None:
+    at = positions(fourbar.linkage, angles, fourbar.assembly)
+    if not np.all(at.valid):
+        return None
+    signs = np.full(len(points), fourbar.assembly)
+    return Passages(angles, signs, at.a, at.b, at.p, np.abs(at.p - points), run)
+
+
+def _branch(fourbar: DrivenFourbar) -> tuple[float, float]:
+    """The input's range on the reference's branch, half a turn to either side for a crank."""
+    at = fourbar.reference
+    if full_rotation(fourbar.linkage):
+        return at - math.pi, at + math.pi
+    toggles = toggle_angles(fourbar.linkage)
+    above = np.remainder(toggles - at, math.tau)
+    below = np.remainder(at - toggles, math.tau)
+    return at - float(below.min()), at + float(above.min())
+
+
+def _place(fourbar: DrivenFourbar) -> Callable[[Real], Complex]:
+    """P at inputs of any shape on the reference's assembly; NaN where there is no position."""
+
+    def place(inputs: Real) -> Complex:
+        at = positions(fourbar.linkage, inputs.ravel(), fourbar.assembly)
+        return np.where(at.valid, at.p, np.nan).reshape(inputs.shape)
+
+    return place
+
+
+def _squares(fourbar: DrivenFourbar, points: Complex, inputs: Real) -> Real:
+    """Squared distances at inputs of shape (n, m) from points (n,); infinite where there is no position."""
+    return _gaps(_place(fourbar)(inputs), points)
+
+
+def _gaps(places: Complex, points: Complex) -> Real:
+    gaps = places - points[:, None]
+    return np.where(np.isfinite(gaps), gaps.real**2 + gaps.imag**2, np.inf)
+
+
+def ordered_run(
+    place: Callable[[Real], Complex], points: Complex, low: float, high: float, period: float | None
+) -> Real:
+    """The run of the input, turning one way or the other, with the least sum of squared distances.
+
+    Parameters
+    ----------
+    place : callable
+        P at inputs of any shape; NaN where there is no position.
+    points : complex, shape (n,)
+        What is to be met, in order.
+    low, high : float
+        The branch's inputs; ``high - low`` is the period where there is one.
+    period : float or None
+        Rotation after which P is where it was, for an input that turns through.
+    """
+    count = GRID * max(1, round((high - low) / math.tau))
+    grid = np.linspace(low, high, count + 1)
+    path = place(grid)
+    squares = np.minimum(_gaps(path[None], points), OUT_OF_REACH)
+    if period is None:
+        found = [(way, *_along(ways.copy())) for way, ways in ((1.0, squares), (-1.0, squares[:, ::-1]))]
+    else:
+        # A run that is taken to the grid, and to one of the starts tried there, has its places moved by so many steps
+        # at most: by so much may the looks shorten the one way until it is less than the other.
+        moved = math.sqrt(len(points)) * (STRIDE + 1) * float(np.abs(np.diff(path)).max())
+        columns, least = _round(squares[:, :-1].copy(), math.inf)
+        back = _round(squares[:, :0:-1].copy(), (math.sqrt(least) + moved) ** 2)
+        found = [(1.0, columns, least), (-1.0, *back)]
+    runs = []
+    for way, columns, least in found:
+        if math.isfinite(least):
+            start = low if way > 0.0 else high
+            run = np.asarray(start + way * (high - low) / count * columns, np.float64)
+            runs.append(_looked_at(place, points, low, high, period, way, run))
+    return min(runs, key=lambda pair: pair[1])[0]
+
+
+def _looked_at(
+    place: Callable[[Real], Complex],
+    points: Complex,
+    low: float,
+    high: float,
+    period: float | None,
+    way: float,
+    run: Real,
+) -> tuple[Real, float]:
+    """A run on the grid by closer and closer looks, and its sum of squared distances."""
+    step = (high - low) / (GRID * max(1, round((high - low) / math.tau)))
+    longest = math.inf if period is None else period
+    for _ in range(LOOKS):
+        tried: Real = run[:, None] + way * step * np.linspace(-1.0, 1.0, SPREAD)
+        if period is None:
+            tried = np.clip(tried, low, high)
+        found = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
+        run = way * _chosen(found, way * tried, longest)
+        step *= CLOSER
+    return run, float(_gaps(place(run[:, None]), points).sum())
+
+
+@njit(cache=True, nogil=True)
+def _least(
+    squares: Real, first: int, count: int, bound: float, totals: Real, back: NDArray[np.int32], chosen: Whole
+) -> float:
+    """The least sum over columns that do not fall from row to row: ``count`` of them from ``first``.
+
+    Infinite, and nothing chosen, as soon as no sum below ``bound`` is left.
+    """
+    rows = len(squares)
+    for k in range(count):
+        totals[0, k] = squares[0, first + k]
+    for row in range(1, rows):
+        before, now = totals[(row - 1) % 2], totals[row % 2]
+        best, at = np.inf, 0
+        for k in range(count):
+            if before[k] < best:
+                best, at = before[k], k
+            now[k] = best + squares[row, first + k]
+            back[row, k] = at
+        if best >= bound:
+            return np.inf
+    last = totals[(rows - 1) % 2]
+    k = int(np.argmin(last[:count]))
+    least = float(last[k])
+    if least >= bound:
+        return np.inf
+    for row in range(rows - 1, -1, -1):
+        chosen[row] = first + k
+        if row:
+            k = back[row, k]
+    return least
+
+
+@njit(cache=True, nogil=True)
+def _along(squares: Real) -> tuple[Whole, float]:
+    """Columns that do not fall from row to row, with the least sum, and that sum."""
+    rows, columns = squares.shape
+    chosen = np.empty(rows, np.int64)
+    back = np.empty((rows, columns), np.int32)
+    return chosen, _least(squares, 0, columns, np.inf, np.empty((2, columns)), back, chosen)
+
+
+@njit(cache=True, nogil=True)
+def _round(squares: Real, bound: float) -> tuple[Whole, float]:
+    """The same for a curve that closes: columns go on beyond the last with the first, over one turn from the start.
+
+    The sum is infinite where none is below ``bound``.
+    """
+    rows, columns = squares.shape
+    twice = np.concatenate((squares, squares), axis=1)
+    totals, back = np.empty((2, columns + 1)), np.empty((rows, columns + 1), np.int32)
+    chosen, trial = np.empty(rows, np.int64), np.empty(rows, np.int64)
+    best = np.inf
+    for first in range(0, columns, STRIDE):
+        least = _least(twice, first, columns + 1, min(best, bound), totals, back, trial)
+        if least < best:
+            best = least
+            chosen[:] = trial
+    return chosen, best
+
+
+@njit(cache=True, nogil=True)
+def _chosen(squares: Real, values: Real, longest: float) -> Real:
+    """One of the values of each row, ascending in each row and not falling from row to row, with the least sum.
+
+    The last is at most ``longest`` after the first.
+    """
+    rows, columns = squares.shape
+    best_run = np.empty(rows)
+    back = np.zeros((rows, columns), np.int64)
+    totals = np.empty((2, columns))
+    overall = np.inf
+    starts = columns if longest < np.inf else 1
+    for start in range(starts):
+        for k in range(columns):
+            allowed = starts == 1 or k == start
+            totals[0, k] = squares[0, k] if allowed else np.inf
+        for row in range(1, rows):
+            before, now = totals[(row - 1) % 2], totals[row % 2]
+            best, at, seen = np.inf, 0, 0
+            for k in range(columns):
+                while seen < columns and values[row - 1, seen] <= values[row, k]:
+                    if before[seen] < best:
+                        best, at = before[seen], seen
+                    seen += 1
+                now[k] = best + squares[row, k]
+                back[row, k] = at
+        last = totals[(rows - 1) % 2]
+        limit = values[0, start] + longest if starts > 1 else np.inf
+        k, least = -1, np.inf
+        for n in range(columns):
+            if values[rows - 1, n] <= limit and last[n] < least:
+                k, least = n, last[n]
+        if k >= 0 and least < overall:
+            overall = least
+            for row in range(rows - 1, -1, -1):
+                best_run[row] = values[row, k]
+                k = back[row, k]
+    return best_run

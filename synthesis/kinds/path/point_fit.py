@@ -1,0 +1,457 @@
+"""Fourbars fitted to points by least squares: any number of points, with prescribed or free timing, within limits.
+
+Many random starts are thinned out while they descend, so that most of the work goes into those that promise most; the
+best distinct ones are brought to minima that meet the client's limits to rounding, then driven and verified like any
+other linkage. Which class of fourbar is looked for is written into the unknowns
+(:mod:`synthesis.kinds.path.coupler_curve`), and limits are met by multipliers (:mod:`synthesis.numerics.levenberg`):
+neither is a penalty.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.coupler_curve import (
+    ANY,
+    PHASE,
+    POINT,
+    UNKNOWNS,
+    closure,
+    lengths_of,
+)
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.harvest import Harvest
+from synthesis.kinds.path.limits import (
+    LIMITS,
+    SHORTEST,
+    SIGN,
+    Usable,
+    setting_of,
+)
+from synthesis.kinds.path.point_rows import (
+    HELD,
+    descend_each,
+    hold,
+    path_rows,
+)
+from synthesis.kinds.path.point_starts import (
+    COUPLER,
+    DRAWS,
+    FAR_DYAD,
+    OUTPUT,
+    SAME,
+    along,
+    free_starts,
+    kicked,
+    timed_starts,
+)
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.portions import in_portions
+from synthesis.outcome.ranking import distinct
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Progress = Callable[[float, str], None]
+
+PORTION = 16
+"""Starts that a thread takes at a time; some milliseconds."""
+
+TIMED_STARTS, FREE_STARTS, STARTS_OF_MANY = 6000, 1800, 1300
+"""Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more.
+The last is for free timing with more than :data:`FEW` points, which take longer."""
+
+FEW = 18
+
+TIMED_SHARE = 0.15
+"""Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
+
+THINNING = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
+"""Rounds in which starts are thinned out: the share of them that goes on, steps, and tolerance of their descents."""
+
+KICKS, KICKED, COPIES, KICK = 3, 24, 6, 0.5
+"""Rounds in which the best are changed and descend again: how many of them, copies of each, and the standard deviation
+of the change in the logarithms of lengths."""
+
+SAME_COST = 1e-4
+"""Relative difference below which costs are taken for those of one minimum."""
+
+FLIP_KICK = 0.1
+"""The same for those that are turned inside out."""
+
+SPREAD = 0.8
+"""Standard deviation of the logarithm of that standard deviation: some changes are small and some are great."""
+
+KICK_THINNING = ((1.0, 10, 1e-3), (0.25, 60, 1e-6))
+
+FINALISTS = 24
+"""Minima that are refined within the limits and verified, at most."""
+
+RETURNS, AGAIN = 1, 10
+"""How often minima within the limits are changed once more, and how many of what comes out are refined at most."""
+
+MANY, OF_MANY = 100, 6
+"""With more points than that, minima that are refined and verified, at most: each takes longer."""
+
+LEAST_DRIVEN = 12
+"""Linkages that are verified at least, however few are wanted."""
+
+EXPLORED = 48
+"""Points with which starts are made and thinned out, at most: evenly chosen ones of more."""
+
+SOFT, FIRM = 10.0, 1e3
+"""Weight of limits in task units while starts are thinned out, and at first where they are brought to hold."""
+
+SAME_FIT = 1e-2
+"""Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
+
+AS_GOOD_AS_EXACT = 1e-9
+"""Root mean square distance, in task sizes, below which fits are equally near."""
+
+_CLASSES = {"double_crank": [0], "crank_rocker": [1], "double_rocker": [2], "non_grashof": [ANY]}
+
+
+class PointTask(NamedTuple):
+    """Points in task coordinates: rows (x, y, crank angle in radians), the origin's place and the unit's length."""
+
+    rows: Real
+    origin: complex
+    size: float
+
+
+class Candidate(NamedTuple):
+    """A linkage on its way: unknowns, crank angles, half the sum of squares, its setting, and the crank's direction."""
+
+    x: Real
+    state: Real
+    cost: float
+    setting: Real
+    way: int
+
+
+def point_task(problem: PathProblem) -> PointTask:
+    """The points about their middle, with the task's size as the unit."""
+    z = np.array([point.point for point in problem.points])
+    size = problem.task_size
+    origin = complex(z[0] + (z - z[0]).mean())
+    unit = ((z - z[0]) - (z - z[0]).mean()) / size
+    turns = np.array(problem.crank_turns) if problem.prescribed else np.zeros(len(z))
+    if problem.prescribed and problem.crank_phase != "free":
+        turns = turns + math.radians(math.remainder(problem.points[0].crank_angle or 0.0, 360.0))
+    return PointTask(np.ascontiguousarray(np.stack([unit.real, unit.imag, turns], axis=1)), origin, size)
+
+
+def classes(problem: PathProblem) -> list[int]:
+    """The shortest links of the classes of fourbars that are looked for."""
+    wanted = problem.constraints.grashof
+    if wanted != "any":
+        return _CLASSES[wanted]
+    turning = problem.constraints.full_rotation or problem.closed
+    return [1, 0] if turning else [1, 0, ANY]
+
+
+def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
+    """Fit fourbars to the points of a problem."""
+    task = point_task(problem)
+    fits = _Fits(problem)
+    found = fitted(problem, task, np.random.default_rng(problem.seed), progress)
+    for n, candidate in enumerate(found):
+        if len(fits.passed) >= max(2 * problem.max_designs, LEAST_DRIVEN):
+            break
+        progress(0.9 + 0.1 * n / len(found), f"driving linkage {n + 1} of {len(found)}")
+        mechanism = mechanism_of(candidate, task)
+        fits.add(None if mechanism is None else verify_path(problem, mechanism))
+    progress(1.0, "verified")
+    return fits.result("least_squares", complete=False, summary=fits.summary())
+
+
+def warm_up() -> None:
+    """Load the kernels with a handful of starts."""
+    z = np.exp(1j * np.linspace(0.0, 5.0, 6))
+    points = [{"x": float(w.real), "y": float(0.7 * w.imag)} for w in z]
+    turning = [{**point, "crank_angle": 30.0 * k} for k, point in enumerate(points)]
+    for stated in ({"points": points}, {"points": turning, "timing": "prescribed"}):
+        problem = PathProblem.model_validate({"kind": "path", "method": "least_squares", **stated})
+        task = point_task(problem)
+        setting = setting_of(problem, task.origin, task.size, sign=1.0, shortest=1)
+        flock = _descended(problem, task.rows, setting, 300, np.random.default_rng(0))
+        _kicked(problem, (flock, flock), task.rows, setting, np.random.default_rng(0))
+        for candidate in (Candidate(x, state, 0.0, setting, 1) for x, state, _ in zip(*flock, strict=True)):
+            mechanism = mechanism_of(candidate, task)
+            if mechanism is not None:
+                verify_path(problem, mechanism)
+
+
+def fitted(
+    problem: PathProblem,
+    task: PointTask,
+    rng: np.random.Generator,
+    progress: Progress,
+    *,
+    finalists: int = FINALISTS,
+    usable: Usable | None = None,
+) -> list[Candidate]:
+    """Minima within the limits, least first: ``finalists`` of them at most, within limits of our own too if stated."""
+    thinned = _thinned(task)
+    ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
+    cases = [(way, shortest, sign) for way in ways for shortest in classes(problem) for sign in (1.0, -1.0)]
+    settings = [
+        setting_of(problem, task.origin, task.size, sign=sign, shortest=shortest, usable=usable)
+        for _, shortest, sign in cases
+    ]
+    flocks = []
+    for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
+        progress(0.4 * n / len(cases), f"class {n + 1} of {len(cases)}: fitting from random starts")
+        flocks.append(_descended(problem, _directed(thinned.rows, way), setting, len(cases), rng))
+    for kick in range(KICKS):
+        progress(0.4 + 0.2 * kick / KICKS, "changing the best fits")
+        bases = [_different(_best(flock, 4 * KICKED), KICKED) for flock in flocks]
+        for n, (way, _, sign) in enumerate(cases):
+            # Next to each case stands the same with the other assembly.
+            pair = bases[n], bases[n + 1 if sign > 0.0 else n - 1]
+            rows = _directed(thinned.rows, way)
+            flocks[n] = _joined([flocks[n], _kicked(problem, pair, rows, settings[n], rng)])
+    pool = [
+        Candidate(x, state, float(cost), setting, way)
+        for (way, _, _), setting, flock in zip(cases, settings, flocks, strict=True)
+        for x, state, cost in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
+    ]
+    pool.sort(key=lambda candidate: candidate.cost)
+    most = finalists if len(task.rows) <= MANY else OF_MANY
+    found = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
+    for _ in range(RETURNS if thinned is task else 0):
+        # What has come to its limits may lie next to something better beyond them.
+        again: list[Candidate] = []
+        for n, (way, shortest, sign) in enumerate(cases):
+            progress(0.8 + 0.1 * n / len(cases), "changing the best fits")
+            held = _flock_of(found, (way, shortest, sign)), _flock_of(found, (way, shortest, -sign))
+            flock = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
+            again += [
+                Candidate(x, state, float(cost), settings[n], way)
+                for x, state, cost in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
+            ]
+        again.sort(key=lambda candidate: candidate.cost)
+        found += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
+    return sorted(found, key=lambda candidate: candidate.cost)
+
+
+def _all_held(
+    chosen: list[Candidate], task: PointTask, thinned: PointTask, told: Callable[[float], None]
+) -> list[Candidate]:
+    """Candidates brought to minima within their limits, without those that cannot be."""
+    found: list[Candidate | None] = [None] * len(chosen)
+
+    def work(some: slice) -> None:
+        found[some] = [_held(candidate, task, thinned) for candidate in chosen[some]]
+
+    told(0.0)
+    in_portions(work, len(chosen), 1)
+    return [candidate for candidate in found if candidate is not None]
+
+
+def _flock_of(found: list[Candidate], case: tuple[int, int, float]) -> _Flock:
+    """The best distinct ones of a case: the crank's direction, the shortest link and the assembly."""
+    way, shortest, sign = case
+    own = [c for c in found if c.way == way and c.setting[SHORTEST] == shortest and c.setting[SIGN] == sign]
+    own.sort(key=lambda candidate: candidate.cost)
+    if not own:
+        return _empty(0, 9, 0)
+    flock = _Flock(*(np.array(column) for column in list(zip(*own, strict=True))[:3]))
+    return _different(flock, KICKED)
+
+
+def _thinned(task: PointTask) -> PointTask:
+    """At most so many points as are needed to find where to go."""
+    n = len(task.rows)
+    if n <= EXPLORED:
+        return task
+    return task._replace(rows=np.ascontiguousarray(task.rows[np.linspace(0, n - 1, EXPLORED).round().astype(int)]))
+
+
+def _directed(rows: Real, way: int) -> Real:
+    return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0])
+
+
+def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Flock:
+    """Where random starts of one class and assembly lead, thinned out on the way."""
+    n = len(rows)
+    free = FREE_STARTS if n <= FEW else STARTS_OF_MANY
+    count = (TIMED_STARTS if problem.prescribed else free) // cases
+    unknowns = UNKNOWNS if problem.prescribed and problem.crank_phase == "free" else PHASE
+    draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAWS - 4))], axis=1)
+    flock = _empty(count, unknowns, n)
+    if problem.prescribed:
+        timed_starts(draws, rows, setting, unknowns, flock.starts, flock.costs)
+        count = math.ceil(TIMED_SHARE * count)
+    else:
+        runs = np.zeros((count, n))
+        places = along(rows)
+
+        def begin(some: slice) -> None:
+            free_starts(draws[some], places, rows, setting, flock.starts[some], runs[some], flock.costs[some])
+
+        in_portions(begin, count, PORTION)
+        flock.states[:, :n] = runs
+    for share, steps, tolerance in THINNING:
+        flock = _best(flock, max(math.ceil(share * count), 1))
+        _descend(flock, rows, setting, steps, tolerance)
+    return flock
+
+
+def _kicked(
+    problem: PathProblem, bases: tuple[_Flock, _Flock], rows: Real, setting: Real, rng: np.random.Generator
+) -> _Flock:
+    """Where the best of a case and of its other assembly lead when they are changed, or turned inside out."""
+    n, sign = len(rows), float(setting[SIGN])
+    parts = []
+    for flip, base, its_sign, copies in (
+        (SAME, bases[0], sign, COPIES),
+        (FAR_DYAD, bases[0], sign, 1),
+        (OUTPUT, bases[1], -sign, 1),
+        (COUPLER, bases[1], -sign, 1),
+    ):
+        if not len(base.costs) or (problem.prescribed and flip != SAME):
+            continue
+        size = len(base.costs) * copies
+        part = _empty(size, base.starts.shape[1], n)
+        runs = np.ascontiguousarray(base.states[:, :n])
+        part.states[:, :n] = runs[np.arange(size) % len(runs)]
+        reach = (KICK if flip == SAME else FLIP_KICK) * np.exp(SPREAD * rng.normal(size=(size, 1)))
+        draws = reach * rng.normal(size=(size, 4))
+        kicked(base.starts, part.states, its_sign, flip, draws, rows, setting, part.starts, part.costs)
+        parts.append(part)
+    near = _joined(parts) if parts else _empty(0, 9, n)
+    for share, steps, tolerance in KICK_THINNING:
+        near = _best(near, math.ceil(share * len(near.costs)))
+        _descend(near, rows, setting, steps, tolerance)
+    return near
+
+
+class _Flock(NamedTuple):
+    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points) and costs (k,)."""
+
+    starts: Real
+    states: Real
+    costs: Real
+
+
+def _empty(count: int, unknowns: int, points: int) -> _Flock:
+    return _Flock(np.zeros((count, unknowns)), np.zeros((count, 3 * points)), np.full(count, np.inf))
+
+
+def _joined(flocks: list[_Flock]) -> _Flock:
+    return _Flock(*(np.concatenate(parts) for parts in zip(*flocks, strict=True)))
+
+
+def _best(flock: _Flock, count: int) -> _Flock:
+    """The best of them, copies."""
+    kept = np.argsort(flock.costs, kind="stable")[:count]
+    kept = kept[np.isfinite(flock.costs[kept])]
+    return _Flock(flock.starts[kept], flock.states[kept], flock.costs[kept])
+
+
+def _different(flock: _Flock, count: int) -> _Flock:
+    """Those, best first, whose cost is not that of the one before: they have not come to the same minimum."""
+    kept = np.flatnonzero(np.diff(flock.costs, prepend=-1.0) > SAME_COST * flock.costs)[:count]
+    return _Flock(flock.starts[kept], flock.states[kept], flock.costs[kept])
+
+
+def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
+    if not len(flock.costs):
+        return
+    multipliers = np.zeros(LIMITS + 1)
+    multipliers[LIMITS] = SOFT
+
+    def work(some: slice) -> None:
+        starts, states, costs = flock.starts[some], flock.states[some], flock.costs[some]
+        descend_each(path_rows, starts, states, rows, setting, multipliers, steps, tolerance, costs)
+
+    in_portions(work, len(flock.costs), PORTION)
+
+
+def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
+    """The best candidates that differ."""
+    if not pool:
+        return []
+    joints = np.array([_joints(candidate) for candidate in pool])
+    return [pool[n] for n in distinct(joints, count, SAME_FIT)]
+
+
+def _joints(candidate: Candidate) -> Complex:
+    """O2, A, B, O4 and P at the first point, in task coordinates; NaN beyond a toggle."""
+    lengths = np.empty(4)
+    x, phi = candidate.x, float(candidate.state[0])
+    lengths_of(x, int(candidate.setting[SHORTEST]), lengths, np.empty((4, 4)))
+    d, a, b, c = map(float, lengths)
+    good, x3, y3, _, _ = closure(d, a, b, c, float(candidate.setting[SIGN]), math.cos(phi), math.sin(phi))
+    if not good:
+        return np.full(5, np.nan + 0j)
+    o2, ground = complex(x[0], x[1]), np.exp(1j * x[2])
+    pin = o2 + ground * a * np.exp(1j * phi)
+    coupler = ground * complex(x3, y3)
+    return np.array([o2, pin, pin + b * coupler, o2 + d * ground, pin + coupler * complex(x[POINT], x[POINT + 1])])
+
+
+def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidate | None:
+    """The minimum within the limits that a candidate leads to, over all points; None where limits cannot be met."""
+    x, state = candidate.x.copy(), candidate.state
+    n, few = len(task.rows), len(thinned.rows)
+    if n > few:
+        state = np.zeros(3 * n)
+        state[:n] = np.interp(np.arange(n), np.linspace(0, n - 1, few).round(), candidate.state[:few])
+    else:
+        state = state.copy()
+    rows = _directed(task.rows, candidate.way)
+    ended = np.empty(2)
+    hold(path_rows, x, state, rows, candidate.setting, FIRM, ended)
+    if not np.all(np.isfinite(ended)) or ended[1] > 10.0 * HELD:
+        return None
+    return candidate._replace(x=x, state=state, cost=float(ended[0]))
+
+
+def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfiguration | None:
+    """A candidate in the problem's coordinates, as it stands at the first point."""
+    joints = _joints(candidate)
+    if not np.all(np.isfinite(joints)):
+        return None
+    return FourbarConfiguration(*(complex(z) for z in task.origin + task.size * joints))
+
+
+def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | None:
+    """A candidate's dimensions in the problem's coordinates."""
+    configuration = configuration_of(candidate, task)
+    return None if configuration is None else fourbar_mechanism(configuration)
+
+
+class _Fits(Harvest):
+    """What becomes of the fits."""
+
+    def shown(self) -> list[PathDesign]:
+        """Nearest first unless another order is asked for; among answers that are equally near, quality decides."""
+        designs = super().shown()
+        if self.problem.rank_by == "quality":
+            designs.sort(key=lambda d: (not d.verification.passed, max(d.metrics.rms_residual, AS_GOOD_AS_EXACT)))
+        return designs
+
+    def summary(self) -> str:
+        """The answer in words."""
+        n, unit = len(self.problem.points), self.problem.length_unit
+        timing = "at their crank angles" if self.problem.prescribed else "in order"
+        if self.passed:
+            best = min(self.passed, key=lambda d: d.metrics.sum_of_squares).metrics
+            text = (
+                f"{len(self.passed)} of {self.candidates} fitted linkages satisfy all demands; the best passes the {n} "
+                f"points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
+                f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
+            )
+        else:
+            rejected = self.listed() or "none"
+            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
+        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."

@@ -1,0 +1,367 @@
+"""Starts for fits of fourbars to points: random shapes, their places and coupler points by linear least squares.
+
+For a shape (ratios of lengths) and crank angles φ_k the path is linear in three complex numbers,
+
+    z_k ≈ c₀ + g a e^{iφ_k} + q e^{iφ3_k},
+
+the fixed pivot O2, the ground vector and the coupler point turned with it. With prescribed timing that leaves four
+numbers to draw: three ratios, and the crank's phase. With free timing the angles are drawn too, as a run of the crank
+along the points, and are then put right by turns: the path that comes out is sampled, points are assigned to samples in
+order, and the linear problem is solved again.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.path.assignment import assign
+from synthesis.kinds.path.coupler_curve import (
+    ANY,
+    LENGTHS,
+    PHASE,
+    POINT,
+    closure,
+    crank_range,
+    lengths_of,
+    numbers_of,
+    point_at,
+)
+from synthesis.kinds.path.limits import (
+    ABSOLUTE,
+    CLOSED,
+    GIVEN,
+    GROUND_LINE,
+    ORDERED,
+    PHASED,
+    SHORTEST,
+    SIGN,
+    TIMED,
+)
+
+Real = NDArray[np.float64]
+
+DRAWS = 12
+"""Random numbers of a start: three or four for the shape, phase, range, direction, and the warp of the run."""
+
+SAMPLES = 96
+"""Samples of a curve to which points are assigned."""
+
+BEFORE = 4
+"""Samples before a curve's nearest to the first point at which a run may begin."""
+
+TAIL = 0.2
+"""Logarithms of lengths have tails: the best linkages often stand at a limit, with links far longer than others or
+near a change point."""
+
+SAME, OUTPUT, COUPLER, FAR_DYAD = FLIPS = range(4)
+"""How a linkage is turned inside out: not; O4 goes to the other side of B; B to the other side of A; B and O4 both to
+the other sides of A and O2. A fit that has run to the limit of a link's length has found that a slider would be better,
+and beyond the slider there is the link's mirror image."""
+
+NEAR_EDGE = 1e-5
+"""Share of all links together at which a linkage that has left its class is put back."""
+
+TURNS = 3
+"""Times that angles and places are put right by turns."""
+
+
+@njit(cache=True, nogil=True)
+def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
+    """Place, size and coupler point for a shape at crank angles from the ground line; half the sum of squares.
+
+    ``x`` gets the linkage's nine numbers. ``turn`` is the angle of the ground line where crank angles are absolute.
+    """
+    n = len(points)
+    d, a = lengths[0], lengths[1]
+    crank, coupler = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    target = np.empty(n, np.complex128)
+    for k in range(n):
+        cosine, sine = math.cos(angles[k]), math.sin(angles[k])
+        good, x3, y3, _, _ = closure(d, a, lengths[2], lengths[3], sign, cosine, sine)
+        if not good:
+            return np.inf
+        crank[k] = complex(a * cosine, a * sine) / d
+        coupler[k] = complex(x3, y3)
+        target[k] = complex(points[k, 0], points[k, 1])
+    pivot_given = not (math.isnan(setting[GIVEN]) or math.isnan(setting[GIVEN + 1]))
+    ground_given = pivot_given and not (math.isnan(setting[GIVEN + 2]) or math.isnan(setting[GIVEN + 3]))
+    mean_crank, mean_coupler, mean_target = 0.0j, 0.0j, 0.0j
+    if pivot_given:
+        mean_target = complex(setting[GIVEN], setting[GIVEN + 1])
+    else:
+        mean_crank, mean_coupler, mean_target = crank.mean(), coupler.mean(), target.mean()
+    square, on_crank, on_target = 1e-12, 0.0j, 0.0j
+    for k in range(n):
+        e = coupler[k] - mean_coupler
+        square += e.real * e.real + e.imag * e.imag
+        on_crank += e.conjugate() * (crank[k] - mean_crank)
+        on_target += e.conjugate() * (target[k] - mean_target)
+    on_crank /= square
+    on_target /= square
+    across, mixed = 1e-12, 0.0j
+    for k in range(n):
+        e = coupler[k] - mean_coupler
+        f = crank[k] - mean_crank - on_crank * e
+        across += f.real * f.real + f.imag * f.imag
+        mixed += f.conjugate() * (target[k] - mean_target - on_target * e)
+    ground = mixed / across
+    if ground_given:
+        ground = complex(setting[GIVEN + 2] - setting[GIVEN], setting[GIVEN + 3] - setting[GIVEN + 1])
+    elif setting[TIMED] > 0.0 and setting[PHASED] == ABSOLUTE:
+        unit = complex(math.cos(turn), math.sin(turn))
+        ground = max((ground * unit.conjugate()).real, 1e-3) * unit
+    size = abs(ground)
+    if not 1e-9 < size < 1e9:
+        return np.inf
+    arm = on_target - ground * on_crank
+    pivot = mean_target - ground * mean_crank - arm * mean_coupler
+    cost = 0.0
+    for k in range(n):
+        gap = pivot + ground * crank[k] + arm * coupler[k] - target[k]
+        cost += gap.real * gap.real + gap.imag * gap.imag
+    x[0], x[1] = pivot.real, pivot.imag
+    x[2] = math.atan2(ground.imag, ground.real)
+    scaled = lengths * (size / d)
+    if not numbers_of(scaled, int(setting[SHORTEST]), x):
+        return np.inf
+    point = arm * ground.conjugate() / size
+    x[POINT], x[POINT + 1] = point.real, point.imag
+    return 0.5 * cost
+
+
+@njit(cache=True, nogil=True)
+def shape(draw: Real, shortest: int, x: Real, lengths: Real) -> bool:
+    """A random shape of a class; False for one that cannot be assembled."""
+    slopes = np.empty((4, 4))
+    spread = 0.9 if shortest == ANY else 1.3
+    for i in range(4):
+        x[LENGTHS + i] = spread * draw[i] * (1.0 + TAIL * draw[i] * draw[i])
+    lengths_of(x, shortest, lengths, slopes)
+    low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
+    return low < high
+
+
+@njit(cache=True, nogil=True)
+def timed_starts(draws: Real, points: Real, setting: Real, unknowns: int, starts: Real, costs: Real) -> None:
+    """Starts with prescribed timing, one for each row of draws; infinite costs where there is none."""
+    n = len(points)
+    lengths, angles = np.empty(4), np.empty(n)
+    for row in range(len(draws)):
+        draw, x = draws[row], np.zeros(10)
+        costs[row] = np.inf
+        if not shape(draw, int(setting[SHORTEST]), x, lengths):
+            continue
+        phase = 0.0 if setting[PHASED] == GROUND_LINE else math.pi * draw[4]
+        for k in range(n):
+            angles[k] = points[k, 2] + phase
+        costs[row] = place(lengths, setting[SIGN], angles, points, setting, -phase, x)
+        if unknowns > PHASE:
+            x[PHASE] = phase
+        starts[row] = x[:unknowns]
+
+
+@njit(cache=True, nogil=True)
+def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: Real, runs: Real, costs: Real) -> None:
+    """Starts with free timing: linkages into ``starts``, crank angles from the ground line into ``runs``.
+
+    ``along`` are the points' places along the path that they make, from 0 to the length of the whole as 1, where the
+    way back from the last to the first counts too.
+    """
+    n = len(points)
+    lengths = np.empty(4)
+    for row in range(len(draws)):
+        draw, x = draws[row], np.zeros(9)
+        costs[row] = np.inf
+        if not shape(draw, int(setting[SHORTEST]), x, lengths):
+            continue
+        low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
+        crank = low == 0.0 and high == math.pi
+        if not crank and setting[CLOSED] > 0.0:
+            continue
+        way = 1.0 if draw[5] > 0.0 else -1.0
+        share = 0.5 + 0.5 * draw[6]
+        angles = runs[row]
+        if crank:
+            # All round, the gap between the last point and the first in proportion; or a part of a turn.
+            whole = 2.0 * math.pi if setting[CLOSED] > 0.0 or draw[7] > 0.0 else 2.0 * math.pi * share / along[n - 1]
+            begin = math.pi * draw[4]
+            for k in range(n):
+                s = along[k]
+                warp = draw[8] * (math.sin(2.0 * math.pi * s + 3.0 * draw[9]) - math.sin(3.0 * draw[9]))
+                angles[k] = begin + way * (whole * s + 0.8 * warp)
+        else:
+            width = high - low if low > 0.0 else 2.0 * high
+            begin = low if low > 0.0 else -high
+            if high == math.pi:
+                begin, width = low, 2.0 * (math.pi - low)
+            used = width * (0.2 + 0.78 * share)
+            begin += (
+                0.01 * width + (0.98 * width - used) * (0.5 + 0.5 * draw[4]) if used < 0.98 * width else 0.01 * width
+            )
+            for k in range(n):
+                s = along[k] / along[n - 1]
+                angles[k] = begin + used * (s if way > 0.0 else 1.0 - s)
+        cost = place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
+        for _ in range(TURNS):
+            if not cost < np.inf:
+                break
+            costs[row] = reassign(x, points, setting, angles)
+            starts[row] = x
+            lengths_of(x, int(setting[SHORTEST]), lengths, np.empty((4, 4)))
+            cost = place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
+
+
+@njit(cache=True, nogil=True)
+def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
+    """Crank angles at which a linkage comes nearest to the points in order, by samples; half the sum of squares."""
+    n = len(points)
+    lengths, slopes = np.empty(4), np.empty((4, 4))
+    lengths_of(x, int(setting[SHORTEST]), lengths, slopes)
+    low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
+    crank = low == 0.0 and high == math.pi
+    count = SAMPLES
+    begin, step = 0.0, 2.0 * math.pi / count
+    if not crank:
+        middle = angles[n // 2]
+        if low > 0.0 and high < math.pi:
+            begin, step = low, (high - low) / count
+            if math.sin(middle) < 0.0:
+                begin = -high
+        elif low > 0.0:
+            begin, step = low, 2.0 * (math.pi - low) / count
+        else:
+            begin, step = -high, 2.0 * high / count
+        begin += 0.5 * step
+    squares = np.empty((n, count))
+    for j in range(count):
+        good, px, py, _, _ = point_at(x, lengths, setting[SIGN], begin + j * step)
+        for k in range(n):
+            gx, gy = px - points[k, 0], py - points[k, 1]
+            squares[k, j] = gx * gx + gy * gy if good else 1e18
+    if setting[ORDERED] == 0.0:
+        least = 0.0
+        for k in range(n):
+            j = int(np.argmin(squares[k]))
+            angles[k] = begin + j * step
+            least += squares[k, j]
+        return 0.5 * least
+    totals, back = np.empty(count + 1), np.empty((n, count + 1), np.int16)
+    chosen, best_chosen = np.empty(n, np.int64), np.zeros(n, np.int64)
+    best, best_first, best_way = np.inf, 0, 1
+    for way in (1, -1):
+        if not crank:
+            first = 0 if way > 0 else count - 1
+            least = assign(squares, first, count, way, totals, back, chosen, best)
+            if least < best:
+                best, best_first, best_way = least, first, way
+                best_chosen[:] = chosen
+            continue
+        for j in range(count):
+            # A run begins near a place where the curve passes the first point: a few samples before it at the earliest.
+            if squares[0, j] <= squares[0, j - 1] and squares[0, j] < squares[0, (j + 1) % count]:
+                first = (j - way * BEFORE) % count
+                least = assign(squares, first, count + 1, way, totals, back, chosen, best)
+                if least < best:
+                    best, best_first, best_way = least, first, way
+                    best_chosen[:] = chosen
+    for k in range(n):
+        angles[k] = begin + step * (best_first + best_way * best_chosen[k])
+    return 0.5 * best
+
+
+def along(points: Real) -> Real:
+    """Where points stand along the closed polygon that they make, as shares of its length; the last below 1."""
+    z = points[:, 0] + 1j * points[:, 1]
+    chords = np.abs(np.diff(np.append(z, z[0])))
+    whole = np.concatenate([[0.0], np.cumsum(chords)])
+    return np.asarray(whole[:-1] / whole[-1])
+
+
+@njit(cache=True, nogil=True)
+def kicked(
+    bases: Real,
+    states: Real,
+    sign: float,
+    flip: int,
+    draws: Real,
+    points: Real,
+    setting: Real,
+    starts: Real,
+    costs: Real,
+) -> None:
+    """Starts near linkages that are known: each with other lengths, and put in place anew at the same crank angles.
+
+    Parameters
+    ----------
+    bases : float64, shape (k, unknowns)
+        Linkages; taken in turn.
+    states : float64, shape (starts, points or more)
+        Their crank angles, which turn with the ground line.
+    sign : float
+        Their assembly.
+    flip : int
+        One of :data:`FLIPS`: what is turned inside out before.
+    draws : float64, shape (starts, 4)
+        Changes of the numbers that stand for lengths.
+    points, setting, starts, costs
+        As for :func:`free_starts`; the setting's assembly sign is the starts'.
+    """
+    lengths, slopes = np.empty(4), np.empty((4, 4))
+    shortest, n = int(setting[SHORTEST]), len(points)
+    angles = np.empty(n)
+    for row in range(len(starts)):
+        base = row % len(bases)
+        x = np.zeros(10)
+        x[: bases.shape[1]] = bases[base]
+        costs[row] = np.inf
+        lengths_of(x, shortest, lengths, slopes)
+        turned = 0.0
+        if flip != SAME:
+            phi = states[row, n // 2]
+            cosine, sine = math.cos(phi), math.sin(phi)
+            good, x3, y3, _, _ = closure(lengths[0], lengths[1], lengths[2], lengths[3], sign, cosine, sine)
+            if not good:
+                continue
+            a = complex(lengths[1] * cosine, lengths[1] * sine)
+            b = a + lengths[2] * complex(x3, y3)
+            o4 = complex(lengths[0], 0.0)
+            if flip == OUTPUT:
+                o4 = 2.0 * b - o4
+            else:
+                b = 2.0 * a - b
+                if flip == FAR_DYAD:
+                    o4 = -o4
+            turned = math.atan2(o4.imag, o4.real)
+            lengths[0], lengths[3] = abs(o4), abs(b - o4)
+            if not of_class(lengths, shortest, x):
+                continue
+        for i in range(4):
+            x[LENGTHS + i] += draws[row, i]
+        lengths_of(x, shortest, lengths, slopes)
+        for k in range(n):
+            angles[k] = states[row, k] - turned
+            states[row, k] = angles[k]
+        costs[row] = place(lengths, setting[SIGN], angles, points, setting, x[2], x)
+        starts[row] = x[: bases.shape[1]]
+
+
+@njit(cache=True, nogil=True)
+def of_class(lengths: Real, shortest: int, x: Real) -> bool:
+    """The numbers of lengths that may be a little outside their class, as if they stood at its edge."""
+    if shortest < 0:
+        return numbers_of(lengths, shortest, x)
+    rest, place_ = np.empty(3), 0
+    for i in range(4):
+        if i != shortest:
+            rest[place_] = lengths[i] - lengths[shortest]
+            place_ += 1
+    edge = NEAR_EDGE * lengths.sum()
+    x[LENGTHS] = math.log(lengths[shortest])
+    x[LENGTHS + 1] = math.log(max(rest[1] + rest[2] - rest[0], edge))
+    x[LENGTHS + 2] = math.log(max(rest[0] + rest[1] - rest[2], edge))
+    x[LENGTHS + 3] = math.log(max(rest[0] + rest[2] - rest[1], edge))
+    return True

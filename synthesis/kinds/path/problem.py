@@ -1,0 +1,419 @@
+"""Path generation: a linkage whose coupler point goes through points, or near them."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import ConfigDict, Field, model_validator
+
+from synthesis.model.linkage_statement import (
+    Constraints,
+    LinkageProblem,
+    Region,
+)
+from synthesis.model.statement import (
+    Contradiction,
+    Count,
+    Flag,
+    Interval,
+    Number,
+    PartialPoint,
+    Statement,
+)
+
+EQUAL_POINTS = 1e-9
+"""Points closer than this share of the coordinates' size count as equal."""
+
+EQUAL_ANGLES = 1e-9
+"""Crank angles closer than this, in degrees modulo full turns, are one angle."""
+
+MOST_FREE = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
+"""Points that a linkage can meet exactly, in general: as many as it has dimensions, its gear ratio apart."""
+
+GEAR_TURNS = 60
+"""Turns of the crank within which a geared fivebar must come round, so that its whole motion can be driven."""
+
+MOST_POINTS = 1000
+"""Points that are taken; a curve that needs more is oversampled."""
+
+LONGEST_LINK = 5.0
+"""Longest link of a curve match where no limit is stated, in diagonals of the box around the curve: fits without one
+run off to links that are many times longer and bring nothing."""
+
+
+class PathPoint(Statement):
+    """A point of the path, in length units."""
+
+    x: Number
+    y: Number
+    crank_angle: Number | None = Field(
+        default=None, description="Angle of the crank where P is here, degrees; for prescribed timing."
+    )
+
+    @property
+    def point(self) -> complex:
+        """The point as a complex number."""
+        return complex(self.x, self.y)
+
+
+class CouplerPointLimits(Statement):
+    """Where P may lie on the coupler: along the line A → B, and across it to the left, from A, in length units."""
+
+    along: Interval | None = None
+    across: Interval | None = None
+
+
+class PathConstraints(Constraints):
+    """What a usable linkage must satisfy, with limits that tasks of path generation have in addition."""
+
+    input_pivot_region: Region | None = Field(default=None, description="For the input's fixed pivot alone.")
+    coupler_point: CouplerPointLimits | None = None
+
+
+class PathPivots(Statement):
+    """Fixed pivots that are given; null leaves a pivot, or one of its coordinates, open."""
+
+    input: PartialPoint | None = None
+    output: PartialPoint | None = None
+
+    def given(self) -> int:
+        """How many coordinates are given."""
+        return sum(value is not None for pivot in (self.input, self.output) for value in pivot or ())
+
+    @model_validator(mode="after")
+    def _apart(self) -> Self:
+        if self.input is not None and self.input == self.output and None not in self.input:
+            raise ValueError("the fixed pivots must differ")
+        return self
+
+
+class PathProblem(LinkageProblem):
+    """Path generation: a fourbar whose coupler point goes exactly through points, or as near to them as can be.
+
+    With *free* timing the input angles at the points are free: nine points are as many as a fourbar can meet. For nine
+    every fourbar is computed: all 1442 cognate triples, real and complex, from which the real ones are verified with
+    both cognates and either fixed pivot as the input's. Fewer points leave freedom: it goes into what is demanded,
+    and the ranking. With *prescribed* timing each point has its crank angle: five points
+    can be met exactly, and for five every fourbar is found. More points are fitted by least squares.
+    """
+
+    model_config = ConfigDict(
+        title="Path generation",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "path",
+                    "points": [
+                        {"x": 40.0, "y": 30.0},
+                        {"x": 32.0, "y": 42.0},
+                        {"x": 20.0, "y": 45.0},
+                        {"x": 8.0, "y": 40.0},
+                        {"x": 2.0, "y": 30.0},
+                    ],
+                    "rounds": 1,
+                    "max_designs": 5,
+                },
+                {
+                    "kind": "path",
+                    "timing": "prescribed",
+                    "points": [
+                        {"x": -23.0, "y": 34.0, "crank_angle": 0.0},
+                        {"x": -17.0, "y": 32.0, "crank_angle": 40.0},
+                        {"x": -7.0, "y": 40.0, "crank_angle": 80.0},
+                        {"x": 4.0, "y": 55.0, "crank_angle": 120.0},
+                        {"x": 8.0, "y": 66.0, "crank_angle": 160.0},
+                    ],
+                },
+                {
+                    "kind": "path",
+                    "timing": "prescribed",
+                    "closed": True,
+                    "points": [
+                        {"x": 50.0, "y": 110.0, "crank_angle": 0.0},
+                        {"x": 30.0, "y": 110.0, "crank_angle": 40.0},
+                        {"x": 10.0, "y": 90.0, "crank_angle": 80.0},
+                        {"x": 2.0, "y": 60.0, "crank_angle": 120.0},
+                        {"x": 0.0, "y": 40.0, "crank_angle": 160.0},
+                        {"x": 10.0, "y": 25.0, "crank_angle": 200.0},
+                        {"x": 20.0, "y": 30.0, "crank_angle": 240.0},
+                        {"x": 40.0, "y": 50.0, "crank_angle": 280.0},
+                        {"x": 60.0, "y": 90.0, "crank_angle": 320.0},
+                    ],
+                    "constraints": {
+                        "grashof": "crank_rocker",
+                        "link_length": {"min": 10.0, "max": 200.0},
+                        "min_transmission_angle": 30.0,
+                    },
+                    "max_designs": 3,
+                },
+                {
+                    "kind": "path",
+                    "method": "curve_match",
+                    "closed": True,
+                    "points": [
+                        {"x": 53.0, "y": 71.0},
+                        {"x": 35.0, "y": 71.0},
+                        {"x": 22.0, "y": 67.0},
+                        {"x": 14.0, "y": 60.0},
+                        {"x": 12.0, "y": 49.0},
+                        {"x": 11.6, "y": 39.0},
+                        {"x": 11.6, "y": 28.0},
+                        {"x": 11.6, "y": 18.0},
+                        {"x": 12.5, "y": 12.0},
+                        {"x": 18.0, "y": 20.0},
+                        {"x": 27.0, "y": 29.0},
+                        {"x": 38.0, "y": 39.0},
+                        {"x": 50.0, "y": 49.0},
+                        {"x": 60.0, "y": 62.0},
+                    ],
+                    "max_designs": 5,
+                },
+            ]
+        },
+    )
+
+    kind: Literal["path"]
+    points: list[PathPoint] = Field(
+        min_length=3, max_length=MOST_POINTS, description="In the order in which they are visited."
+    )
+    timing: Literal["free", "prescribed"] = Field(
+        default="free", description="Whether each point has a crank angle at which it is met."
+    )
+    crank_phase: Literal["free", "absolute", "ground_line"] = Field(
+        default="free",
+        description="What prescribed crank angles are measured from: any line, so that only their differences count; "
+        "the x axis; or the line from the input's fixed pivot to the output's.",
+    )
+    crank_direction: Literal["as_given", "either"] = Field(
+        default="as_given", description="Whether the crank may turn the other way round than its angles do."
+    )
+    closed: Flag = Field(
+        default=False, description="The points go all round a closed curve, and the input turns through."
+    )
+    method: Literal["auto", "exact", "least_squares", "curve_match"] = Field(
+        default="auto",
+        description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
+        "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be.",
+    )
+    placement_free: list[Literal["position", "rotation", "size"]] = Field(
+        default=[],
+        max_length=3,
+        description="For curve_match: what of the drawn curve need not be kept. The linkage is then moved, turned or "
+        "sized with its curve to keep given pivots, regions and limits of lengths.",
+    )
+    mechanism: Literal["fourbar", "slider_crank", "geared_fivebar"] = "fourbar"
+    gear_ratio: Number | None = Field(
+        default=None,
+        description="For geared fivebars: rotation of the output over that of the input. Left out: 1, -1, 2 and -2 are "
+        "tried.",
+    )
+    fixed_pivots: PathPivots = PathPivots()
+    constraints: PathConstraints = PathConstraints()
+    rounds: Annotated[Count, Field(ge=1, le=20)] = Field(
+        default=3,
+        description="For fewer than nine points of free timing: how often linkages near them are drawn.",
+    )
+
+    @property
+    def task_size(self) -> float:
+        """The greatest distance between two points, by which tolerances are measured, in length units."""
+        points = np.array([point.point for point in self.points])
+        return float(np.abs(points[:, None] - points).max()) or 1.0
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the points have crank angles."""
+        return self.timing == "prescribed"
+
+    @property
+    def most_exact(self) -> int:
+        """How many points can be met exactly, in general: as many as there are freedoms for."""
+        free = MOST_FREE[self.mechanism] - self.fixed_pivots.given()
+        return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
+
+    @property
+    def fitted(self) -> bool:
+        """Whether the points are met as nearly as can be, and not exactly."""
+        if self.method == "auto":
+            return len(self.points) > self.most_exact
+        return self.method in ("least_squares", "curve_match")
+
+    @property
+    def matched(self) -> bool:
+        """Whether the points are a curve that is drawn as a whole."""
+        return self.method == "curve_match"
+
+    @property
+    def longest_link(self) -> float:
+        """The longest link that a curve match may have, in length units."""
+        limit = self.constraints.link_length
+        if limit is not None and limit.max is not None:
+            return limit.max
+        points = np.array([point.point for point in self.points])
+        return LONGEST_LINK * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
+
+    @property
+    def crank_turns(self) -> list[float]:
+        """Prescribed crank angles as one run of the crank from the first, radians: onward, or backward where shorter.
+
+        Where the points are not met in order within one turn, the differences as they are given.
+        """
+        angles = [point.crank_angle or 0.0 for point in self.points]
+        onward = [0.0]
+        for one, other in pairwise(angles):
+            onward.append(onward[-1] + _turn(other - one))
+        backward = [0.0]
+        for one, other in pairwise(angles):
+            backward.append(backward[-1] - _turn(one - other))
+        runs = [run for run in (onward, backward) if abs(run[-1]) <= 360.0 + EQUAL_ANGLES]
+        run = min(runs, key=lambda turns: abs(turns[-1])) if runs else [angle - angles[0] for angle in angles]
+        return [math.radians(turn) for turn in run]
+
+    def contradictions(self) -> list[Contradiction]:
+        """Equal points, timing that is incomplete or cannot be kept, and demands that exclude one another."""
+        return [
+            *self._timing(),
+            *self._equal_points(),
+            *self._method(),
+            *self._pivots(),
+            *self._mechanism(),
+            *self._closed(),
+            *self.constraints.contradictions(),
+        ]
+
+    def _timing(self) -> list[Contradiction]:
+        given = [k for k, point in enumerate(self.points) if point.crank_angle is not None]
+        if not self.prescribed:
+            found = [
+                Contradiction(
+                    f"/points/{k}/crank_angle", 'timing is free; state "timing": "prescribed", or leave it out'
+                )
+                for k in given[:1]
+            ]
+            for name, value, default in (
+                ("crank_phase", self.crank_phase, "free"),
+                ("crank_direction", self.crank_direction, "as_given"),
+            ):
+                if value != default:
+                    found.append(Contradiction(f"/{name}", "speaks of prescribed timing; the timing is free"))
+            return found
+        missing = [k for k in range(len(self.points)) if k not in set(given)]
+        if missing:
+            return [Contradiction(f"/points/{k}/crank_angle", "timing is prescribed; give an angle") for k in missing]
+        return [*self._equal_angles(), *self._turns()]
+
+    def _equal_angles(self) -> list[Contradiction]:
+        """An exact task cannot have two points at one angle of the crank; a fit wants three angles at least."""
+        angles = [point.crank_angle or 0.0 for point in self.points]
+        if self.fitted:
+            different = {round(_turn(angle) / EQUAL_ANGLES) % round(360.0 / EQUAL_ANGLES) for angle in angles}
+            if len(different) < 3:
+                return [Contradiction("/points", "prescribed timing needs three different crank angles at least")]
+            return []
+        return [
+            Contradiction(f"/points/{k}/crank_angle", f"equal to that of point {j}; exact points need different angles")
+            for k, later in enumerate(angles)
+            for j, earlier in enumerate(angles[:k])
+            if abs(math.remainder(later - earlier, 360.0)) <= EQUAL_ANGLES
+        ]
+
+    def _turns(self) -> list[Contradiction]:
+        turned = self.crank_turns
+        if self.constraints.in_order and abs(turned[-1] - turned[0]) > 0.0:
+            steps = [other - one for one, other in pairwise(turned)]
+            if min(steps) < 0.0 < max(steps) or max(turned) - min(turned) > math.tau * (1.0 + EQUAL_ANGLES):
+                detail = (
+                    "the crank angles do not follow one another within one turn; "
+                    'reorder the points, or state "in_order": false'
+                )
+                return [Contradiction("/points", detail)]
+        return []
+
+    def _equal_points(self) -> list[Contradiction]:
+        points = np.array([point.point for point in self.points])
+        size = float(np.abs(np.concatenate([points.real, points.imag])).max())
+        equal = np.abs(points[:, None] - points) <= EQUAL_POINTS * size
+        if self.fitted:
+            different = sum(not equal[k, :k].any() for k in range(len(points)))
+            if different < 3:
+                return [Contradiction("/points", f"only {different} of them differ; three different points are needed")]
+            return []
+        if self.prescribed:
+            if equal.all():
+                return [Contradiction("/points", "all equal; points must differ")]
+            return []
+        return [
+            Contradiction(f"/points/{k}", f"equal to point {j}; points must differ")
+            for k in range(len(points))
+            for j in range(k)
+            if equal[k, j]
+        ]
+
+    def _method(self) -> list[Contradiction]:
+        if self.placement_free and not (self.matched and self.mechanism == "fourbar"):
+            return [Contradiction("/placement_free", "is for curve_match by fourbars")]
+        if self.matched:
+            if self.prescribed:
+                return [Contradiction("/timing", "a curve that is matched as a whole has no timing; leave it free")]
+            return []
+        if self.method == "exact" and len(self.points) > self.most_exact:
+            timing = "with prescribed timing" if self.prescribed else "with free timing"
+            detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"
+            return [Contradiction("/method", detail)]
+        return []
+
+    def _pivots(self) -> list[Contradiction]:
+        found = []
+        limits = self.constraints
+        for side, pivot, regions in (
+            ("input", self.fixed_pivots.input, (limits.fixed_pivot_region, limits.input_pivot_region)),
+            ("output", self.fixed_pivots.output, (limits.fixed_pivot_region,)),
+        ):
+            for region in regions:
+                if pivot is None or region is None:
+                    continue
+                at = complex(
+                    region.x[0] if pivot[0] is None else pivot[0], region.y[0] if pivot[1] is None else pivot[1]
+                )
+                if not region.contains(at):
+                    found.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
+        return found
+
+    def _mechanism(self) -> list[Contradiction]:
+        """What only fourbars can be asked, and the gear ratio."""
+        found = []
+        if self.gear_ratio is not None:
+            turns = self.gear_ratio * np.arange(1.0, GEAR_TURNS + 1.0)
+            if self.mechanism != "geared_fivebar":
+                found.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
+            elif self.gear_ratio == 0.0:
+                found.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
+            elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
+                detail = f"the gears do not come round within {GEAR_TURNS} turns; state a ratio of whole teeth"
+                found.append(Contradiction("/gear_ratio", detail))
+        if self.mechanism == "fourbar":
+            return found
+        if self.prescribed:
+            found.append(Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free"))
+        if self.constraints.grashof != "any":
+            found.append(Contradiction("/constraints/grashof", f"classifies fourbars; a {self.mechanism} has no class"))
+        if self.constraints.coupler_point is not None:
+            found.append(Contradiction("/constraints/coupler_point", "is for fourbars"))
+        if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
+            found.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
+        return found
+
+    def _closed(self) -> list[Contradiction]:
+        if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):
+            detail = f"the input of a {self.constraints.grashof} linkage does not turn through, as a closed curve asks"
+            return [Contradiction("/constraints/grashof", detail)]
+        return []
+
+
+def _turn(degrees: float) -> float:
+    """An angle in [0, 360), one that is 0 to rounding as 0."""
+    turned = math.fmod(degrees, 360.0) % 360.0
+    return 0.0 if 360.0 - turned <= EQUAL_ANGLES else turned

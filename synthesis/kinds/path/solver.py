@@ -1,0 +1,181 @@
+"""Path generation: all fourbars through nine points; for fewer points, members of the family that they leave.
+
+Where a search near a smooth curve finds no member that will do, points are drawn until there are nine.
+
+A real cognate triple is six designs: three linkages, each with either fixed pivot as the input's. Every one of them is
+verified, and what each was rejected for is counted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from synthesis.kinds.path import curve_match
+from synthesis.kinds.path.design import CognateTriples, PathResult
+from synthesis.kinds.path.family_search import solve_family
+from synthesis.kinds.path.given_pivots import all_are_found, solve_given_pivots
+from synthesis.kinds.path.harvest import Harvest
+from synthesis.kinds.path.nine_point import Triples, all_triples
+from synthesis.kinds.path.nine_point_start import start
+from synthesis.kinds.path.nine_point_system import (
+    GROUPS,
+    ORBITS,
+    SCRATCH,
+    nine_point_system,
+    nine_point_system_extended,
+    orbit_keys,
+)
+from synthesis.kinds.path.other_linkages import solve_other
+from synthesis.kinds.path.point_fit import fit_points
+from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.timed import solve_timed
+from synthesis.kinds.path.verification import verify_path
+from synthesis.kinds.path.verify_cognates import with_cognates
+from synthesis.model.kind import Progress
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.continuation import follow, refine
+
+Complex = NDArray[np.complex128]
+
+NINE = 9
+
+THREADS = 2
+"""Paths are followed two at a time: the kernels leave the interpreter free, and most machines have a second core."""
+
+OFF_CURVE = 0.03
+"""Drawn points lie this share of the points' mean distance off the smooth curve, so that no two rounds are alike."""
+
+FIRST_PART = 0.5
+"""Share of the progress that the search near a smooth curve counts for, where others may follow it."""
+
+SHORTEST_LINK = 1e-9
+"""Links shorter than this share of the longest are no links."""
+
+
+def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of path generation; every design brings its cognates."""
+    result = _solved(problem, progress)
+    return result.model_copy(update={"designs": [with_cognates(design) for design in result.designs]})
+
+
+def _solved(problem: PathProblem, progress: Progress) -> PathResult:
+    if problem.mechanism != "fourbar":
+        return solve_other(problem, progress)
+    if problem.matched:
+        return curve_match.solve_curve_match(problem, progress)
+    if all_are_found(problem):
+        return solve_given_pivots(problem, progress)
+    if problem.fitted:
+        return fit_points(problem, progress)
+    if problem.prescribed:
+        return solve_timed(problem, progress)
+    if len(problem.points) < NINE:
+        near = solve_family(problem, lambda share, message: progress(FIRST_PART * share, message))
+        if near.search.accepted:
+            progress(1.0, "verified")
+            return near
+        return _solve_nine(problem, lambda share, message: progress(FIRST_PART + (1.0 - FIRST_PART) * share, message))
+    return _solve_nine(problem, progress)
+
+
+def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
+    """All fourbars through nine points, some of which are drawn where fewer are given."""
+    rng = np.random.default_rng(problem.seed)
+    given = np.array([point.point for point in problem.points])
+    rounds = 1 if len(given) == NINE else problem.rounds
+    harvest = _Triples(problem)
+    found: list[Triples] = []
+    for n in range(rounds):
+
+        def told(share: float, n: int = n) -> None:
+            tracked = f"{round(share * ORBITS)} of {ORBITS} paths followed"
+            message = tracked if rounds == 1 else f"round {n + 1} of {rounds}: {tracked}"
+            progress(0.95 * (n + share) / rounds, message)
+
+        triples = all_triples(_nine(given, rng), rng, told, THREADS)
+        found.append(triples)
+        harvest.gather(triples)
+    progress(1.0, "verified")
+    complete = len(given) == NINE and found[0].complete and not harvest.unproven
+    counts = CognateTriples(
+        rounds=rounds,
+        computed=sum(len(triples.y) for triples in found),
+        real=sum(len(triples.real) for triples in found),
+        on_one_circuit=harvest.on_one_circuit,
+        largest_residual=max(triples.largest_residual for triples in found),
+        closed_under_conjugation=all(triples.self_conjugate for triples in found),
+    )
+    method = "nine_point_continuation" if len(given) == NINE else "nine_point_family"
+    result = harvest.result(method, complete=complete, summary=harvest.summary(counts, complete=complete))
+    return result.model_copy(update={"triples": counts})
+
+
+def warm_up() -> None:
+    """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
+    curve_match.warm_up()
+    begun = start()
+    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
+    follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))
+    orbit_keys(y, begun.p, low)
+    warm_up_fits()
+
+
+def _nine(given: Complex, rng: np.random.Generator) -> Complex:
+    """Nine points: the given ones in their places, and others drawn near a smooth curve through them."""
+    missing = NINE - len(given)
+    if missing == 0:
+        return given
+    chords = np.abs(np.diff(given))
+    along = np.concatenate([[0.0], np.cumsum(chords)])
+    curve = CubicSpline(along, given)
+    between = rng.choice(len(chords), missing, p=chords / chords.sum())
+    drawn = along[between] + chords[between] * rng.uniform(0.15, 0.85, missing)
+    off = OFF_CURVE * chords.mean() * (rng.normal(size=(missing, 2)) @ np.array([1.0, 1.0j]))
+    return np.concatenate([given, np.asarray(curve(drawn)) + off])
+
+
+class _Triples(Harvest):
+    """The designs of the real triples."""
+
+    def __init__(self, problem: PathProblem) -> None:
+        super().__init__(problem)
+        self.on_one_circuit = 0
+
+    def gather(self, triples: Triples) -> None:
+        """Verify all six designs of every triple."""
+        origin = self.problem.points[0].point
+        for triple in triples.real:
+            one_circuit = False
+            for o2, a, o4, b in triple:
+                for joints in ((o2, a, b, o4, origin), (o4, b, a, o2, origin)):
+                    one_circuit |= self._verify(FourbarConfiguration(*map(complex, joints)))
+            self.on_one_circuit += one_circuit
+
+    def _verify(self, joints: FourbarConfiguration) -> bool:
+        """Put a design where it belongs; returns whether it has all points on one circuit."""
+        lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
+        if min(*lengths, abs(joints.o4 - joints.o2)) <= SHORTEST_LINK * max(lengths):
+            self.degenerate()
+            return False
+        design = verify_path(self.problem, fourbar_mechanism(joints))
+        self.add(design)
+        return design is not None and all(
+            check.passed for check in design.verification.checks if check.name in ("reaches_targets", "same_circuit")
+        )
+
+    def summary(self, counts: CognateTriples, *, complete: bool) -> str:
+        """The answer in words."""
+        expected = ORBITS * counts.rounds
+        text = (
+            f"{counts.computed} of {expected} triples of cognate fourbars were computed; {counts.real} are real, "
+            f"{counts.on_one_circuit} of these have all points on one circuit, "
+            f"and {len(self.passed)} of {self.candidates} designs satisfy all demands."
+        )
+        if self.rejected:
+            text += f" Rejected: {self.listed()}."
+        if not self.passed:
+            text += " These are all fourbars, so no design exists." if complete else " Others may exist."
+        return text

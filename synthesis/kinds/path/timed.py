@@ -1,0 +1,154 @@
+"""Five points with their crank angles: all fourbars, by two problems of motion generation.
+
+The crank W and the coupler vector Z of the input dyad satisfy, with crank rotations β_k given and those of the coupler
+α_k not (Norton 5.35),
+
+    W (e^{iβ_k} − 1) + Z (e^{iα_k} − 1) = δ_k.
+
+In motion generation it is the other way round. As the equation is the same in both, the dyads of a body that is turned
+by β_k are the solutions, with W and Z exchanged: a fixed pivot O and a moving pivot A′ stand for O2 = O and
+A = O + P − A′. There are at most four (:mod:`synthesis.kinds.motion.sections`). Each says how the coupler turns,
+
+    e^{iα_k} = (Z + δ_k − W (e^{iβ_k} − 1)) / Z,
+
+and its output links are the dyads of that motion: at most four again, of which one is the input link itself. There are
+twelve fourbars at most, and with each stands the cognate whose input turns with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.dyads import DyadConditions, settled
+from synthesis.kinds.motion.sections import section
+from synthesis.kinds.motion.task import MotionTask
+from synthesis.kinds.path.design import PathResult, TimedDyads
+from synthesis.kinds.path.exact_fit import exact_fits
+from synthesis.kinds.path.harvest import APART, Harvest
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Progress = Callable[[float, str], None]
+
+FIVE = 5
+
+SAME_DYAD = 1e-6
+"""An output link with both pivots this near (task sizes, and shares of its own reach) to the input link's is that."""
+
+SHORTEST_LINK = 1e-9
+"""Links shorter than this share of the longest are no links."""
+
+
+class TimedFourbars(NamedTuple):
+    """All fourbars through five points at their crank angles, in task coordinates.
+
+    ``joints`` are O2, A, B, O4 at the first point (rows of four; P is at 0). ``proved`` tells that there are no others,
+    but for sliders, of which ``sliders`` were found. ``inputs`` is the number of input dyads.
+    """
+
+    joints: Complex
+    inputs: int
+    sliders: int
+    proved: bool
+
+
+def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
+    """All fourbars whose coupler point is at each of five points when the crank has turned by each of five angles.
+
+    Parameters
+    ----------
+    points : complex, shape (5,)
+        In task coordinates: the first is 0, the greatest distance is 1.
+    turns : float, shape (5,)
+        Rotations of the crank from the first point, radians; the first is 0.
+    """
+    free = DyadConditions(rotations=(None,) * (FIVE - 1))
+    exchanged = MotionTask(points, np.exp(1j * turns), 0j, 1.0)
+    inputs = section(exchanged, free)
+    dyads = settled(exchanged, inputs.dyads) if len(inputs.dyads.fixed) else inputs.dyads
+    proved, sliders = inputs.finite and inputs.proved, len(inputs.sliders)
+    found = []
+    for o2, moving in zip(dyads.fixed, dyads.moving, strict=True):
+        crank, arm = -moving, moving - o2
+        if abs(crank) < SHORTEST_LINK or abs(arm) < SHORTEST_LINK:
+            # P on the crank's pin: its path is the crank's circle, with any output link.
+            proved = False
+            continue
+        rotations = (arm + points - crank * (np.exp(1j * turns) - 1.0)) / arm
+        task = MotionTask(points, rotations / np.abs(rotations), 0j, 1.0)
+        outputs = section(task, free)
+        proved = proved and outputs.finite and outputs.proved
+        sliders += len(outputs.sliders)
+        if not len(outputs.dyads.fixed):
+            continue
+        links = settled(task, outputs.dyads)
+        a = o2 + crank
+        for o4, b in zip(links.fixed, links.moving, strict=True):
+            reach = 1.0 + abs(o2) + abs(a)
+            if max(abs(o4 - o2), abs(b - a)) > SAME_DYAD * reach:
+                found.append((o2, a, b, o4))
+    return TimedFourbars(np.array(found, np.complex128).reshape(-1, 4), len(dyads.fixed), sliders, proved)
+
+
+def solve_timed(problem: PathProblem, progress: Progress) -> PathResult:
+    """Solve a problem of points that are met exactly at prescribed crank angles."""
+    if len(problem.points) == FIVE and problem.crank_phase == "free" and not problem.fixed_pivots.given():
+        return _all_of_five(problem, progress)
+    harvest = Harvest(problem, apart=APART)
+    for design in exact_fits(problem, progress):
+        harvest.add(design)
+    progress(1.0, "verified")
+    return harvest.result("timed_family", complete=False, summary=_summary_of_fewer(problem, harvest))
+
+
+def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
+    given = np.array([point.point for point in problem.points])
+    size = problem.task_size
+    points, turns = (given - given[0]) / size, np.array(problem.crank_turns)
+    ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
+    harvest = Harvest(problem)
+    inputs = fourbars = sliders = 0
+    proved = True
+    for n, way in enumerate(ways):
+        progress(n / len(ways), "computing all dyads")
+        found = timed_fourbars(points, way)
+        inputs, sliders, proved = inputs + found.inputs, sliders + found.sliders, proved and found.proved
+        fourbars += len(found.joints)
+        for o2, a, b, o4 in given[0] + size * found.joints:
+            joints = FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0])))
+            lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
+            if min(lengths) <= SHORTEST_LINK * max(lengths):
+                harvest.degenerate()
+            else:
+                harvest.add(verify_path(problem, fourbar_mechanism(joints)))
+    progress(1.0, "verified")
+    complete = proved and not harvest.unproven
+    text = (
+        f"{inputs} input dyads and {fourbars} fourbars pass the five points at their crank angles; "
+        f"{len(harvest.passed)} of them satisfy all demands."
+    )
+    if harvest.rejected:
+        text += f" Rejected: {harvest.listed()}."
+    if sliders:
+        text += f" {sliders} more dyads have a pivot at infinity: sliders."
+    if not harvest.passed:
+        text += " These are all fourbars, so no design exists." if complete else " Others may exist."
+    result = harvest.result("timed_dyads", complete=complete, summary=text)
+    return result.model_copy(update={"timed": TimedDyads(inputs=inputs, fourbars=fourbars, sliders=sliders)})
+
+
+def _summary_of_fewer(problem: PathProblem, harvest: Harvest) -> str:
+    text = (
+        f"{len(harvest.passed)} of {harvest.candidates} linkages through the {len(problem.points)} points at their "
+        "crank angles satisfy all demands; the points leave freedom, from which these are drawn."
+    )
+    if harvest.rejected:
+        text += f" Rejected: {harvest.listed()}."
+    return text if harvest.passed else text + " Others may exist."

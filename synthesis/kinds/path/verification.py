@@ -1,0 +1,208 @@
+"""Verification of a fourbar that guides a point: it is driven to where its coupler point passes each demanded point.
+
+:mod:`synthesis.kinds.path.passages` finds the inputs; what is measured is where P then stands.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import (
+    Fourbar,
+    barker_class,
+    can_assemble,
+    same_circuit,
+    stays_on_branch,
+    transmission_extremes,
+    traverse,
+)
+from synthesis.kinds.path.design import PathDesign, PathMetrics
+from synthesis.kinds.path.passages import (
+    Passages,
+    at_angles,
+    at_points,
+    in_order,
+    nearest,
+)
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import FourbarMechanism, Target
+from synthesis.model.linkages import DrivenFourbar, driven_fourbar
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import (
+    CHOICE_KEPT,
+    TARGET_REACHED,
+    constraint_checks,
+)
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SLACK = 1e-9
+"""Coordinates outside a stated interval by this share of its ends' size count as inside: rounding."""
+
+
+class _Way(NamedTuple):
+    """The motion through the targets: inputs in one run, what it is worth, and the range that is used."""
+
+    angles: Real
+    same_branch: bool
+    on_circuit: bool
+    in_order: bool
+    start: float
+    end: float
+
+
+def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign | None:
+    """Drive a fourbar past a problem's points and measure it.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        What was asked.
+    mechanism : FourbarMechanism
+        Dimensions only; the skeleton is not looked at.
+
+    Returns
+    -------
+    PathDesign or None
+        None where the dimensions make no linkage that can be assembled, or it stays out of reach of a point.
+    """
+    try:
+        fourbar = driven_fourbar(mechanism)
+    except DimensionError:
+        return None
+    linkage = fourbar.linkage
+    if not can_assemble(linkage):
+        return None
+    points = np.array([point.point for point in problem.points])
+    passed = _passages(problem, fourbar, points)
+    if passed is None:
+        return None
+    size = problem.task_size
+    way = _way(linkage, passed)
+    barker = barker_class(linkage)
+    least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
+    links, point = mechanism.links, complex(linkage.coupler_point)
+    lengths = [links.ground, links.input, links.coupler, links.output]
+    reach = max(*lengths, abs(point), abs(point - links.coupler))
+    pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
+    joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
+    residuals = passed.misses / size
+    metrics = PathMetrics(
+        grashof=barker.motion,
+        barker=barker.code,
+        min_transmission_angle=math.degrees(least),
+        transmission_angles={"coupler": math.degrees(least)},
+        same_branch=way.same_branch,
+        visits_in_order=way.on_circuit and way.in_order,
+        full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
+        link_ratio=max(lengths) / min(lengths),
+        rms_residual=math.sqrt(float(np.mean(residuals**2))),
+        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
+        quality=quality(math.sin(least), reach / size, max(lengths) / min(lengths)),
+        sum_of_squares=float(np.sum(passed.misses**2)),
+        rms_distance=math.sqrt(float(np.mean(passed.misses**2))),
+        max_distance=float(passed.misses.max()),
+    )
+    checks = []
+    if not problem.fitted:
+        residual = float(residuals.max())
+        checks.append(
+            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
+        )
+    checks.append(Check(name="same_circuit", passed=way.on_circuit))
+    checks += constraint_checks(
+        problem.constraints, lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics
+    )
+    checks += _path_checks(problem, mechanism, linkage, metrics, size)
+    inputs = np.degrees(way.angles)
+    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
+    return PathDesign(
+        mechanism=mechanism,
+        targets=[
+            Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
+            for k, (at, miss) in enumerate(zip(inputs, passed.misses, strict=True))
+        ],
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> Passages | None:
+    """Where the linkage meets the points, as the problem asks for it."""
+    if problem.prescribed:
+        turns = np.array(problem.crank_turns)
+        ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
+        found = [
+            passed for way in ways if (passed := at_angles(fourbar, points, way, both=not problem.fitted)) is not None
+        ]
+        return min(found, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
+    if not problem.fitted:
+        return at_points(fourbar, points)
+    return in_order(fourbar, points) if problem.constraints.in_order else nearest(fourbar, points)
+
+
+def _way(linkage: Fourbar, passed: Passages) -> _Way:
+    """The motion from the first target to the last."""
+    if passed.run:
+        steps = np.diff(passed.angles)
+        low, high = float(passed.angles.min()), float(passed.angles.max())
+        one_way = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and high - low <= math.tau * (1.0 + SLACK)
+        on_branch = bool(stays_on_branch(linkage, low, high))
+        angles, start, end, ordered = passed.angles, low, high, one_way
+    else:
+        way = traverse(linkage, passed.angles, passed.assemblies)
+        angles, start, end, on_branch, ordered = way.angles, way.start, way.end, way.same_branch, way.in_order
+    on_circuit = on_branch or bool(
+        np.all(same_circuit(linkage, passed.angles[0], passed.assemblies[0], passed.angles, passed.assemblies))
+    )
+    return _Way(angles, on_branch, on_circuit, ordered and (on_branch or not passed.run), start, end)
+
+
+def _path_checks(
+    problem: PathProblem, mechanism: FourbarMechanism, linkage: Fourbar, metrics: PathMetrics, size: float
+) -> list[Check]:
+    """What only tasks of path generation demand: pivots, P's place on the coupler, the crank's phase, a closed path."""
+    checks = []
+    limits = problem.constraints
+    o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
+    if limits.input_pivot_region is not None:
+        checks.append(Check(name="input_pivot_region", passed=limits.input_pivot_region.contains(o2)))
+    if limits.coupler_point is not None:
+        point = complex(linkage.coupler_point)
+        inside = all(
+            interval is None or _within(value, interval)
+            for value, interval in (
+                (point.real, limits.coupler_point.along),
+                (point.imag, limits.coupler_point.across),
+            )
+        )
+        checks.append(Check(name="coupler_point", passed=inside))
+    if problem.fixed_pivots.given():
+        gap = 0.0
+        for pivot, stated in ((o2, problem.fixed_pivots.input), (o4, problem.fixed_pivots.output)):
+            for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
+                gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
+        checks.append(Check(name="fixed_pivots", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.crank_phase != "free":
+        stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0
+        if problem.crank_phase == "ground_line":
+            stands -= math.degrees(math.atan2((o4 - o2).imag, (o4 - o2).real))
+        signs = (1.0, -1.0) if problem.crank_direction == "either" else (1.0,)
+        gap = min(abs(math.radians(math.remainder(stands - sign * wanted, 360.0))) for sign in signs)
+        checks.append(Check(name="crank_phase", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.closed and not limits.full_rotation:
+        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
+    return checks
+
+
+def _within(value: float, interval: tuple[float, float]) -> bool:
+    slack = SLACK * max(abs(interval[0]), abs(interval[1]))
+    return interval[0] - slack <= value <= interval[1] + slack

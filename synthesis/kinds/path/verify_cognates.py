@@ -1,0 +1,104 @@
+"""The cognates of an answer, driven past the same points and measured, and why a designer would take one or another.
+
+Each fourbar has two cognates that trace its curve (:mod:`kinematics.linkage.fourbar.cognates`). They stand on other
+pivots, can be of another Grashof type, and what one guides through the points without a toggle another may not.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import (
+    Cognate,
+    barker_class,
+    cognates,
+    positions,
+    transmission_extremes,
+    traverse,
+)
+from synthesis.kinds.path.design import PathCognate, PathDesign
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import (
+    DrivenFourbar,
+    FourbarConfiguration,
+    driven_fourbar,
+    fourbar_mechanism,
+)
+
+ALIKE = 0.05
+"""Transmission angles that differ by less, in degrees, are not told apart."""
+
+
+def with_cognates(design: PathDesign) -> PathDesign:
+    """A design with its cognates and a word on the choice among the three.
+
+    Designs that do not pass their points on one branch are left as they are: there is no one motion to compare.
+    """
+    mechanism = design.mechanism
+    if not isinstance(mechanism, FourbarMechanism) or not design.metrics.same_branch:
+        return design
+    source = driven_fourbar(mechanism)
+    try:
+        pair = cognates(source.linkage)
+    except DimensionError:
+        text = "P is on a moving pivot, so that its path is a circle or an arc of one, and there are no cognates."
+        return design.model_copy(update={"cognate_choice": text})
+    measured = _measured("left", pair.left, source, design), _measured("right", pair.right, source, design)
+    found = [one for one in measured if one is not None]
+    return design.model_copy(update={"cognates": found, "cognate_choice": _choice(design, found)})
+
+
+def _measured(
+    side: Literal["left", "right"], cognate: Cognate, source: DrivenFourbar, design: PathDesign
+) -> PathCognate | None:
+    """A cognate where the design stands at its targets; None where it has no position there (at a toggle)."""
+    inputs = np.radians([target.input_angle for target in design.targets])
+    own = positions(source.linkage, inputs, source.assembly)
+    at = cognate.configuration(inputs, source.assembly)
+    stands = positions(cognate.linkage, at.input_angle[..., None], at.assembly)
+    p, a, b = (part[:, 0] for part in (stands.p, stands.a, stands.b))
+    if not (np.all(at.valid) and np.all(np.isfinite(p))):
+        return None
+    way = traverse(cognate.linkage, at.input_angle, at.assembly)
+    least = float(transmission_extremes(cognate.linkage, way.start, way.end)[0]) if way.same_branch else 0.0
+    barker = barker_class(cognate.linkage)
+    o2, o4 = complex(cognate.linkage.input_pivot), complex(cognate.linkage.output_pivot)
+    return PathCognate(
+        side=side,
+        mechanism=fourbar_mechanism(FourbarConfiguration(o2, complex(a[0]), complex(b[0]), o4, complex(p[0]))),
+        grashof=barker.motion,
+        full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        same_timing=cognate.turns_with[0] == "input",
+        same_branch=way.same_branch,
+        visits_in_order=way.in_order,
+        min_transmission_angle=math.degrees(least),
+        deviation=float(np.abs(p - own.p).max()),
+    )
+
+
+def _choice(design: PathDesign, found: list[PathCognate]) -> str:
+    """Who has the better transmission, who turns through, and what keeps a cognate from being used."""
+    ours = design.metrics.min_transmission_angle
+    parts = [f"This {_words(design.metrics.grashof)} transmits at {ours:.1f}° at least."]
+    for one in found:
+        (x2, y2), (x4, y4) = one.mechanism.fixed_pivots.input, one.mechanism.fixed_pivots.output
+        name = f"The {one.side} cognate, a {_words(one.grashof)} on ({x2:.4g}, {y2:.4g}) and ({x4:.4g}, {y4:.4g}),"
+        if not one.same_branch:
+            parts.append(f"{name} passes a toggle between the points when its input drives.")
+        elif not one.visits_in_order:
+            parts.append(f"{name} does not meet the points in order when its input turns one way.")
+        else:
+            gain = one.min_transmission_angle - ours
+            better = "as much" if abs(gain) <= ALIKE else "more" if gain > 0.0 else "less"
+            timing = "at the same crank angles" if one.same_timing else "its input turning with this one's coupler"
+            parts.append(f"{name} guides P through the points {timing} and transmits {better}: ")
+            parts[-1] += f"{one.min_transmission_angle:.1f}° at least."
+    return " ".join(parts)
+
+
+def _words(motion: str | None) -> str:
+    return (motion or "linkage").replace("_", "-")

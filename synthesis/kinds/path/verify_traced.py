@@ -1,0 +1,187 @@
+"""Verification of slider-cranks and geared fivebars that guide a point: driven through their closures, and measured.
+
+The branches are found by root finding in the analysis core. On that of the reference the input is looked for at which P
+comes nearest to each point, in order, within one cycle: a turn of the crank, or as many as its gears need.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from synthesis.kinds.path.design import PathDesign, PathMetrics
+from synthesis.kinds.path.passages import ordered_run
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verify_curve import astray
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import (
+    GearedFivebarMechanism,
+    SliderCrankMechanism,
+    Target,
+)
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import (
+    CHOICE_KEPT,
+    TARGET_REACHED,
+    at_most,
+    constraint_checks,
+)
+from synthesis.proof.closer import least_angles
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class _Drive:
+    """A mechanism on one of its branches."""
+
+    def __init__(self, mechanism: Mechanism, branch: Branch) -> None:
+        self.mechanism, self.branch = mechanism, branch
+        steps, left = decompose(mechanism).steps, iter(branch.signs)
+        self._signs = (
+            tuple(np.asarray(next(left) if step.has_two_solutions else 1) for step in steps) if branch.signs else None
+        )
+
+    def at(self, inputs: Real) -> MechanismMotion:
+        """The mechanism at inputs of shape (n,)."""
+        return drive(self.mechanism, inputs, signs=self._signs, order=0)
+
+    def place(self, inputs: Real) -> Complex:
+        """P at inputs of any shape; NaN where there is no position."""
+        motion = self.at(inputs.ravel())
+        return np.asarray(np.where(motion.valid, motion.joints["P"][0], np.nan).reshape(inputs.shape))
+
+    def range(self) -> tuple[float, float]:
+        """The branch's inputs as they follow on from the reference input."""
+        at, period = float(self.mechanism.reference_input), cycle(self.mechanism)
+        if self.branch.full:
+            return at - 0.5 * period, at + 0.5 * period
+        low = at - float(np.mod(at - self.branch.low, period))
+        return low, low + self.branch.high - self.branch.low
+
+
+def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFivebarMechanism) -> PathDesign | None:
+    """Drive a slider-crank or geared fivebar past a problem's points and measure it.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        What was asked.
+    design : SliderCrankMechanism or GearedFivebarMechanism
+        Dimensions only; the skeleton is not looked at.
+
+    Returns
+    -------
+    PathDesign or None
+        None where the dimensions make no mechanism that can be driven.
+    """
+    try:
+        mechanism = _GIVEN.validate_python(design.model_dump(exclude={"skeleton"})).mechanism()
+        here = holding_reference(mechanism, branches(mechanism))
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None
+    if here is None:
+        return None
+    driven = _Drive(mechanism, here)
+    points = np.array([point.point for point in problem.points])
+    low, high = driven.range()
+    period = cycle(mechanism) if here.full else None
+    inputs = ordered_run(driven.place, points, low, high, period)
+    motion = driven.at(inputs)
+    if not motion.valid.all():
+        return None
+    joints = {name: jet[0] for name, jet in motion.joints.items()}
+    misses = np.abs(joints["P"] - points)
+    size = problem.task_size
+    start, end = float(inputs.min()), float(inputs.max())
+    whole = here.full and problem.closed
+    used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism)) if whole else (start, end)
+    least = least_angles(driven.at, *used)
+    angle = min(least.values(), default=0.0)
+    lengths = [value for value in design.links.model_dump().values() if value > 0.0]
+    pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
+    arms = [float(abs(joints["P"][0] - joints["A"][0]))]
+    fixed = [complex(joints[joint][0]) for joint in mechanism.links[GROUND]]
+    everything = np.concatenate(list(joints.values()))
+    turned = float(inputs[-1] - inputs[0])
+    steps = np.diff(inputs)
+    in_order = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0)
+    ratio = max(lengths) / min(lengths)
+    residuals = misses / size
+    worst = float(misses.max())
+    gone = astray(driven.place, used, points, problem.closed, worst)._asdict() if problem.matched else {}
+    metrics = PathMetrics(
+        grashof=None,
+        barker=None,
+        min_transmission_angle=math.degrees(angle),
+        transmission_angles={link: math.degrees(value) for link, value in least.items()},
+        same_branch=True,
+        visits_in_order=in_order,
+        full_rotation=here.full,
+        input_rotation=math.degrees(turned),
+        link_ratio=ratio,
+        rms_residual=math.sqrt(float(np.mean(residuals**2))),
+        size=math.hypot(*np.ptp(everything.view(np.float64).reshape(-1, 2), axis=0)),
+        quality=quality(math.sin(angle), max([*lengths, *arms]) / size, ratio),
+        sum_of_squares=float(np.sum(misses**2)),
+        rms_distance=math.sqrt(float(np.mean(misses**2))),
+        max_distance=worst,
+        **gone,
+    )
+    checks = []
+    if not problem.fitted:
+        residual = float(residuals.max())
+        checks.append(
+            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
+        )
+    checks.append(Check(name="same_circuit", passed=True))
+    checks += constraint_checks(problem.constraints, lengths, fixed, [complex(joints[pin][0]) for pin in pins], metrics)
+    checks += _path_checks(problem, fixed, metrics, size, max(lengths))
+    degrees = np.degrees(inputs)
+    return PathDesign(
+        mechanism=design,
+        targets=[
+            Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
+            for k, (at, miss) in enumerate(zip(degrees, misses, strict=True))
+        ],
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _path_checks(
+    problem: PathProblem, fixed: list[complex], metrics: PathMetrics, size: float, longest: float
+) -> list[Check]:
+    """What only tasks of path generation demand."""
+    checks = []
+    region = problem.constraints.input_pivot_region
+    if region is not None:
+        checks.append(Check(name="input_pivot_region", passed=region.contains(fixed[0])))
+    if problem.fixed_pivots.given():
+        gap = 0.0
+        for pivot, stated in zip(fixed, (problem.fixed_pivots.input, problem.fixed_pivots.output), strict=False):
+            for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
+                gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
+        checks.append(Check(name="fixed_pivots", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+    if problem.closed and not problem.constraints.full_rotation:
+        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
+    limit = problem.constraints.link_length
+    if problem.matched and (limit is None or limit.max is None):
+        checks.append(at_most("longest_link", longest, problem.longest_link))
+    return checks

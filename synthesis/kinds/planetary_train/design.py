@@ -1,0 +1,96 @@
+"""Planetary trains as answers: tooth numbers, members and places of the planets, and what was measured on them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from synthesis.kinds.gear_train.design import Ratio
+from synthesis.model.answer import (
+    Answer,
+    Result,
+    Verification,
+)
+
+
+class PlanetPlaces(Answer):
+    """Where the copies of a planet stand: ``steps`` times 1/``divisions`` of a turn after the first one."""
+
+    divisions: int
+    steps: list[int]
+
+
+class PlanetaryMechanism(Answer):
+    """A planetary train; gears and members have the names of the arrangement."""
+
+    type: Literal["planetary_train"] = "planetary_train"
+    arrangement: str
+    teeth: dict[str, int]
+    planets: int = Field(description="Copies of each planet.")
+    places: dict[str, PlanetPlaces] = Field(description="By planet.")
+    module: float
+    pressure_angle: float = Field(description="Degrees.")
+    addendum: dict[str, float] = Field(
+        description="Addendum by gear, in modules: 1, or less for a ring whose full teeth would dig into its planets."
+    )
+    input: str
+    output: str
+    fixed: str
+    ratio: Ratio
+
+
+class MeshContact(Answer):
+    """Two gears in mesh and their contact ratio."""
+
+    gears: tuple[str, str]
+    contact_ratio: float
+    centre_distance: float
+
+
+class PlanetaryMetrics(Answer):
+    """Measured properties that were not demanded; powers are shares of the input power."""
+
+    error: float = Field(description="Relative error of the ratio, with its sign.")
+    size: float = Field(description="Largest pitch diameter around the axis, planets included.")
+    total_teeth: int = Field(description="Of one copy of every gear.")
+    speeds: dict[str, float] = Field(description="Speed of every body where the input has 1; planets absolute too.")
+    efficiency: float = Field(description="With the stated efficiency of each mesh; 0 where the train locks itself.")
+    self_locking: bool = Field(description="The input cannot drive the output, whatever its torque.")
+    rolling_power: float = Field(description="Largest power of a mesh relative to its carrier, without losses.")
+    branch_power: float = Field(description="Largest power between a row and a member, without losses.")
+    circulating_power: bool = Field(description="A warning: a member carries more power than is put in.")
+    least_room: float | None = Field(description="Least room between tips of gears that do not mesh.")
+    meshes: list[MeshContact]
+    undercut: list[str] = Field(description="Gears whose flanks a generating rack would undercut.")
+
+
+class PlanetaryDesign(Answer):
+    """A planetary train with the proof of what it does."""
+
+    mechanism: PlanetaryMechanism
+    verification: Verification
+    metrics: PlanetaryMetrics
+
+
+class ParetoPlanetaryTrain(Answer):
+    """A train that is the smallest for its error, and the most exact for its size."""
+
+    arrangement: str
+    input: str
+    output: str
+    fixed: str
+    teeth: dict[str, int]
+    ratio: Ratio
+    error: float = Field(description="Relative error of the ratio, with its sign.")
+    size: float
+
+
+class PlanetaryResult(Result[PlanetaryDesign]):
+    """Planetary trains, best first.
+
+    ``ties`` counts the trains that have the least error of all, whatever their size.
+    """
+
+    ties: int
+    pareto: list[ParetoPlanetaryTrain] = Field(description="The Pareto set of error against size, smallest first.")

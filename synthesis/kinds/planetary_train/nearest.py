@@ -1,0 +1,406 @@
+"""The trains of an arrangement whose ratio is nearest to a target: by error, and for every size.
+
+All ratios are evaluated as whole numbers over whole numbers in double precision, where they are exact; their quotients
+are then off by a rounding of 1e-16. What lies within :data:`CLOSE` of a place in the order is compared as exact
+fractions, so that rounding decides nothing.
+
+A train of one planet set is ranked by looking at all its sound tooth numbers. Where two sets are coupled, each enters
+the ratio by one number, its train value x, and for fixed x₁ the ratio is a quotient of two linear functions of x₂. On
+the number line closed at infinity such a function is one-to-one, so that going away from the x₂ that would give the
+target, either way round, the error only grows: the k nearest values of x₂ on both sides hold the k best partners of x₁.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cache, cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from synthesis.kinds.planetary_train.ratio_form import (
+    Polynomial,
+    RatioForm,
+    arrangement_form,
+    evaluated,
+    mesh_row,
+    ratio_form,
+    set_rows,
+)
+from synthesis.kinds.planetary_train.tooth_numbers import Whole
+
+Real = NDArray[np.float64]
+Roles = tuple[str, str, str]
+"""Input, output and fixed member."""
+
+CLOSE = 1e-12
+"""Errors nearer to each other than this are compared exactly; quotients of whole numbers are rounded by 2e-16."""
+
+
+class Candidate(NamedTuple):
+    """A train that is sound, with the exact ratio and what it is ranked by."""
+
+    error: Fraction
+    size: int
+    total: int
+    arrangement: str
+    roles: Roles
+    teeth: tuple[tuple[str, int], ...]
+    ratio: Fraction
+
+
+@dataclass
+class Nearest:
+    """The best trains of one arrangement and choice of members.
+
+    ``best`` in order of error, size and number of teeth; ``by_size`` the one of least error of each size; ``ties`` how
+    many have the least error of all.
+    """
+
+    best: list[Candidate] = field(default_factory=list)
+    by_size: dict[int, Candidate] = field(default_factory=dict)
+    ties: int = 0
+
+
+@dataclass(frozen=True)
+class SetTable:
+    """Sound tooth numbers of one planet set, with size and number of teeth of each.
+
+    ``value`` is the set's train value, for sets that are coupled to another.
+    """
+
+    teeth: dict[str, Whole]
+    size: Whole
+    value: RatioForm | None = None
+
+    @cached_property
+    def values(self) -> dict[str, Real]:
+        """Teeth as floating-point numbers."""
+        return {gear: array.astype(np.float64) for gear, array in self.teeth.items()}
+
+    @cached_property
+    def total(self) -> Whole:
+        """Sum of all teeth of one copy."""
+        return np.asarray(np.sum(np.stack(list(self.teeth.values())), axis=0), np.int64)
+
+    @cached_property
+    def train_values(self) -> TrainValues:
+        """Train values in rising order."""
+        assert self.value is not None
+        return TrainValues(self, self.value)
+
+    @cached_property
+    def by_size(self) -> tuple[Whole, Whole, Whole]:
+        """Order by size, where each size begins in it, and the sizes."""
+        order = np.argsort(self.size, kind="stable")
+        sizes, starts = np.unique(self.size[order], return_index=True)
+        return order, starts, sizes
+
+    def row(self, at: int) -> tuple[tuple[str, int], ...]:
+        """Teeth of one row."""
+        return tuple((gear, int(array[at])) for gear, array in self.teeth.items())
+
+
+def nearest(
+    arrangement: Arrangement, tables: Sequence[SetTable], roles: Roles, target: Fraction, count: int
+) -> Nearest | None:
+    """The ``count`` best trains, and the best of each size; None where a planet set takes no part in the ratio."""
+    if any(len(table.size) == 0 for table in tables):
+        return Nearest()
+    if len(tables) == 1:
+        form = arrangement_form(arrangement.name, *roles)
+        return _of_one_set(arrangement.name, tables[0], roles, form, target, count)
+    coupling = _Coupling.of(arrangement, roles)
+    return None if coupling is None else _TwoSets(arrangement.name, tables, roles, coupling, target).found(count)
+
+
+def _errors(over: Real, under: Real, target: Fraction) -> Real:
+    """Relative errors; infinite where the ratio has the other direction or there is none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = over / under / float(target)
+    return np.where(np.isfinite(share) & (share > 0.0), np.abs(share - 1.0), np.inf)
+
+
+def _exact_errors(over: Real, under: Real, target: Fraction) -> tuple[list[Fraction], list[Fraction], Whole]:
+    """Distinct ratios and their errors, and which of them each quotient is."""
+    whole = over.astype(np.int64), under.astype(np.int64)
+    common = np.gcd(*whole)
+    reduced = np.stack([part // common for part in whole], axis=-1)
+    distinct, which = np.unique(reduced, axis=0, return_inverse=True)
+    ratios = [Fraction(int(a), int(b)) for a, b in distinct]
+    return ratios, [abs(ratio / target - 1) for ratio in ratios], which.reshape(-1)
+
+
+def _ranks(errors: list[Fraction]) -> Whole:
+    order = {error: rank for rank, error in enumerate(sorted(set(errors)))}
+    return np.array([order[error] for error in errors], np.int64)
+
+
+def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int) -> Nearest:
+    found = Nearest()
+    if not form.over:
+        return found
+    size = len(table.size)
+    over, under = evaluated(form.over, table.values, size), evaluated(form.under, table.values, size)
+    errors = _errors(over, under, target)
+    possible = int(np.count_nonzero(np.isfinite(errors)))
+    if not possible:
+        return found
+
+    def candidates(rows: Whole, first_by: str, most: int) -> tuple[list[Candidate], int]:
+        ratios, exact, which = _exact_errors(over[rows], under[rows], target)
+        rank = _ranks(exact)[which]
+        gears = [table.teeth[gear][rows] for gear in reversed(table.teeth)]
+        keys = [*gears, table.total[rows]]
+        keys += [table.size[rows], rank] if first_by == "error" else [rank, table.size[rows]]
+        order = np.lexsort(keys)
+        chosen = order[:most]
+        if first_by == "size":
+            _, first = np.unique(table.size[rows][order], return_index=True)
+            chosen = order[first]
+        listed = [
+            Candidate(
+                exact[which[k]],
+                int(table.size[rows[k]]),
+                int(table.total[rows[k]]),
+                name,
+                roles,
+                table.row(int(rows[k])),
+                ratios[which[k]],
+            )
+            for k in chosen
+        ]
+        return listed, int(np.count_nonzero(rank == rank.min()))
+
+    most = min(count, possible)
+    limit = np.partition(errors, most - 1)[most - 1]
+    found.best, found.ties = candidates(np.flatnonzero(errors <= limit + CLOSE), "error", most)
+    order, starts, sizes = table.by_size
+    least = np.minimum.reduceat(errors[order], starts)
+    close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + CLOSE
+    listed, _ = candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
+    found.by_size = {candidate.size: candidate for candidate in listed}
+    return found
+
+
+class TrainValue(NamedTuple):
+    """The two members besides the carrier of a planet set, the carrier, and ω_one/ω_other past it as n/d."""
+
+    one: str
+    other: str
+    carrier: str
+    form: RatioForm
+
+
+@cache
+def train_value(name: str, planets: tuple[str, ...]) -> TrainValue:
+    """Train value of a planet set with two members besides its carrier."""
+    arrangement = ARRANGEMENTS[name]
+    lines = set_rows(arrangement, planets)
+    carrier = arrangement.carriers[planets[0]]
+    bodies = dict.fromkeys(body for line in lines for body in line)
+    one, other = (body for body in bodies if body not in (*planets, carrier))
+    return TrainValue(one, other, carrier, ratio_form(lines, one, other, carrier))
+
+
+class TrainValues:
+    """The train values n/d of a set's rows in rising order; equal ones stand together, those of fewest teeth first.
+
+    ``rows`` is the order, ``over``, ``under`` and ``value`` are n, d and n/d in it, and ``starts`` where each distinct
+    value begins.
+    """
+
+    def __init__(self, table: SetTable, form: RatioForm) -> None:
+        size = len(table.size)
+        whole = [evaluated(part, table.values, size).astype(np.int64) for part in form]
+        common = np.gcd(*whole) * np.where(whole[1] < 0, -1, 1)
+        over, under = (part // common for part in whole)
+        value = over / under
+        self.rows = np.lexsort((table.total, table.size, value))
+        self.over, self.under = (part[self.rows].astype(np.float64) for part in (over, under))
+        self.value = value[self.rows]
+        self.size = table.size[self.rows]
+        self.starts = np.flatnonzero(np.concatenate(([True], np.diff(self.value) != 0.0)))
+
+    def part(self, at: Whole) -> tuple[Real, Real]:
+        """n and d at places of the order."""
+        return self.over[at], self.under[at]
+
+    def members(self, start: int) -> Whole:
+        """Rows with the value that begins at a place."""
+        after = np.searchsorted(self.starts, start, side="right")
+        end = self.starts[after] if after < len(self.starts) else len(self.rows)
+        return self.rows[start:end]
+
+
+@dataclass(frozen=True)
+class _Coupling:
+    """How the train values of two sets make the ratio; coefficients of d₁d₂, n₁d₂, d₁n₂, n₁n₂ for x = n/d."""
+
+    over: tuple[int, int, int, int]
+    under: tuple[int, int, int, int]
+
+    @classmethod
+    def of(cls, arrangement: Arrangement, roles: Roles) -> _Coupling | None:
+        """The coupling of an arrangement of two sets; None where the ratio does not depend on one of them."""
+        rows = []
+        for k, planets in enumerate(arrangement.planet_sets):
+            value = train_value(arrangement.name, planets)
+            # ω_one/ω_other past the carrier is n/d: d (ω_one − ω_c) = n (ω_other − ω_c).
+            rows.append(mesh_row(value.one, value.other, value.carrier, (f"d{k}", f"n{k}"), 1))
+        form = ratio_form(rows, *roles)
+        if not (form.over and form.under) or not any(len(term) == 2 for term in (*form.over, *form.under)):
+            return None
+        coupling = cls(_bilinear(form.over), _bilinear(form.under))
+        return coupling if coupling.hangs_on_second and coupling.swapped().hangs_on_second else None
+
+    @property
+    def hangs_on_second(self) -> bool:
+        """Whether the ratio (a + b x₁ + (c + d x₁) x₂)/(e + f x₁ + (g + h x₁) x₂) changes with x₂.
+
+        It does not where (a + b x₁)(g + h x₁) = (c + d x₁)(e + f x₁) for all x₁: a factor in which x₂ stands cancels.
+        """
+        (a, b, c, d), (e, f, g, h) = self.over, self.under
+        return (a * g, a * h + b * g, b * h) != (c * e, c * f + d * e, d * f)
+
+    def quotient(self, one: tuple[Real, Real], other: tuple[Real, Real]) -> tuple[Real, Real]:
+        """Numerator and denominator of the ratio for train values n/d of both sets."""
+        products = (one[1] * other[1], one[0] * other[1], one[1] * other[0], one[0] * other[0])
+        over, under = (sum(c * p for c, p in zip(side, products, strict=True)) for side in (self.over, self.under))
+        return np.asarray(over, np.float64), np.asarray(under, np.float64)
+
+    def partner(self, one: tuple[Real, Real], target: float) -> Real:
+        """The x₂ that would give the target with each x₁."""
+        a, b, c, d = (o - target * u for o, u in zip(self.over, self.under, strict=True))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.nan_to_num(-(a * one[1] + b * one[0]) / (c * one[1] + d * one[0]))
+
+    def swapped(self) -> _Coupling:
+        """The same coupling with the sets in the other order."""
+
+        def turned(side: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+            return side[0], side[2], side[1], side[3]
+
+        return _Coupling(turned(self.over), turned(self.under))
+
+
+def _bilinear(polynomial: Polynomial) -> tuple[int, int, int, int]:
+    terms = [("d0", "d1"), ("d1", "n0"), ("d0", "n1"), ("n0", "n1")]
+    if not polynomial.keys() <= set(terms):
+        raise ValueError(f"expected one train value from each set in every term, got {sorted(polynomial)}")
+    first, second, third, fourth = (polynomial.get(term, 0) for term in terms)
+    return first, second, third, fourth
+
+
+class _TwoSets:
+    """The search over pairs of rows of two coupled sets."""
+
+    def __init__(
+        self, name: str, tables: Sequence[SetTable], roles: Roles, coupling: _Coupling, target: Fraction
+    ) -> None:
+        self._name, self._tables, self._roles = name, tables, roles
+        self._coupling, self._target = coupling, target
+        self._sides = [table.train_values for table in tables]
+
+    def found(self, count: int) -> Nearest:
+        """The best trains and the best of each size."""
+        found = Nearest()
+        pairs, errors = self._near_pairs(count)
+        if not len(errors):
+            return found
+        limit = np.partition(errors, min(count, len(errors)) - 1)[min(count, len(errors)) - 1]
+        kept = pairs[:, errors <= limit + CLOSE]
+        one, other = (side.part(at) for side, at in zip(self._sides, kept, strict=True))
+        ratios, exact, which = _exact_errors(*self._coupling.quotient(one, other), self._target)
+        ranked = sorted(
+            (exact[w], *self._least(a, b), a, b, w)
+            for a, b, w in zip(kept[0].tolist(), kept[1].tolist(), which.tolist(), strict=True)
+        )
+        # Each pair of values gives at least one train, and none better than the pair's own least size and teeth.
+        found.best = sorted(
+            candidate
+            for error, _, _, a, b, w in ranked[:count]
+            for candidate in self._members(a, b, error, ratios[w], count)
+        )[:count]
+        found.ties = sum(
+            len(self._sides[0].members(a)) * len(self._sides[1].members(b))
+            for error, _, _, a, b, _ in ranked
+            if error == ranked[0][0]
+        )
+        for size in np.unique(np.concatenate([table.size for table in self._tables])).tolist():
+            best = [c for swap in (False, True) if (c := self._best_of_size(size, swap)) is not None]
+            if best:
+                found.by_size[size] = min(best)
+        return found
+
+    def _near_pairs(self, count: int) -> tuple[Whole, Real]:
+        """Pairs of distinct train values among which the ``count`` best are, and their errors."""
+        one, other = self._sides
+        firsts, values = one.starts, other.value[other.starts]
+        at = np.searchsorted(values, self._coupling.partner(one.part(firsts), float(self._target)))
+        # One more on each side, for a neighbour that rounding put on the wrong side.
+        width = count + 1
+        steps = range(-width, width) if 2 * width <= len(values) else range(len(values))
+        chosen = np.concatenate([(at + step) % len(values) for step in steps])
+        pairs = np.stack([np.tile(firsts, len(steps)), other.starts[chosen]])
+        errors = _errors(*self._coupling.quotient(one.part(pairs[0]), other.part(pairs[1])), self._target)
+        kept = np.isfinite(errors)
+        return pairs[:, kept], errors[kept]
+
+    def _least(self, a: int, b: int) -> tuple[int, int]:
+        """Size and teeth of the smallest train with a pair of train values."""
+        rows = [side.members(at) for side, at in zip(self._sides, (a, b), strict=True)]
+        size = max(int(table.size[row[0]]) for table, row in zip(self._tables, rows, strict=True))
+        total = 0
+        for table, row in zip(self._tables, rows, strict=True):
+            total += int(table.total[row[table.size[row] <= size]].min())
+        return size, total
+
+    def _members(self, a: int, b: int, error: Fraction, ratio: Fraction, count: int) -> list[Candidate]:
+        """The smallest trains with a pair of train values."""
+        rows = [side.members(at).tolist() for side, at in zip(self._sides, (a, b), strict=True)]
+        made = [self._candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
+        return sorted(made)[:count]
+
+    def _candidate(self, one: int, other: int, error: Fraction, ratio: Fraction) -> Candidate:
+        first, second = self._tables
+        return Candidate(
+            error,
+            int(max(first.size[one], second.size[other])),
+            int(first.total[one] + second.total[other]),
+            self._name,
+            self._roles,
+            (*first.row(one), *second.row(other)),
+            ratio,
+        )
+
+    def _best_of_size(self, size: int, swap: bool) -> Candidate | None:
+        """The train of least error of which one set has this size and the other no more."""
+        first, second = reversed(self._sides) if swap else self._sides
+        coupling = self._coupling.swapped() if swap else self._coupling
+        large, small = np.flatnonzero(first.size == size), np.flatnonzero(second.size <= size)
+        if not len(large) or not len(small):
+            return None
+        values, count = second.value[small], len(small)
+        at = np.searchsorted(values, coupling.partner(first.part(large), float(self._target)))
+        # Both neighbours, and one more on each side for rounding; of equal values the first has the fewest teeth.
+        near = [np.searchsorted(values, values[(at + step) % count]) for step in (-2, -1, 0, 1)]
+        pairs = np.stack([np.tile(large, len(near)), small[np.concatenate(near)]])
+        over, under = coupling.quotient(first.part(pairs[0]), second.part(pairs[1]))
+        errors = _errors(over, under, self._target)
+        if not np.isfinite(errors).any():
+            return None
+        kept = np.flatnonzero(errors <= errors.min() + CLOSE)
+        ratios, exact, which = _exact_errors(over[kept], under[kept], self._target)
+        best: Candidate | None = None
+        for k, w in zip(kept.tolist(), which.tolist(), strict=True):
+            rows = [int(first.rows[pairs[0, k]]), int(second.rows[pairs[1, k]])]
+            one, other = rows[::-1] if swap else rows
+            made = self._candidate(one, other, exact[w], ratios[w])
+            best = made if best is None or made < best else best
+        return best

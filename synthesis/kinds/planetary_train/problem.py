@@ -1,0 +1,219 @@
+"""Planetary trains: the tooth numbers of an epicyclic arrangement for a speed ratio."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from synthesis.kinds.gear_train.problem import ExactRatio, Pitch
+from synthesis.model.ratio_target import parse_target
+from synthesis.model.statement import (
+    Contradiction,
+    Count,
+    PositiveNumber,
+    StatedProblem,
+    Statement,
+)
+
+Teeth = Annotated[Count, Field(ge=4, le=1000)]
+
+MOST_COMBINATIONS = 2 * 10**8
+"""Combinations of independent tooth numbers in one planet set at most: what a search of minutes covers."""
+
+IRRATIONAL = 512
+"""Bits to which an irrational ratio is taken. Two ratios of planetary trains differ by more than 2^-100, so that this
+ranks them as the number itself would."""
+
+TOUCH = 1e-9
+"""Room between gears, in modules, that is rounding: less is a touch, and a demanded room short of it by less is met."""
+
+
+class ToothRange(Statement):
+    """Fewest and most teeth of one gear; equal to fix it."""
+
+    min: Teeth
+    max: Teeth
+
+
+class PlanetaryTeeth(Statement):
+    """Tooth numbers to choose from."""
+
+    min: Teeth = Field(default=17, description="Fewest teeth of any gear.")
+    max: Teeth = Field(default=100, description="Most teeth of a gear with external teeth.")
+    ring_max: Teeth = Field(default=200, description="Most teeth of a ring.")
+    gears: dict[str, ToothRange] = Field(
+        default={}, description="Other limits for single gears by name, e.g. sun, planet, ring; see the arrangement."
+    )
+
+    def limits(self, gear: str, internal: bool) -> tuple[int, int]:
+        """Fewest and most teeth of a gear."""
+        own = self.gears.get(gear)
+        if own is not None:
+            return own.min, own.max
+        return self.min, self.ring_max if internal else self.max
+
+
+class PlanetaryProblem(StatedProblem):
+    """Planetary train: the best tooth numbers of an epicyclic arrangement for a speed ratio, proven to be the best.
+
+    Every design is coaxial, can be assembled with its planets in their places, has room between all gears, and teeth
+    without interference. Members that are not stated are tried in every part.
+    """
+
+    model_config = ConfigDict(
+        title="Planetary train",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "planetary_train",
+                    "ratio": 5.5,
+                    "arrangement": "simple",
+                    "planets": 3,
+                    "input": "sun",
+                    "output": "carrier",
+                    "fixed": "ring",
+                    "teeth": {"min": 17, "max": 60, "ring_max": 130},
+                    "module": 1.5,
+                    "max_designs": 5,
+                }
+            ]
+        },
+    )
+
+    kind: Literal["planetary_train"]
+    ratio: ExactRatio = Field(
+        description="Input speed over output speed, negative for opposite directions: a number or an exact expression "
+        'such as "127/50", "pi", "-sqrt(2)".'
+    )
+    arrangement: Literal[
+        "auto",
+        "simple",
+        "double_planet",
+        "stepped",
+        "stepped_suns",
+        "stepped_rings",
+        "wolfrom",
+        "ravigneaux",
+        "two_stage",
+        "simpson",
+        "bevel_differential",
+    ] = Field(default="auto", description="Which gears there are and which mesh; auto compares all of them.")
+    planets: Annotated[Count, Field(ge=1, le=12)] = Field(
+        default=3, description="Planets of each kind around the axis."
+    )
+    spacing: Literal["equal", "nearest"] = Field(
+        default="equal",
+        description="equal: planets at equal angles. nearest: as near to that as the teeth allow them to be put in.",
+    )
+    input: str | None = Field(
+        default=None, description="The driven-in member, e.g. sun, ring, carrier; null tries all."
+    )
+    output: str | None = Field(default=None, description="The member taken off; null tries all.")
+    fixed: str | None = Field(default=None, description="The member held; null tries all.")
+    teeth: PlanetaryTeeth = PlanetaryTeeth()
+    module: Pitch = Field(default=1.0, description="Module of all gears, in the length unit.")
+    pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
+    tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
+        default=None, description="Largest relative error of the ratio; null takes the best there is."
+    )
+    max_size: PositiveNumber | None = Field(
+        default=None, description="Largest pitch diameter around the axis, planets included, in the length unit."
+    )
+    min_clearance: Annotated[float, Field(strict=True, ge=0.0, le=1e9)] = Field(
+        default=0.0, description="Least room between the tips of gears that do not mesh, in the length unit."
+    )
+    min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(
+        default=1.2, description="Least contact ratio of a mesh."
+    )
+    mesh_efficiency: Annotated[float, Field(strict=True, gt=0.5, le=1.0)] = Field(
+        default=0.99, description="Efficiency of one mesh on fixed axes, for the efficiency of the train."
+    )
+    rank_by: Literal["error", "size"] = Field(
+        default="error",
+        description="error: least error, then least size. size: of each size within the tolerance the least error.",
+    )
+
+    @property
+    def target(self) -> Fraction:
+        """The demanded ratio; an irrational one to :data:`IRRATIONAL` bits."""
+        sign, target = parse_target(self.ratio)
+        low, high = target.enclosure(IRRATIONAL)
+        return sign * (target.rational or (low + high) / 2)
+
+    @property
+    def arrangements(self) -> list[Arrangement]:
+        """The arrangements to compare: those that have the stated members."""
+        if self.arrangement != "auto":
+            return [ARRANGEMENTS[self.arrangement]]
+        stated = {member for member in (self.input, self.output, self.fixed) if member is not None}
+        return [row for row in ARRANGEMENTS.values() if stated <= set(row.members)]
+
+    @property
+    def least_room(self) -> float:
+        """Least room between gears that do not mesh, in modules."""
+        return max(self.min_clearance / self.module - TOUCH, TOUCH)
+
+    def roles(self, arrangement: Arrangement) -> list[tuple[str, str, str]]:
+        """Every choice of input, output and fixed member that the statement leaves."""
+        stated = self.input, self.output, self.fixed
+        members = arrangement.members
+        return [
+            (one, two, three)
+            for one in members
+            for two in members
+            for three in members
+            if len({one, two, three}) == 3
+            and all(want in (None, got) for want, got in zip(stated, (one, two, three), strict=True))
+        ]
+
+    def contradictions(self) -> list[Contradiction]:
+        """Unknown members and gears, one member in two parts, limits the wrong way round."""
+        return [*self._members(), *self._limits(), *self._extent()]
+
+    def _members(self) -> list[Contradiction]:
+        found = []
+        parts = {"input": self.input, "output": self.output, "fixed": self.fixed}
+        rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
+        known = sorted({member for row in rows for member in row.members})
+        for k, (part, member) in enumerate(parts.items()):
+            if member is not None and member not in known:
+                found.append(Contradiction(f"/{part}", f"expected one of {', '.join(known)}, got {member!r}"))
+            elif member is not None and member in list(parts.values())[:k]:
+                found.append(Contradiction(f"/{part}", f"{member} already has another part"))
+        if not found and not self.arrangements:
+            found.append(Contradiction("/input", "no arrangement has all the stated members"))
+        return found
+
+    def _limits(self) -> list[Contradiction]:
+        found = []
+        teeth = self.teeth
+        if teeth.min > teeth.max:
+            found.append(Contradiction("/teeth/max", "must not be below min"))
+        rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
+        known = sorted({gear for row in rows for gear in row.gear_names})
+        for gear, own in teeth.gears.items():
+            if gear not in known:
+                found.append(Contradiction(f"/teeth/gears/{gear}", f"expected one of {', '.join(known)}"))
+            elif own.min > own.max:
+                found.append(Contradiction(f"/teeth/gears/{gear}/max", "must not be below min"))
+        if self.rank_by == "size" and self.tolerance is None:
+            found.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
+        return found
+
+    def _extent(self) -> list[Contradiction]:
+        """Refuse a search that would take hours."""
+        for row in self.arrangements:
+            for members in row.planet_sets:
+                count = 1
+                for gear in row.independent_gears(members):
+                    low, high = self.teeth.limits(gear, row.places[gear].internal)
+                    count *= max(0, high - low + 1)
+                if count > MOST_COMBINATIONS:
+                    detail = (
+                        f"{row.name} would have {count:.2g} combinations of teeth, more than {MOST_COMBINATIONS:.0e}"
+                    )
+                    return [Contradiction("/teeth", f"{detail}; narrow the limits, or give limits for single gears")]
+        return []

@@ -1,0 +1,250 @@
+"""The best planetary trains for a ratio, over all arrangements and members that the statement leaves open.
+
+Every planet set's sound tooth numbers are listed once; every choice of members then ranks the trains that they make. As
+nothing is sampled, an answer is the best there is, and an empty one is a proof.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from fractions import Fraction
+
+import numpy as np
+
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from synthesis.kinds.gear_train.design import Ratio
+from synthesis.kinds.planetary_train.design import (
+    ParetoPlanetaryTrain,
+    PlanetaryDesign,
+    PlanetaryMechanism,
+    PlanetaryResult,
+    PlanetPlaces,
+)
+from synthesis.kinds.planetary_train.nearest import (
+    Candidate,
+    Nearest,
+    SetTable,
+    nearest,
+    train_value,
+)
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.kinds.planetary_train.tooth_numbers import (
+    Demands,
+    ToothNumbers,
+    divisions,
+)
+from synthesis.kinds.planetary_train.verification import measure, verify
+from synthesis.model import mesh_limits
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import sifted
+
+
+def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
+    """The best planetary trains for a ratio, each verified.
+
+    Parameters
+    ----------
+    problem : PlanetaryProblem
+        A statement without contradictions.
+    progress : callable
+        Told how many arrangements and choices of members are done.
+
+    Returns
+    -------
+    PlanetaryResult
+        Always complete: every combination of tooth numbers within the limits was covered.
+    """
+    found = _Found(problem)
+    rows = problem.arrangements
+    for k, arrangement in enumerate(rows):
+        progress(k / len(rows), f"{arrangement.name}: tooth numbers")
+        numbers = [
+            ToothNumbers(arrangement, planets, _demands(problem, arrangement)) for planets in arrangement.planet_sets
+        ]
+        coupled = len(numbers) > 1
+        tables = [
+            SetTable(each.teeth, each.size, train_value(arrangement.name, planets).form if coupled else None)
+            for each, planets in zip(numbers, arrangement.planet_sets, strict=True)
+        ]
+        roles = problem.roles(arrangement)
+        for j, members in enumerate(roles):
+            progress((k + j / len(roles)) / len(rows), f"{arrangement.name}: {' to '.join(members[:2])}")
+            found.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
+    progress(1.0, "done")
+    return found.result()
+
+
+def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
+    return Demands(
+        {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
+        problem.planets,
+        problem.spacing == "equal",
+        math.radians(problem.pressure_angle),
+        problem.min_contact_ratio,
+        problem.least_room,
+        math.inf if problem.max_size is None else problem.max_size / problem.module * (1.0 + 1e-12),
+    )
+
+
+class _Found:
+    """What has been found so far over all arrangements and members."""
+
+    def __init__(self, problem: PlanetaryProblem) -> None:
+        self._problem = problem
+        self._best: list[Candidate] = []
+        self._by_size: dict[int, Candidate] = {}
+        self._ties: Counter[Fraction] = Counter()
+        self._combinations = self._sound = self._idle = 0
+        self._rejected: Counter[str] = Counter()
+
+    def take(self, numbers: list[ToothNumbers], nearest: Nearest | None) -> None:
+        """Note the best trains of one choice of members; None where a planet set takes no part in it."""
+        if nearest is None:
+            self._idle += 1
+            return
+        self._count(numbers)
+        if nearest.best:
+            self._ties[nearest.best[0].error] += nearest.ties
+        self._best = sorted([*self._best, *nearest.best])[: self._problem.max_designs]
+        for size, candidate in nearest.by_size.items():
+            known = self._by_size.get(size)
+            if known is None or candidate < known:
+                self._by_size[size] = candidate
+
+    def _count(self, numbers: list[ToothNumbers]) -> None:
+        """Note the combinations of one choice of members: those of its planet sets with each other."""
+        self._combinations += math.prod(each.combinations for each in numbers)
+        self._sound += math.prod(each.count for each in numbers)
+        before, after = 1, math.prod(each.combinations for each in numbers)
+        for each in numbers:
+            after //= max(each.combinations, 1)
+            for reason, fallen in each.rejected.items():
+                self._rejected[reason] += before * fallen * after
+            before *= each.count
+
+    def result(self) -> PlanetaryResult:
+        """The verified answer."""
+        problem = self._problem
+        limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
+        ranked = self._best if problem.rank_by == "error" else [self._by_size[size] for size in sorted(self._by_size)]
+        chosen = [c for c in ranked if limit is None or c.error <= limit][: problem.max_designs]
+        designs = [_design(problem, candidate) for candidate in chosen]
+        rejected = {**self._rejected, "outranked": self._sound - len(designs)}
+        found = sifted(problem, designs, self._combinations, rejected)
+        return PlanetaryResult(
+            designs=found.returned,
+            search=found.search,
+            summary=self._summary(found.passed),
+            ties=self._ties[self._best[0].error] if self._best else 0,
+            pareto=[_pareto(problem, candidate) for candidate in self._front() if _holds(problem, candidate)],
+        )
+
+    def _front(self) -> list[Candidate]:
+        """Trains that no other beats in error and size, smallest first."""
+        front: list[Candidate] = []
+        for size in sorted(self._by_size):
+            if not front or self._by_size[size].error < front[-1].error:
+                front.append(self._by_size[size])
+        return front
+
+    def _summary(self, passed: list[PlanetaryDesign]) -> str:
+        problem = self._problem
+        covered = f"{self._combinations:,} combinations of tooth numbers and members covered"
+        if passed:
+            first = passed[0]
+            ties = self._ties[self._best[0].error]
+            exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
+            alike = f"; {ties:,} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
+            return f"{first.mechanism.arrangement} reaches {problem.ratio} {exact}; {covered}{alike}."
+        if self._idle and not self._combinations:
+            return "With these members a planet set takes no part in the ratio; state a simpler arrangement."
+        if not self._sound:
+            reasons = ", ".join(
+                f"{reason.replace('_', ' ')} {count:,}" for reason, count in self._rejected.most_common()
+            )
+            return f"No train fits within the limits: {covered} ({reasons or 'the limits leave none'})."
+        if not self._best:
+            direction = "the same" if problem.target > 0 else "the opposite"
+            return f"No train turns input and output in {direction} direction with these members; {covered}."
+        near = self._best[0]
+        teeth = ", ".join(f"{gear} {count}" for gear, count in near.teeth)
+        return (
+            f"No train is within the tolerance: {covered}. The nearest ratio is {float(near.ratio):.6g} by "
+            f"{near.arrangement} ({teeth}; {' to '.join(near.roles[:2])}, "
+            f"{near.roles[2]} fixed), an error of {100.0 * float(near.error):.4g} %."
+        )
+
+
+def _ratio(ratio: Fraction) -> Ratio:
+    return Ratio(numerator=ratio.numerator, denominator=ratio.denominator, value=float(ratio))
+
+
+def _design(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryDesign:
+    mechanism = _mechanism(problem, candidate)
+    return PlanetaryDesign(
+        mechanism=mechanism, verification=verify(problem, mechanism), metrics=measure(problem, mechanism)
+    )
+
+
+def _holds(problem: PlanetaryProblem, candidate: Candidate) -> bool:
+    """Whether a train passes its checks, the tolerance apart: a smaller train may be less exact than was asked."""
+    verification = verify(problem.model_copy(update={"tolerance": None}), _mechanism(problem, candidate))
+    return verification.passed
+
+
+def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryTrain:
+    one, two, three = candidate.roles
+    return ParetoPlanetaryTrain(
+        arrangement=candidate.arrangement,
+        input=one,
+        output=two,
+        fixed=three,
+        teeth=dict(candidate.teeth),
+        ratio=_ratio(candidate.ratio),
+        error=float(candidate.ratio / problem.target - 1),
+        size=candidate.size * problem.module,
+    )
+
+
+def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
+    arrangement = ARRANGEMENTS[candidate.arrangement]
+    known = dict(candidate.teeth)
+    teeth = {gear: known[gear] for gear in arrangement.gear_names}
+    one, two, three = candidate.roles
+    return PlanetaryMechanism(
+        arrangement=arrangement.name,
+        teeth=teeth,
+        planets=problem.planets,
+        places=_places(problem, arrangement, teeth),
+        module=problem.module,
+        pressure_angle=problem.pressure_angle,
+        addendum={gear: _addendum(problem, arrangement, teeth, gear) for gear in teeth},
+        input=one,
+        output=two,
+        fixed=three,
+        ratio=_ratio(candidate.ratio),
+    )
+
+
+def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, PlanetPlaces]:
+    """Equal angles, or the places where planets can be put in that are nearest to equal angles."""
+    count = problem.planets
+    found = {}
+    for planets in arrangement.planet_sets:
+        whole = count
+        if problem.spacing == "nearest":
+            whole = int(divisions(arrangement, planets, {gear: np.array([z]) for gear, z in teeth.items()})[0]) or count
+        steps = [(2 * k * whole + count) // (2 * count) for k in range(count)]
+        found.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
+    return found
+
+
+def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:
+    """A module, or what is left of it where a ring's teeth are shortened for the smallest of its planets."""
+    if not arrangement.places[gear].internal:
+        return 1.0
+    mates = [np.array([float(teeth[mate])]) for mate in arrangement.meshing(gear)]
+    ring = np.array([float(teeth[gear])])
+    angle = math.radians(problem.pressure_angle)
+    return min(round(float(mesh_limits.ring_addendum(mate, ring, angle)[0]), 6) for mate in mates)

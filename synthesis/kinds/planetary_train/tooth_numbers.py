@@ -1,0 +1,434 @@
+"""All sound tooth numbers of one planet set, found by trying every combination of its independent gears.
+
+Gears are chosen one after the other. Coaxiality gives a sun or ring a planet meshes with besides its first; every other
+condition (limits, sound teeth, assembly, room) cuts combinations as soon as its gears are chosen, for whole blocks of
+them at a time. Lengths are in half modules, so that a pin's distance from the axis is a whole number: s + p or r − p.
+
+Assembly: the places where a planet set can be put in are the multiples of 1/M of a turn, with M the greatest common
+divisor of ±S ± R for two gears about the axis on one planet gear (or on two that mesh), and of
+(z₂ c₁ − z₁ c₂)/gcd(z₁, z₂) for two gears z₁, z₂ of a stepped planet, c the teeth of their rings or, taken negative,
+of their suns.
+Equal spacing needs n to divide M.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.gear.arrangements import Arrangement
+from synthesis.model import mesh_limits
+
+Whole = NDArray[np.int64]
+Real = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Block = dict[str, Whole]
+"""Teeth by gear, one array each, of combinations that passed so far."""
+
+LARGEST_BLOCK = 1 << 17
+"""Combinations that are tested at once: large enough for the arrays' overhead, small enough for the cache."""
+
+
+class Demands(NamedTuple):
+    """What sound tooth numbers must satisfy.
+
+    ``limits`` are the fewest and most teeth by gear, ``least_room`` is in modules, ``largest`` a pitch diameter in
+    modules.
+    """
+
+    limits: dict[str, tuple[int, int]]
+    planets: int
+    equal_spacing: bool
+    pressure_angle: float
+    least_contact: float
+    least_room: float
+    largest: float
+
+
+class _Rule(NamedTuple):
+    reason: str
+    gears: frozenset[str]
+    test: Callable[[Block], Mask]
+
+
+class ToothNumbers:
+    """The sound tooth numbers of one planet set.
+
+    Attributes
+    ----------
+    teeth : dict
+        Arrays of equal length, by gear.
+    size : ndarray
+        Largest pitch diameter around the axis, in modules.
+    combinations : int
+        How many combinations of the independent gears were covered.
+    rejected : Counter
+        How many of them fell by which condition, the first that they met.
+    """
+
+    def __init__(self, arrangement: Arrangement, planets: tuple[str, ...], demands: Demands) -> None:
+        self._arrangement, self._planets, self._demands = arrangement, planets, demands
+        self._free = list(arrangement.independent_gears(planets))
+        self._counts = [max(0, high - low + 1) for low, high in (demands.limits[gear] for gear in self._free)]
+        self._distance = {planet: arrangement.central_meshes(planet)[0] for planet in planets}
+        self._rules = _rules(self)
+        self.combinations = int(np.prod(self._counts, dtype=object))
+        self.rejected: Counter[str] = Counter()
+        blocks = list(self._grown({}, 0, 1)) if self.combinations else []
+        names = [g.name for g in arrangement.gears if g.body in planets or set(arrangement.meshing(g.name)) & self._own]
+        self.teeth: Block = {
+            gear: np.concatenate([block[gear] for block in blocks]) if blocks else np.zeros(0, np.int64)
+            for gear in names
+        }
+        self.size = self._size(self.teeth)
+
+    @property
+    def count(self) -> int:
+        """How many sound combinations there are."""
+        return len(self.size)
+
+    @property
+    def _own(self) -> set[str]:
+        return {gear.name for gear in self._arrangement.gears if gear.body in self._planets}
+
+    def _grown(self, block: Block, step: int, rows: int) -> Iterator[Block]:
+        """Every combination that goes on from a block, by the next independent gear."""
+        if step == len(self._free):
+            yield block
+            return
+        gear = self._free[step]
+        values = np.arange(self.combinations and self._demands.limits[gear][0], self._demands.limits[gear][1] + 1)
+        at_once = max(1, LARGEST_BLOCK // len(values))
+        before = frozenset(block)
+        for start in range(0, rows, at_once):
+            part = {name: array[start : start + at_once] for name, array in block.items()}
+            count = min(at_once, rows - start)
+            wide = {name: np.repeat(array, len(values)) for name, array in part.items()}
+            wide[gear] = np.tile(values, count)
+            wide = self._cut(self._closed(wide), before, step)
+            left = len(wide[gear])
+            if left:
+                yield from self._grown(wide, step + 1, left)
+
+    def _closed(self, block: Block) -> Block:
+        """The block with the suns and rings whose teeth follow from coaxiality."""
+        for planet, (own, first) in self._distance.items():
+            if own in block and first in block:
+                for gear, mate in self._arrangement.central_meshes(planet)[1:]:
+                    if mate not in block and gear in block:
+                        distance = self.distance(block, planet)
+                        internal = self._arrangement.places[mate].internal
+                        if self._arrangement.bevel:
+                            block[mate] = distance
+                        else:
+                            block[mate] = distance + block[gear] if internal else distance - block[gear]
+        return block
+
+    def _cut(self, block: Block, before: frozenset[str], step: int) -> Block:
+        """Combinations of a block that pass the conditions on its new gears."""
+        ways = int(np.prod(self._counts[step + 1 :], dtype=object))
+        for rule in self._rules:
+            if rule.gears <= block.keys() and not rule.gears <= before:
+                kept = rule.test(block)
+                fallen = int(kept.size - np.count_nonzero(kept))
+                if fallen:
+                    self.rejected[rule.reason] += fallen * ways
+                    block = {name: array[kept] for name, array in block.items()}
+        return block
+
+    def distance(self, block: Block, planet: str) -> Whole:
+        """A pin's distance from the axis, in half modules; the side gear's pitch radius in a bevel differential."""
+        own, first = self._distance[planet]
+        if self._arrangement.bevel:
+            return block[first]
+        return block[first] + (-block[own] if self._arrangement.places[first].internal else block[own])
+
+    def _size(self, block: Block) -> Whole:
+        parts = [array for gear, array in block.items() if self._arrangement.places[gear].internal]
+        for planet in self._planets:
+            for gear in self._arrangement.gears:
+                if gear.body == planet:
+                    reach = self.distance(block, planet)
+                    parts.append(block[gear.name] if self._arrangement.bevel else reach + block[gear.name])
+            if self._arrangement.bevel:
+                parts.append(self.distance(block, planet))
+        return np.asarray(np.max(np.stack(parts), axis=0), np.int64)
+
+
+def divisions(arrangement: Arrangement, planets: tuple[str, ...], block: Block) -> Whole:
+    """M of each combination: a planet set can stand at multiples of 1/M of a turn; 0 where it can stand anywhere."""
+    total = np.zeros(len(next(iter(block.values()))), np.int64)
+    for _, form in _assembly_forms(arrangement, planets):
+        total = np.gcd(total, form(block))
+    return total
+
+
+def _rules(numbers: ToothNumbers) -> list[_Rule]:
+    arrangement, planets, demands = numbers._arrangement, numbers._planets, numbers._demands
+    rules = [*_limit_rules(numbers), *_reach_rules(numbers)]
+    forms = _assembly_forms(arrangement, planets)
+    if demands.equal_spacing:
+        for gears, form in forms:
+            rules.append(_Rule("assembly", gears, _divisible(form, demands.planets)))
+    else:
+        every = frozenset().union(*(gears for gears, _ in forms))
+        rules.append(
+            _Rule("assembly", every, lambda block: _enough(divisions(arrangement, planets, block), demands.planets))
+        )
+    return [*rules, *_mesh_rules(numbers), *_room_rules(numbers)]
+
+
+def _divisible(form: Callable[[Block], Whole], planets: int) -> Callable[[Block], Mask]:
+    return lambda block: np.asarray(form(block) % planets == 0, np.bool_)
+
+
+def _enough(total: Whole, planets: int) -> Mask:
+    return np.asarray((total == 0) | (total >= planets), np.bool_)
+
+
+def _limit_rules(numbers: ToothNumbers) -> list[_Rule]:
+    arrangement, demands = numbers._arrangement, numbers._demands
+    rules = []
+    for planet in numbers._planets:
+        (own, first), *closed = arrangement.central_meshes(planet)
+        for _, mate in closed:
+            low, high = demands.limits[mate]
+            rules.append(_Rule("tooth_limits", frozenset({mate}), _between(mate, low, high)))
+        if arrangement.places[first].internal:
+            gears = frozenset({own, first})
+            rules.append(_Rule("not_coaxial", gears, _larger(first, own)))
+    return rules
+
+
+def _between(gear: str, low: int, high: int) -> Callable[[Block], Mask]:
+    return lambda block: np.asarray((block[gear] >= low) & (block[gear] <= high), np.bool_)
+
+
+def _larger(one: str, other: str) -> Callable[[Block], Mask]:
+    return lambda block: np.asarray(block[one] > block[other], np.bool_)
+
+
+def _reach_rules(numbers: ToothNumbers) -> list[_Rule]:
+    """Size, and planets that mesh must reach each other."""
+    arrangement, largest = numbers._arrangement, numbers._demands.largest
+    rules = []
+    for planet in numbers._planets:
+        for gear in arrangement.gears:
+            if gear.body == planet:
+                gears = frozenset({gear.name, *numbers._distance[planet]})
+                factor = 0 if arrangement.bevel else 1
+
+                def small(block: Block, planet: str = planet, name: str = gear.name, factor: int = factor) -> Mask:
+                    reach = numbers.distance(block, planet)
+                    return np.asarray(np.maximum(factor * reach + block[name], reach) <= largest, np.bool_)
+
+                rules.append(_Rule("too_large", gears, small))
+        for _, mate in arrangement.central_meshes(planet):
+            if arrangement.places[mate].internal:
+                rules.append(_Rule("too_large", frozenset({mate}), _between(mate, 0, int(min(largest, 10**9)))))
+    for one, other in arrangement.meshes:
+        bodies = arrangement.places[one].body, arrangement.places[other].body
+        if set(bodies) <= set(numbers._planets):
+            gears = frozenset({one, other, *numbers._distance[bodies[0]], *numbers._distance[bodies[1]]})
+
+            def reached(block: Block, pair: tuple[str, str] = (one, other), ends: tuple[str, str] = bodies) -> Mask:
+                near, far = (numbers.distance(block, planet) for planet in ends)
+                apart = block[pair[0]] + block[pair[1]]
+                return np.asarray((np.abs(near - far) <= apart) & (apart <= near + far), np.bool_)
+
+            rules.append(_Rule("not_coaxial", gears, reached))
+    return rules
+
+
+def _assembly_forms(
+    arrangement: Arrangement, planets: tuple[str, ...]
+) -> list[tuple[frozenset[str], Callable[[Block], Whole]]]:
+    """Whole numbers that must be divisible by n for n planets at equal angles, with the gears that they need."""
+    phases = _phases(arrangement, planets)
+    found: list[tuple[frozenset[str], Callable[[Block], Whole]]] = []
+    for (sign, gear), *others in phases.values():
+        for other_sign, other in others:
+
+            def along(block: Block, a: int = sign, x: str = gear, b: int = other_sign, y: str = other) -> Whole:
+                return np.asarray(a * block[x] - b * block[y])
+
+            found.append((frozenset({gear, other}), along))
+    for planet in planets:
+        first, *others_on = [gear.name for gear in arrangement.gears if gear.body == planet]
+        for second in others_on:
+            (sign, gear), (other_sign, other) = phases[first][0], phases[second][0]
+
+            def stepped(
+                block: Block,
+                own: tuple[str, str] = (first, second),
+                a: int = sign,
+                x: str = gear,
+                b: int = other_sign,
+                y: str = other,
+            ) -> Whole:
+                one, two = block[own[0]], block[own[1]]
+                return np.asarray((two * a * block[x] - one * b * block[y]) // np.gcd(one, two))
+
+            found.append((frozenset({first, second, gear, other}), stepped))
+    return found
+
+
+def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, list[tuple[int, str]]]:
+    """For each planet gear the signed suns and rings that its phase at an angle is a multiple of.
+
+    A gear without a sun or ring takes over, with the opposite sign, what the planet gear says that it meshes with.
+    """
+    own = [gear.name for gear in arrangement.gears if gear.body in planets]
+    found: dict[str, list[tuple[int, str]]] = {gear: [] for gear in own}
+    for planet in planets:
+        for gear, mate in arrangement.central_meshes(planet):
+            found[gear].append((arrangement.sense(gear, mate), mate))
+    direct = {gear: list(phases) for gear, phases in found.items()}
+    for one, other in arrangement.meshes:
+        if one in found and other in found:
+            for here, there in ((one, other), (other, one)):
+                found[here] += [(-sign, gear) for sign, gear in direct[there]]
+    return found
+
+
+def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:
+    arrangement, angle, least = (
+        numbers._arrangement,
+        numbers._demands.pressure_angle,
+        numbers._demands.least_contact,
+    )
+    own = numbers._own
+    rules = []
+    for one, other in arrangement.meshes:
+        if not {one, other} & own:
+            continue
+        ring = next((gear for gear in (one, other) if arrangement.places[gear].internal), None)
+        gears = frozenset({one, other})
+
+        def pair(block: Block, one: str = one, other: str = other, ring: str | None = ring) -> tuple[bool, Real, Real]:
+            if ring is not None:
+                planet = one if ring == other else other
+                return True, block[planet].astype(np.float64), block[ring].astype(np.float64)
+            first, second = block[one].astype(np.float64), block[other].astype(np.float64)
+            if arrangement.bevel:
+                # Bevel teeth are those of spur gears with the teeth of the back cones (Tredgold; Norton, Sec. 9.7).
+                length = np.hypot(first, second)
+                return False, first * length / second, second * length / first
+            return False, first, second
+
+        def sound(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
+            internal, first, second = pair(block)
+            if internal:
+                return mesh_limits.tips_clear(first, second, angle)
+            return mesh_limits.external_sound(first, second, angle)
+
+        def lasting(block: Block, pair: Callable[[Block], tuple[bool, Real, Real]] = pair) -> Mask:
+            internal, first, second = pair(block)
+            contact = mesh_limits.internal_contact if internal else mesh_limits.external_contact
+            return np.asarray(contact(first, second, angle) >= least, np.bool_)
+
+        rules += [_Rule("interference", gears, sound), _Rule("contact_ratio", gears, lasting)]
+    return rules
+
+
+def _room_rules(numbers: ToothNumbers) -> list[_Rule]:
+    """Room between gears that do not mesh: copies of a planet, different planets, planets and suns or rings."""
+    arrangement, demands = numbers._arrangement, numbers._demands
+    own = [gear for gear in arrangement.gears if gear.body in numbers._planets]
+    need = 2.0 * demands.least_room
+    rules = []
+    for k, gear in enumerate(own):
+        for other in own[k:]:
+            if not set(gear.planes) & set(other.planes):
+                continue
+            if demands.planets > 1 or gear.body != other.body:
+                rules.append(_copies_rule(numbers, gear.name, other.name, need))
+        for central in arrangement.gears:
+            if arrangement.is_planet(central.name) or not set(gear.planes) & set(central.planes):
+                continue
+            if central.name in arrangement.meshing(gear.name):
+                continue
+
+            def beside(
+                block: Block,
+                planet: str = gear.body,
+                name: str = gear.name,
+                mate: str = central.name,
+                internal: bool = central.internal,
+            ) -> Mask:
+                distance = numbers.distance(block, planet)
+                if internal:
+                    room = block[mate] - 2 - (distance + block[name] + 2)
+                else:
+                    room = distance - block[name] - 2 - block[mate] - 2
+                return np.asarray(room >= need, np.bool_)
+
+            gears = frozenset({gear.name, central.name, *numbers._distance[gear.body]})
+            rules.append(_Rule("clearance", gears, beside))
+    return rules
+
+
+def _copies_rule(numbers: ToothNumbers, one: str, other: str, need: float) -> _Rule:
+    arrangement, demands = numbers._arrangement, numbers._demands
+    here, there = arrangement.places[one].body, arrangement.places[other].body
+    count = demands.planets
+    meshing = other in arrangement.meshing(one)
+    needed = {one, other, *numbers._distance[here], *numbers._distance[there]}
+    if not demands.equal_spacing:
+        needed |= set().union(*(gears for gears, _ in _assembly_forms(arrangement, numbers._planets)))
+    linking = _link(arrangement, here, there) if here != there else None
+    if linking is not None:
+        needed |= set(linking)
+
+    def clear(block: Block) -> Mask:
+        near, far = (numbers.distance(block, planet).astype(np.float64) for planet in (here, there))
+        if arrangement.bevel:
+            return _bevel_clear(block[one], near, count, numbers, block, need)
+        ahead = np.zeros(len(near))
+        if linking is not None:
+            apart = (block[linking[0]] + block[linking[1]]).astype(np.float64)
+            ahead = np.arccos(np.clip((near**2 + far**2 - apart**2) / (2.0 * near * far), -1.0, 1.0))
+        tips = block[one] + block[other] + 4.0
+        kept = np.ones(len(near), np.bool_)
+        for turn in _offsets(numbers, block, here != there and not meshing):
+            between = np.sqrt(np.maximum(near**2 + far**2 - 2.0 * near * far * np.cos(ahead - turn), 0.0))
+            kept &= between - tips >= need
+        return kept
+
+    return _Rule("clearance", frozenset(needed), clear)
+
+
+def _link(arrangement: Arrangement, here: str, there: str) -> tuple[str, str]:
+    """The gears by which two planets mesh."""
+    for pair in arrangement.meshes:
+        if {arrangement.places[gear].body for gear in pair} == {here, there}:
+            return pair
+    raise ValueError(f"planets {here} and {there} of one set do not mesh with each other")
+
+
+def _offsets(numbers: ToothNumbers, block: Block, own_copy: bool) -> Iterator[Real]:
+    """Angles from a planet to the copies of another, radians; its own copy's angle 0 only where asked for."""
+    demands = numbers._demands
+    count = demands.planets
+    if own_copy:
+        yield np.zeros(len(next(iter(block.values()))))
+    if demands.equal_spacing:
+        for k in range(1, count):
+            yield np.full(len(next(iter(block.values()))), 2.0 * np.pi * k / count)
+        return
+    total = divisions(numbers._arrangement, numbers._planets, block)
+    total = np.where(total == 0, count, total)
+    for k in range(1, count):
+        for rounded in (k * total // count, -(-k * total // count)):
+            yield 2.0 * np.pi * rounded / total
+
+
+def _bevel_clear(planet: Whole, side: Real, count: int, numbers: ToothNumbers, block: Block, need: float) -> Mask:
+    """Room between bevel planets' large ends, in half modules, as for :func:`kinematics.gear.assembly.gaps`."""
+    narrowest = np.min(np.stack([np.minimum(turn, 2.0 * np.pi - turn) for turn in _offsets(numbers, block, False)]), 0)
+    half = np.where(narrowest < np.pi * (1.0 - 1e-12), side * np.tan(np.minimum(0.5 * narrowest, 1.57)), np.inf)
+    return np.asarray(2.0 * (half - planet - 2.0 * side / np.hypot(side, planet)) >= need, np.bool_)

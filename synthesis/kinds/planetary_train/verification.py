@@ -1,0 +1,201 @@
+"""A finished planetary train measured against its problem, from its tooth numbers alone.
+
+The ratio comes from the speed equations in exact fractions, coaxiality from exact centre distances, assembly from
+trying every tooth of every planet at its place, room from the coordinates of the pins, and the meshes from the geometry
+of their teeth. Nothing that the solver computed is read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+
+from kinematics.errors import DimensionError
+from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
+from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distances
+from kinematics.gear.planetary import speed_ratio, speeds
+from kinematics.gear.power import power_flow
+from kinematics.gear.teeth import Gear, Mesh
+from synthesis.kinds.planetary_train.design import (
+    MeshContact,
+    PlanetaryMechanism,
+    PlanetaryMetrics,
+)
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+from synthesis.model.answer import Check, Verification
+
+
+def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:
+    """Every demand on a planetary train, measured."""
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    coaxial = is_coaxial(arrangement, mechanism.teeth)
+    checks = [_ratio(problem, mechanism, arrangement), _limits(problem, mechanism, arrangement)]
+    checks.append(Check(name="coaxial", passed=coaxial))
+    if coaxial:
+        checks += [_assembly(mechanism, arrangement), _clearance(problem, mechanism, arrangement)]
+        checks += _meshes(problem, mechanism, arrangement)
+        if problem.max_size is not None:
+            size = size_of(mechanism) * mechanism.module
+            checks.append(
+                Check(name="size", passed=size <= problem.max_size * (1.0 + 1e-12), value=size, limit=problem.max_size)
+            )
+    return Verification(passed=all(check.passed for check in checks), checks=checks)
+
+
+def exact_ratio_of(mechanism: PlanetaryMechanism) -> Fraction | None:
+    """The ratio by the speed equations; None where the train is locked or the output does not turn."""
+    train = ARRANGEMENTS[mechanism.arrangement].train(mechanism.teeth)
+    return speed_ratio(train, mechanism.input, mechanism.output, [mechanism.fixed])
+
+
+def size_of(mechanism: PlanetaryMechanism) -> float:
+    """Largest pitch diameter around the axis, planets included, in modules; for coaxial gears."""
+    arrangement, teeth = ARRANGEMENTS[mechanism.arrangement], mechanism.teeth
+    reach = [float(teeth[gear.name]) for gear in arrangement.gears if gear.internal]
+    distances = pin_distances(arrangement, teeth)
+    for gear in arrangement.gears:
+        if gear.body in arrangement.carriers:
+            at = float(distances[gear.body][0])
+            reach.append(max(2.0 * at, teeth[gear.name]) if arrangement.bevel else 2.0 * at + teeth[gear.name])
+    return max(reach)
+
+
+def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> PlanetaryMetrics:
+    """What is worth knowing of a coaxial train besides its checks."""
+    arrangement = ARRANGEMENTS[mechanism.arrangement]
+    train = arrangement.train(mechanism.teeth)
+    turning = speeds(train, {mechanism.fixed: 0, mechanism.input: 1}).values
+    known = {body: speed for body, speed in turning.items() if speed is not None}
+    flow = power_flow(
+        train,
+        known,
+        (mechanism.input, mechanism.output, mechanism.fixed),
+        {mechanism.input: 1},
+        Fraction(repr(problem.mesh_efficiency)),
+    )
+    assert flow is not None
+    ratio = exact_ratio_of(mechanism)
+    assert ratio is not None
+    rooms = _gaps(mechanism, arrangement)
+    return PlanetaryMetrics(
+        error=float(ratio / problem.target - 1),
+        size=size_of(mechanism) * mechanism.module,
+        total_teeth=sum(mechanism.teeth.values()),
+        speeds={body: float(speed) for body, speed in known.items()},
+        efficiency=float(flow.efficiency or 0),
+        self_locking=flow.self_locking,
+        rolling_power=float(flow.largest_rolling_power),
+        branch_power=float(flow.largest_branch_power),
+        circulating_power=flow.circulates,
+        least_room=min(gap.room for gap in rooms) * mechanism.module if rooms else None,
+        meshes=[
+            MeshContact(gears=pair, contact_ratio=mesh.contact_ratio, centre_distance=_apart(arrangement, pair, mesh))
+            for pair, mesh in _toothed(mechanism, arrangement).items()
+        ],
+        undercut=[
+            gear.name
+            for gear in arrangement.gears
+            if not gear.internal and _gear(mechanism, arrangement, gear.name).is_undercut
+        ],
+    )
+
+
+def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    """The stated ratio is that of the teeth, it has the demanded direction, and it is within the tolerance."""
+    found = exact_ratio_of(mechanism)
+    stated = Fraction(mechanism.ratio.numerator, mechanism.ratio.denominator)
+    members = (mechanism.input, mechanism.output, mechanism.fixed)
+    if found is None or members not in problem.roles(arrangement):
+        return Check(name="ratio", passed=False)
+    error = abs(found / problem.target - 1)
+    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
+    passed = found == stated and found * problem.target > 0 and (limit is None or error <= limit)
+    return Check(name="ratio", passed=passed, value=float(error), limit=problem.tolerance)
+
+
+def _limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    within = all(
+        low <= mechanism.teeth[gear.name] <= high
+        for gear in arrangement.gears
+        for low, high in [problem.teeth.limits(gear.name, gear.internal)]
+    )
+    as_asked = mechanism.planets == problem.planets and mechanism.module == problem.module
+    return Check(name="tooth_limits", passed=within and as_asked)
+
+
+def _turns(mechanism: PlanetaryMechanism) -> dict[str, list[Fraction]]:
+    return {
+        planet: [Fraction(step, places.divisions) for step in places.steps]
+        for planet, places in mechanism.places.items()
+    }
+
+
+def _assembly(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    """Every copy of every planet set can be put in at its place; none stands where another does."""
+    turns = _turns(mechanism)
+    passed = True
+    for members in arrangement.planet_sets:
+        places = turns[members[0]]
+        alike = all(turns[planet] == places for planet in members)
+        passed &= alike and len({turn % 1 for turn in places}) == mechanism.planets
+        passed &= all(fits_at(arrangement, mechanism.teeth, members, turn) for turn in places)
+    return Check(name="assembly", passed=passed)
+
+
+def _gaps(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Gap]:
+    return gaps(arrangement, mechanism.teeth, _turns(mechanism))
+
+
+def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    rooms = _gaps(mechanism, arrangement)
+    least = min((gap.room for gap in rooms), default=math.inf)
+    return Check(
+        name="clearance",
+        passed=least >= problem.least_room,
+        value=least * mechanism.module if rooms else None,
+        limit=problem.min_clearance,
+    )
+
+
+def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, mate: str | None = None) -> Gear:
+    """A gear; of bevel gears the spur gear with the teeth of the back cone (Tredgold; Norton, Sec. 9.7)."""
+    teeth: float = mechanism.teeth[name]
+    if arrangement.bevel:
+        other = mechanism.teeth[mate or arrangement.meshing(name)[0]]
+        teeth *= math.hypot(teeth, other) / other
+    return Gear(
+        teeth,
+        mechanism.module,
+        math.radians(mechanism.pressure_angle),
+        mechanism.addendum[name],
+        internal=arrangement.places[name].internal,
+    )
+
+
+def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
+    found = {}
+    for one, other in arrangement.meshes:
+        pinion, gear = (other, one) if arrangement.places[one].internal else (one, other)
+        found[one, other] = Mesh(
+            _gear(mechanism, arrangement, pinion, gear), _gear(mechanism, arrangement, gear, pinion)
+        )
+    return found
+
+
+def _apart(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float:
+    """Distance of the axes of a mesh; bevel axes meet."""
+    return 0.0 if arrangement.bevel else mesh.centre_distance
+
+
+def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Check]:
+    try:
+        meshes: Mapping[tuple[str, str], Mesh] = _toothed(mechanism, arrangement)
+    except DimensionError:
+        return [Check(name="interference", passed=False)]
+    least = min(mesh.contact_ratio for mesh in meshes.values())
+    limit = problem.min_contact_ratio
+    return [
+        Check(name="interference", passed=not any(mesh.interferes for mesh in meshes.values())),
+        Check(name="contact_ratio", passed=least >= limit * (1.0 - 1e-9), value=least, limit=limit),
+    ]

@@ -1,0 +1,245 @@
+"""The crank-rocker of given swing and time ratio with the best transmission angle, in closed form.
+
+While the crank turns by φ = π ± δ, δ = π (T − 1)/(T + 1), from the position in which crank and coupler extend each
+other to that in which they overlap, the rocker turns by ψ the same way round. With a = 1, ρ = b/a, S = sin(ψ/2) and
+η = (φ − ψ)/2 the triangles O2 B1 B2 and O4 B1 B2 give
+
+    c S = √(sin²(φ/2) + ρ² cos²(φ/2)),        d S = √(sin² η + ρ² cos² η),
+
+so that ρ is the one free choice (Alt; Norton, Sec. 3.9). The least transmission angle μ stands where the crank lies
+along the ground line:
+
+    cos μ = (|b² + c² − a² − d²| + 2ad)/2bc = (|cos(φ/2) sin η| (ρ² − 1) + d S)/(ρ c S).
+
+In q = 1/ρ², with κ = cot²(φ/2) and λ = cot² η, its derivative is a quartic with the factors q − κλ and
+
+    q³ + 2κ q² − κ q − κ (1 + κ) λ = 0,
+
+the cubic of Freudenstein and Primrose (1973), which has one positive root. At q = κλ and at q = 1 cos μ is 1, a change
+point; between them both limit positions lie on one circuit, beyond them they do not. Hence
+
+* a design exists just where κλ < 1, that is π/2 + ψ/2 < φ < 3π/2 + ψ/2, and the root is then the only extreme of cos μ
+  between the ends: the optimum;
+* the time ratio is below (3π − ψ)/(π + ψ) for φ < π and below (3π + ψ)/(π − ψ), which is more, for φ > π; every lower
+  one is reached, for every swing below π. No crank-rocker swings by π.
+
+With T = 1 (κ = 0) the root is q = 0: μ grows with ρ towards π/2 − ψ/2 and reaches it for no linkage (Brodell and Soni
+1970 give the member of the family for a chosen μ). Lengths over the crank's grow with ρ, and the link ratio is never
+below 1/S.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+from scipy.optimize import brentq
+
+from synthesis.kinds.quick_return.design import RatioRange
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.model.linkage_answer import (
+    CouplerPoint,
+    FixedPivots,
+    FourbarLinks,
+    FourbarMechanism,
+    Link,
+    Skeleton,
+)
+from synthesis.model.linkages import to_point
+
+LONG = 20.0
+"""Link ratio above which a linkage is given only as far as it is needed to come near to the best transmission angle."""
+
+NEAR = math.radians(0.005)
+"""How near: half of the hundredth of a degree that anyone can see."""
+
+LONGEST = 1e6
+"""Coupler over crank at most; what is longer differs from the bound by less than rounding."""
+
+RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
+"""Link ratios at which designs with shorter links than the best one's are offered too."""
+
+USABLE = math.radians(10.0)
+"""Such designs are left out where they transmit worse than this."""
+
+EDGE = 1e-9
+"""Radians from the end of the range within which all members are change points, to rounding."""
+
+SLACK = 1e-9
+"""Share by which a link ratio stays below its limit, so that rounding does not carry it beyond."""
+
+
+class Family(NamedTuple):
+    """Crank-rockers whose rocker swings by ψ while the crank turns by φ from extension to overlap; radians."""
+
+    phi: float
+    psi: float
+
+    @property
+    def kappa(self) -> float:
+        """κ = cot²(φ/2)."""
+        return math.tan(0.5 * (math.pi - self.phi)) ** 2
+
+    @property
+    def lam(self) -> float:
+        """λ = cot² η."""
+        return math.tan(0.5 * (math.pi - self.phi + self.psi)) ** 2
+
+    @property
+    def exists(self) -> bool:
+        """Whether it has any member that turns through on one circuit."""
+        mean = self.phi - 0.5 * self.psi
+        inside = 0.5 * math.pi + EDGE < mean < 1.5 * math.pi - EDGE
+        return 0.0 < self.psi < math.pi - EDGE and inside
+
+    def lengths(self, rho: float) -> tuple[float, float, float]:
+        """Coupler, rocker and ground in lengths of the crank."""
+        s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
+        c = math.hypot(math.sin(0.5 * self.phi), rho * math.cos(0.5 * self.phi)) / s
+        return rho, c, math.hypot(math.sin(eta), rho * math.cos(eta)) / s
+
+    def cosine(self, rho: float) -> float:
+        """Cosine of the least transmission angle; 1 at a change point."""
+        _, c, d = self.lengths(rho)
+        s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
+        bend = abs(math.cos(0.5 * self.phi) * math.sin(eta)) * (rho - 1.0) * (rho + 1.0)
+        return (bend / s + d) / (rho * c)
+
+    def transmission(self, rho: float) -> float:
+        """The least transmission angle, radians."""
+        return math.acos(min(self.cosine(rho), 1.0))
+
+    def link_ratio(self, rho: float) -> float:
+        """Longest link over the crank, which is the shortest."""
+        return max(self.lengths(rho))
+
+    def longest(self, limit: float) -> float:
+        """The ρ at which the link ratio is the limit; below 1 where every member exceeds it."""
+        s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
+        found = [limit]
+        for angle in (0.5 * self.phi, eta):
+            room = (limit * s - math.sin(angle)) * (limit * s + math.sin(angle))
+            # A length that does not depend on ρ bounds it nowhere, or everywhere.
+            found.append(math.sqrt(max(room, 0.0)) / max(abs(math.cos(angle)), 1e-300))
+        return min(found)
+
+    def best(self) -> float:
+        """The ρ of the best transmission angle; infinite for a time ratio of 1."""
+        kappa, lam = self.kappa, self.lam
+        if kappa == 0.0:
+            return math.inf
+
+        def cubic(q: float) -> float:
+            return ((q + 2.0 * kappa) * q - kappa) * q - kappa * (1.0 + kappa) * lam
+
+        return 1.0 / math.sqrt(brentq(cubic, kappa * lam, 1.0, xtol=1e-300, rtol=1e-15))
+
+    @property
+    def supremum(self) -> float:
+        """The best transmission angle, or the bound that none reaches; radians."""
+        best = self.best()
+        return self.transmission(best) if math.isfinite(best) else 0.5 * (math.pi - self.psi)
+
+    def near_best(self, demanded: float) -> float:
+        """The ρ of the best, or of the shortest links that come near to it where its own are very long.
+
+        Near enough to have the ``demanded`` transmission angle (radians), where the best is above it.
+        """
+        best = min(self.best(), LONGEST)
+        if self.link_ratio(best) <= LONG:
+            return best
+        wanted = self.supremum - NEAR
+        if wanted < demanded < self.supremum:
+            wanted = min(demanded, self.transmission(best))
+        return float(brentq(lambda rho: self.transmission(rho) - wanted, 1.0, best, xtol=1e-12, rtol=1e-12))
+
+
+def families(time_ratio: float, swing: float) -> list[Family]:
+    """The families with a time ratio and a swing (radians) that have members, φ > π first."""
+    delta = math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
+    found = [Family(math.pi + delta, swing), Family(math.pi - delta, swing)]
+    # With a ratio of 1 the second is the first one's mirror image.
+    return [family for family in found[: 1 if delta == 0.0 else 2] if family.exists]
+
+
+def reachable(problem: QuickReturnProblem) -> RatioRange:
+    """The time ratios of crank-rockers with the stated swing."""
+    swing = problem.swing_angle or 0.0
+    greatest = (540.0 + swing) / (180.0 - swing) if swing < 180.0 else 1.0
+    reaches = bool(families(problem.time_ratio, math.radians(swing)))
+    if swing >= 180.0:
+        reason = "a crank-rocker swings by less than 180°"
+    else:
+        reason = f"from {greatest:.6g} on the limit positions of a swing of {swing:g}° lie on two circuits"
+    return RatioRange(
+        type="fourbar", least=1.0, least_included=swing < 180.0, greatest=greatest, reaches=reaches, reason=reason
+    )
+
+
+def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
+    """The best of each family within the limit of the link ratio, and some with shorter links."""
+    assert problem.swing_angle is not None
+    limit = problem.link_ratio_limit
+    demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
+    found = []
+    for family in families(problem.time_ratio, math.radians(problem.swing_angle)):
+        best = family.near_best(demanded)
+        chosen = [best if limit is None else min(best, family.longest(limit * (1.0 - SLACK)))]
+        if chosen[0] <= 1.0:
+            continue  # every member has a larger link ratio
+        for ratio in RATIOS:
+            rho = family.longest(ratio)
+            if 1.0 < rho < chosen[-1] and family.transmission(rho) >= USABLE:
+                chosen.append(rho)
+        found += [_mechanism(problem, family, rho) for rho in chosen]
+    return found
+
+
+def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> FourbarMechanism:
+    """The member of a family, at the beginning of its slow stroke."""
+    b, c, d = family.lengths(rho)
+    turn = complex(math.cos(family.psi), math.sin(family.psi))
+    overlap = complex(math.cos(family.phi), math.sin(family.phi))
+    # Crank along +x in the position of extension; B goes from 1 + ρ to −(ρ − 1) e^{iφ}.
+    b1, b2 = complex(rho + 1.0), (1.0 - rho) * overlap
+    o4 = (b2 - b1 * turn) / (1.0 - turn)
+    extended = family.phi >= math.pi
+    at_b, at_a = (b1, 1.0 + 0j) if extended else (b2, overlap)
+    scale = problem.scaled(1.0, max(b, c, d), c)
+    angle = math.radians(problem.ground_angle)
+    place = scale * complex(math.cos(angle), math.sin(angle)) * o4.conjugate() / abs(o4)
+    ground = scale * d * complex(math.cos(angle), math.sin(angle))
+    pole = problem.pole
+    o2 = problem.o2 if pole is None else pole - ground
+    joints = {
+        "O2": o2,
+        "O4": o2 + ground if pole is None else pole,
+        "A": o2 + place * at_a,
+        "B": o2 + place * at_b,
+    }
+    body: dict[str, complex] = {}
+    standing = None
+    if problem.positions is not None:
+        # The rocker turns counter-clockwise from extension to overlap.
+        standing = problem.positions[0 if extended == (problem.rotation > 0.0) else 1]
+        body = {"C": standing.point}
+    diagonal, coupler = o4 - at_a, at_b - at_a
+    return FourbarMechanism(
+        fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(joints["O4"])),
+        links=FourbarLinks(ground=scale * d, input=scale, coupler=scale * b, output=scale * c),
+        coupler_point=CouplerPoint(distance=0.0, angle=0.0),
+        assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
+        reference_input_angle=math.degrees(cmath.phase(place * at_a)),
+        reference_body_angle=None if standing is None else standing.angle,
+        skeleton=Skeleton(
+            joints={name: to_point(z) for name, z in (joints | body).items()},
+            links=[
+                Link(name="ground", joints=["O2", "O4"]),
+                Link(name="input", joints=["O2", "A"]),
+                Link(name="coupler", joints=["A", "B"]),
+                Link(name="output", joints=["O4", "B", *body]),
+            ],
+            input_link="input",
+        ),
+    )

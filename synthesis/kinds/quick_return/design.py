@@ -1,0 +1,121 @@
+"""Answers to problems of quick return."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field
+
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Result,
+    Verification,
+    blank,
+)
+from synthesis.model.linkage_answer import (
+    FixedPivots,
+    FourbarMechanism,
+    Line,
+    Skeleton,
+    SliderCrankMechanism,
+)
+
+
+class QuickReturnLinks(Answer):
+    """Link lengths; ``rocker`` is the distance from O4 to C."""
+
+    ground: float
+    crank: float
+    rocker: float
+    coupler: float
+
+
+class QuickReturnMechanism(Answer):
+    """Crank-shaper or Whitworth: the crank pin A slides in a link about O4, whose end C drives the ram D.
+
+    ``open``: the ram is the farther along the slide's direction of the two places that the coupler reaches.
+    """
+
+    type: Literal["crank_shaper", "whitworth"]
+    fixed_pivots: FixedPivots
+    links: QuickReturnLinks
+    slide: Line = Field(description="The ram's line on the ground.")
+    assembly: Literal["open", "crossed"]
+    reference_input_angle: float = Field(description="Crank angle at the first target, absolute, degrees.")
+    skeleton: Skeleton
+
+
+class DragLinkMechanism(Answer):
+    """A drag-link sixbar: two cranks O2–A and O4–B with a coupler, and a dyad from B to a rocker or a slider.
+
+    ``links`` are lengths by name; the skeleton says all.
+    """
+
+    type: Literal["drag_link_rocker", "drag_link_slider"]
+    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, for a rocker, O6.")
+    links: dict[str, float] = Field(
+        description="ground, input, coupler and driven_crank of the drag link; link_5, from B to the output; "
+        "output, O6 to C, and output_ground, O4 to O6, of a rocker."
+    )
+    skeleton: Skeleton
+
+
+QuickReturnMechanisms = Annotated[
+    FourbarMechanism | SliderCrankMechanism | QuickReturnMechanism | DragLinkMechanism, Discriminator("type")
+]
+"""Any mechanism of quick return; the field ``type`` tells which."""
+
+
+class LimitPosition(Answer):
+    """A limit position of the output, as measured on the driven mechanism; the slow stroke goes from 0 to 1."""
+
+    index: int
+    input_angle: float = Field(description="Absolute crank angle, degrees; the crank turns counter-clockwise.")
+    output: float = Field(description="Angle of the output link, degrees, or position along the slide from its point.")
+
+
+class QuickReturnMetrics(Answer):
+    """Measured properties of a quick-return mechanism."""
+
+    time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
+    slow_rotation: float = Field(description="Crank rotation of the slow stroke, degrees.")
+    fast_rotation: float = Field(description="Crank rotation of the fast stroke, degrees.")
+    swing: float | None = Field(default=None, exclude_if=blank, description="Degrees; of an output that swings.")
+    stroke: float | None = Field(default=None, exclude_if=blank, description="Length; of an output that slides.")
+    grashof: str | None = Field(description="Of the fourbar that the crank drives; null for others.")
+    barker: str | None = Field(description="Its Barker code, e.g. GCRR.")
+    min_transmission_angle: float = Field(description="Over a full turn of the crank, degrees.")
+    transmission_angles: dict[str, float] = Field(
+        description="The least at each dyad of links over the turn, by the name of its first link, degrees."
+    )
+    full_rotation: bool
+    link_ratio: float = Field(description="Longest link over shortest.")
+    size: float = Field(description="Diagonal of the box around all joints over the turn.")
+    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
+
+
+class QuickReturnDesign(Answer):
+    """A quick-return mechanism with the proof of what it does."""
+
+    mechanism: QuickReturnMechanisms
+    targets: list[LimitPosition]
+    verification: Verification
+    metrics: QuickReturnMetrics
+
+
+class RatioRange(Answer):
+    """Time ratios that a type can reach with the stated output, both ends excluded unless said."""
+
+    type: str
+    least: float
+    least_included: bool = Field(description="Whether the least ratio itself can be reached.")
+    greatest: float | None = Field(description="Never reached itself; null: there is none.")
+    reaches: bool = Field(description="Whether the demanded ratio is among them.")
+    reason: str = Field(description="What limits the type.")
+
+
+class QuickReturnResult(Result[QuickReturnDesign]):
+    """Quick-return mechanisms, and what each type can reach."""
+
+    reachable: list[RatioRange]

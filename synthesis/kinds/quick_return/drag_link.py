@@ -1,0 +1,301 @@
+"""Drag-link sixbars: a drag link drives a second crank unevenly, and this a rocker or a slider with equal strokes.
+
+The second crank O4–B turns by half a turn in each stroke, from ψ0 on, and the input by α = 2π/(T + 1) in the fast one
+(Norton, Example 3-10). With the ground d = 1 as the shortest link a drag link's least transmission angle is
+
+    cos μ = (|b² + c² − a² − 1| + 2a)/2bc,
+
+least for given a and c at b² = a² + 1 − c²; for c between 1 and √((a² + 1)/2) it then falls with c, while the time
+ratio that the best ψ0 gives rises. So c follows from T for each a, and a is searched for along one line. For ratios
+below about 2.2 the transmission angle grows with a without end; a limit of the link ratio ends it.
+
+The dyad: a slider whose slide passes through O4 along ψ0, of stroke 2c; or the rocker of a central crank-rocker of
+swing ψ, with c/sin(ψ/2) as its length and its transmission angle below π/2 − ψ/2.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from scipy.optimize import brentq, minimize_scalar
+
+from synthesis.kinds.quick_return.design import DragLinkMechanism, RatioRange
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.model.linkage_answer import (
+    Link,
+    Skeleton,
+    Slide,
+)
+from synthesis.model.linkages import to_point
+
+RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
+"""Longest over shortest link of the drag links that are looked for."""
+
+LEAST = 1.0 + 1e-4
+"""Shortest crank looked at, in grounds; with a crank like the ground every position is near a change point."""
+
+STARTS = 90
+"""Directions ψ0 that are looked at first."""
+
+GOLDEN, SECTIONS = 0.6180339887498949, 40
+"""Share that a golden section keeps, and the number of sections: 4e-9 of the first interval is left."""
+
+LENGTHS = 25
+"""Lengths of the input that are looked at first."""
+
+BEYOND = 1e-8
+"""Share by which the drag link's greatest time ratio is above the demanded one, so that a ψ0 has that exactly."""
+
+SLIDER_DYAD = math.radians(75.0)
+"""Transmission angle of the slider's dyad, where no greater one is demanded."""
+
+ROCKER_DYAD = 3.0
+"""Link 5 over the second crank of a rocker's dyad, where no transmission angle demands a longer one."""
+
+
+class DragLink(NamedTuple):
+    """A drag link in lengths of its ground, and the direction of the second crank at the beginning of the slow stroke
+    with the angle of the input there, both from the line O2 → O4."""
+
+    input: float
+    coupler: float
+    output: float
+    start: float
+    input_angle: float
+
+    @property
+    def transmission(self) -> float:
+        """The least transmission angle, radians."""
+        a, b, c = self.input, self.coupler, self.output
+        return math.acos(min((abs(b * b + c * c - a * a - 1.0) + 2.0 * a) / (2.0 * b * c), 1.0))
+
+
+def slider_reachable(problem: QuickReturnProblem) -> RatioRange:
+    """Time ratios of drag-link sixbars with a slider: all."""
+    reason = "a drag link near its change point is as uneven as one likes"
+    return RatioRange(
+        type="drag_link_slider", least=1.0, least_included=True, greatest=None, reaches=True, reason=reason
+    )
+
+
+def rocker_reachable(problem: QuickReturnProblem) -> RatioRange:
+    """Time ratios of drag-link sixbars with a rocker: all, for a swing below half a turn."""
+    swings = problem.swing is not None and problem.swing < 180.0
+    return RatioRange(
+        type="drag_link_rocker",
+        least=1.0,
+        least_included=swings,
+        greatest=None if swings else 1.0,
+        reaches=swings,
+        reason="a drag link near its change point is as uneven as one likes"
+        if swings
+        else "its rocker is that of a crank-rocker, which swings by less than 180°",
+    )
+
+
+def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
+    """Drag-link sixbars with a slider, one for each limit of the drag link's lengths."""
+    assert problem.stroke is not None
+    demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
+    found = []
+    for drag in _drag_links(problem):
+        scale = 0.5 * problem.stroke / drag.output
+        link = drag.output / math.cos(max(SLIDER_DYAD, demanded)) * (1.0 + 1e-12)
+        turn = cmath.exp(1j * (math.radians(problem.ground_angle) - drag.start))
+        end = cmath.exp(1j * drag.start) * (drag.output + link)
+        found.append(_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
+    return found
+
+
+def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
+    """Drag-link sixbars with a rocker, one for each limit of the drag link's lengths."""
+    assert problem.swing is not None
+    demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
+    half = math.radians(0.5 * problem.swing)
+    sine, rho = math.sin(half), ROCKER_DYAD
+    # cos² μ = sin²(ψ/2) + cos²(ψ/2)/ρ²
+    room = (math.cos(demanded) - sine) * (math.cos(demanded) + sine)
+    if room > 0.0:
+        rho = max(rho, math.cos(half) / math.sqrt(room) * (1.0 + 1e-9))
+    found = []
+    for drag in _drag_links(problem):
+        c = drag.output
+        along = cmath.exp(1j * drag.start)
+        o6 = 1.0 + along * c * complex(rho, math.sqrt((1.0 / sine - 1.0) * (1.0 / sine + 1.0)))
+        c_pin = 1.0 + along * c * (rho + 1.0)
+        lengths = [1.0, drag.input, drag.coupler, c, rho * c, c / sine, abs(o6 - 1.0)]
+        scale = problem.scaled(min(lengths), max(lengths), c / sine)
+        turn = cmath.exp(1j * math.radians(problem.ground_angle))
+        found.append(_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
+    return found
+
+
+def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
+    limit = problem.constraints.max_link_ratio
+    ratios = [ratio for ratio in RATIOS if limit is None or ratio < limit] + ([] if limit is None else [limit])
+    found: list[DragLink] = []
+    for ratio in sorted(ratios, reverse=True):
+        best = drag_link(problem.time_ratio, ratio)
+        if best is not None and all(abs(best.input - other.input) > 1e-3 for other in found):
+            found.append(best)
+    return found
+
+
+def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
+    """The drag link of the best transmission angle whose second crank turns half a turn with a time ratio.
+
+    Parameters
+    ----------
+    time_ratio : float
+        At least 1.
+    link_ratio : float
+        Longest link over the ground at most, above 1.
+
+    Returns
+    -------
+    DragLink or None
+        None where no member of the family within the limit has the time ratio.
+    """
+    if link_ratio <= LEAST:
+        return None
+    lengths = np.exp(np.linspace(math.log(LEAST), math.log(link_ratio), LENGTHS))
+    cosines = [_cosine(a, time_ratio) for a in lengths]
+    k = int(np.argmin(cosines))
+    if cosines[k] > 1.0:
+        return None
+    a = float(lengths[k])
+    low, high = float(lengths[max(k - 1, 0)]), float(lengths[min(k + 1, LENGTHS - 1)])
+    closer = minimize_scalar(_cosine, bounds=(low, high), args=(time_ratio,), method="bounded", options={"xatol": 1e-9})
+    if closer.fun < cosines[k]:
+        a = float(closer.x)
+    c = _output(a, time_ratio)
+    assert c is not None
+    start = _start(a, c, time_ratio)
+    if start is None:
+        return None
+    return DragLink(a, math.sqrt((a - c) * (a + c) + 1.0), c, start, _input_angle(a, c, start))
+
+
+def _cosine(a: float, time_ratio: float) -> float:
+    """cos μ of the best drag link with an input of length a; 2 where none has the time ratio."""
+    c = _output(a, time_ratio)
+    return 2.0 if c is None else a / (c * math.sqrt((a - c) * (a + c) + 1.0))
+
+
+def _output(a: float, time_ratio: float) -> float | None:
+    """The longest second crank with which an input of length a has the time ratio."""
+    wanted = time_ratio * (1.0 + BEYOND)
+    high = math.sqrt(0.5 * (a * a + 1.0))
+    low = 1.0 + (high - 1.0) * 1e-6
+    if _greatest_ratio(a, high) >= wanted:
+        return high
+    if not _greatest_ratio(a, low) > wanted:
+        return None
+    return float(brentq(lambda c: _greatest_ratio(a, c) - wanted, low, high, xtol=1e-13, rtol=1e-13))
+
+
+@njit(cache=True, nogil=True)
+def _input_angle(a: float, c: float, direction: float) -> float:
+    """Input angle at a direction of the second crank, from the line O2 → O4."""
+    x, y = 1.0 + c * math.cos(direction), c * math.sin(direction)
+    f = math.hypot(x, y)
+    along = (f * f + a * a - (a - c) * (a + c) - 1.0) / (2.0 * f)
+    return math.atan2(y, x) + math.acos(min(max(along / a, -1.0), 1.0))
+
+
+@njit(cache=True, nogil=True)
+def _slow(a: float, c: float, start: float) -> float:
+    """Input rotation while the second crank turns half a turn from a direction on."""
+    return (_input_angle(a, c, start + math.pi) - _input_angle(a, c, start)) % (2.0 * math.pi)
+
+
+@njit(cache=True, nogil=True)
+def _slowest(a: float, c: float) -> float:
+    """The direction from which half a turn of the second crank takes most of the input's turn: golden section."""
+    step = 2.0 * math.pi / STARTS
+    best, most = 0.0, -1.0
+    for k in range(STARTS):
+        found = _slow(a, c, k * step)
+        if found > most:
+            best, most = k * step, found
+    low, high = best - step, best + step
+    one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_one, at_other = _slow(a, c, one), _slow(a, c, other)
+    for _ in range(SECTIONS):
+        if at_one > at_other:
+            high, other, at_other = other, one, at_one
+            one = high - GOLDEN * (high - low)
+            at_one = _slow(a, c, one)
+        else:
+            low, one, at_one = one, other, at_other
+            other = low + GOLDEN * (high - low)
+            at_other = _slow(a, c, other)
+    return 0.5 * (low + high)
+
+
+@njit(cache=True, nogil=True)
+def _greatest_ratio(a: float, c: float) -> float:
+    slow = _slow(a, c, _slowest(a, c))
+    return slow / (2.0 * math.pi - slow)
+
+
+def _start(a: float, c: float, time_ratio: float) -> float | None:
+    """The direction of the second crank at the beginning of a slow stroke with the time ratio."""
+    wanted = 2.0 * math.pi * time_ratio / (time_ratio + 1.0)
+
+    def off(at: float) -> float:
+        return _slow(a, c, at) - wanted
+
+    best = _slowest(a, c)
+    if off(best) < 0.0:
+        return None
+    # Half a turn further on the strokes have changed places.
+    return float(brentq(off, best, best + math.pi, xtol=1e-15, rtol=1e-15))
+
+
+def _mechanism(
+    problem: QuickReturnProblem,
+    drag: DragLink,
+    scale: float,
+    turn: complex,
+    link: float,
+    c_pin: complex,
+    o6: complex | None,
+) -> DragLinkMechanism:
+    """The sixbar at the beginning of its slow stroke; places in grounds, from O2 with the ground along +x."""
+    o2 = problem.o2
+    local = {
+        "O2": 0j,
+        "O4": 1.0 + 0j,
+        "A": drag.input * cmath.exp(1j * drag.input_angle),
+        "B": 1.0 + drag.output * cmath.exp(1j * drag.start),
+        "C": c_pin,
+    }
+    links = [("input", ["O2", "A"]), ("coupler", ["A", "B"]), ("driven_crank", ["O4", "B"]), ("link_5", ["B", "C"])]
+    lengths = {"ground": 1.0, "input": drag.input, "coupler": drag.coupler, "driven_crank": drag.output, "link_5": link}
+    fixed = ["O2", "O4"]
+    if o6 is not None:
+        local["O6"] = o6
+        links.append(("output", ["O6", "C"]))
+        lengths |= {"output": abs(c_pin - o6), "output_ground": abs(o6 - 1.0)}
+        fixed.append("O6")
+    joints = {name: to_point(o2 + scale * turn * z) for name, z in local.items()}
+    slide = math.degrees(cmath.phase(turn) + drag.start)
+    return DragLinkMechanism(
+        type="drag_link_slider" if o6 is None else "drag_link_rocker",
+        fixed_pivots={name: joints[name] for name in fixed},
+        links={name: scale * length for name, length in lengths.items()},
+        skeleton=Skeleton(
+            joints=joints,
+            links=[
+                Link(name="ground", joints=fixed),
+                *(Link(name=name, joints=listed) for name, listed in links),
+            ],
+            slides=[Slide(joint="C", link="ground", point=joints["O4"], angle=slide)] if o6 is None else [],
+            input_link="input",
+        ),
+    )

@@ -1,0 +1,109 @@
+"""The offset slider-crank of given stroke and time ratio with the best transmission angle, in closed form.
+
+The crank turns by φ = π + δ, δ = π (T − 1)/(T + 1), from the position in which crank and coupler extend each other to
+that in which they overlap; B is seen there from O2 in directions that differ by δ. With b = 1, x = a/b,
+n = sin²(δ/2) and W = n + (1 − n) x² the triangle O2 B1 B2 gives the stroke and the offset
+
+    H = 2 √W,        e = (1 − x²) √(n (1 − n))/√W,
+
+and cos μ = x + e for the least transmission angle μ, which stands where the crank is square to the slide. Its
+derivative by x is a cubic in W with the factor (1 − n) W − n, which belongs to x = tan²(δ/2), and
+
+    W² − n W − n = 0,        W = (n + √(n² + 4n))/2.
+
+At x = tan²(δ/2) and at x = 1 cos μ is 1; below the first both limit positions do not lie on one side of the foot of O2
+on the slide. Hence a design exists just where tan(δ/2) < 1, which is T < 3. With T = 1 (n = 0) the best has no crank:
+μ grows to π/2 with the coupler's length.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from scipy.optimize import brentq
+
+from synthesis.kinds.quick_return.design import RatioRange
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.model.linkage_answer import Link, SliderCrankMechanism
+from synthesis.model.linkages import slider_crank_mechanism
+
+LONG = 20.0
+"""Coupler over crank above which a design is given only where the demanded transmission angle needs it."""
+
+RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
+"""Coupler over crank of designs that are offered beside the best."""
+
+USABLE = math.radians(10.0)
+"""Such designs are left out where they transmit worse than this."""
+
+EDGE = 1e-9
+"""Radians from the end of the range within which all members are change points, to rounding."""
+
+SLACK = 1e-9
+"""Share by which a link ratio stays below its limit, so that rounding does not carry it beyond."""
+
+
+def reachable(problem: QuickReturnProblem) -> RatioRange:
+    """Time ratios of offset slider-cranks."""
+    return RatioRange(
+        type="offset_slider_crank",
+        least=1.0,
+        least_included=True,
+        greatest=3.0,
+        reaches=_delta(problem) < 0.5 * math.pi - EDGE,
+        reason="from 3 on the coupler would have to pass square to the slide",
+    )
+
+
+def offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
+    """The best within the limit of the link ratio, and some with shorter couplers."""
+    assert problem.stroke is not None
+    n = math.sin(0.5 * _delta(problem)) ** 2
+    best = best_ratio(n)
+    chosen = [max(best, 1.0 / LONG)]
+    demanded = math.cos(math.radians(problem.constraints.min_transmission_angle or 0.0))
+    if cosine(best, n) < demanded < cosine(chosen[0], n):
+        chosen = [float(brentq(lambda x: cosine(x, n) - demanded, best, chosen[0], xtol=1e-300, rtol=1e-15))]
+    limit = problem.constraints.max_link_ratio
+    if limit is not None:
+        chosen = [max(chosen[0], (1.0 + SLACK) / limit)]
+    if chosen[0] >= 1.0:
+        return []
+    for ratio in RATIOS:
+        if 1.0 / ratio > chosen[-1] and math.acos(min(cosine(1.0 / ratio, n), 1.0)) >= USABLE:
+            chosen.append(1.0 / ratio)
+    return [_mechanism(problem, x, n) for x in chosen]
+
+
+def best_ratio(n: float) -> float:
+    """Crank over coupler of the best transmission angle; 0 for equal strokes."""
+    w = 0.5 * (n + math.sqrt(n * (n + 4.0)))
+    return math.sqrt((w - n) / (1.0 - n))
+
+
+def cosine(x: float, n: float) -> float:
+    """Cosine of the least transmission angle."""
+    w = n + (1.0 - n) * x * x
+    return x + ((1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w) if w > 0.0 else 0.0)
+
+
+def _delta(problem: QuickReturnProblem) -> float:
+    return math.pi * (problem.time_ratio - 1.0) / (problem.time_ratio + 1.0)
+
+
+def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMechanism:
+    """The member with x = a/b in the position of extension, where its slow stroke begins."""
+    assert problem.stroke is not None
+    w = n + (1.0 - n) * x * x
+    b = 0.5 * problem.stroke / math.sqrt(w)
+    a = x * b
+    e = b * (1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w)
+    along = cmath.exp(1j * math.radians(problem.ground_angle))
+    o2 = problem.o2
+    far = complex(math.sqrt((a + b - e) * (a + b + e)), e) * along
+    pin_a = o2 + a * far / abs(far)
+    made = slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.ground_angle), pin_a)
+    joints = {name: z for name, z in made.skeleton.joints.items() if name != "P"}
+    links = [Link(name=link.name, joints=[j for j in link.joints if j != "P"]) for link in made.skeleton.links]
+    return made.model_copy(update={"skeleton": made.skeleton.model_copy(update={"joints": joints, "links": links})})

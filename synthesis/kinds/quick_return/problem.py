@@ -1,0 +1,218 @@
+"""Quick return: a mechanism whose output goes slowly one way and fast the other, the crank at constant speed."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.statement import (
+    ABSURD,
+    Contradiction,
+    Number,
+    Point,
+    PositiveNumber,
+    Sizable,
+    Statement,
+)
+
+QuickReturnType = Literal[
+    "fourbar", "drag_link_rocker", "drag_link_slider", "crank_shaper", "whitworth", "offset_slider_crank"
+]
+
+ROCKERS: tuple[QuickReturnType, ...] = ("fourbar", "drag_link_rocker")
+"""Types whose output swings."""
+
+SLIDERS: tuple[QuickReturnType, ...] = ("offset_slider_crank", "crank_shaper", "whitworth", "drag_link_slider")
+"""Types whose output slides."""
+
+
+LEAST_ROTATION = 1e-4
+"""Degrees that a body must turn at least: for less the rotopole is a million times as far away as the body goes."""
+
+SAME_POLE = 1e-6
+"""Share of the body's distance from it by which a stated rotopole may miss the computed one: printed digits."""
+
+
+class RockerPosition(Statement):
+    """Where a body on the rocker is at a limit: a point of it, and the angle of its line."""
+
+    x: Number
+    y: Number
+    angle: Number = Field(description="Angle of the body's line, degrees.")
+
+    @property
+    def point(self) -> complex:
+        """The point as a complex number, in length units."""
+        return complex(self.x, self.y)
+
+
+class QuickReturnProblem(LinkageProblem):
+    """Quick return: an output that swings or slides to and fro once in a turn of the crank, with a given time ratio.
+
+    The time ratio is that of the slow stroke to the fast one. For each type the design with the greatest least
+    transmission angle is given, and others with shorter links that transmit less well; the time ratio is measured on
+    the finished mechanism. Where no design exists the answer says which ratios can be reached.
+
+    Instead of a swing two positions of a body can be stated, which the rocker carries from one to the other about their
+    rotopole, with its limits there (Norton, Example 3-2).
+    """
+
+    model_config = ConfigDict(
+        title="Quick return",
+        json_schema_extra={
+            "examples": [
+                {"kind": "quick_return", "time_ratio": 1.25, "swing": 45.0, "mechanism": "fourbar"},
+                {"kind": "quick_return", "time_ratio": 1.4, "stroke": 100.0, "mechanism": "auto"},
+                {
+                    "kind": "quick_return",
+                    "time_ratio": 1.0,
+                    "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 60.0, "y": 20.0, "angle": 50.0}],
+                    "constraints": {"max_link_ratio": 5.0},
+                },
+            ]
+        },
+    )
+
+    kind: Literal["quick_return"]
+    time_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD, allow_inf_nan=False)] = Field(
+        description="Time of the slow stroke over time of the fast one."
+    )
+    swing: Annotated[float, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
+        default=None, description="Angle between the output's limit positions, degrees; for an output that swings."
+    )
+    stroke: PositiveNumber | None = Field(
+        default=None, description="Distance of the output's limit positions; for an output that slides."
+    )
+    positions: tuple[RockerPosition, RockerPosition] | None = Field(
+        default=None,
+        description="Of a body on the rocker of a crank-rocker, at its limits; they give the swing, and their rotopole "
+        "is the rocker's fixed pivot.",
+    )
+    rotopole: Point | None = Field(
+        default=None,
+        description="Where the rocker's fixed pivot shall be; that of the positions, where they are stated.",
+    )
+    mechanism: Literal[QuickReturnType, "auto"] = Field(
+        default="auto", description="`auto` compares all types that have such an output and can reach the ratio."
+    )
+    rocker_length: PositiveNumber | None = Field(
+        default=None,
+        description="Distance from the output's fixed pivot to its pin, for an output that swings; left out it is 1, "
+        "or what puts the links within the limits of `link_length`, or the body's distance from the rotopole.",
+    )
+    crank_pivot: Point | None = Field(
+        default=None, description="Where the crank's fixed pivot O2 shall be; (0, 0) if left out, without a rotopole."
+    )
+    ground_angle: Number = Field(
+        default=0.0, description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees."
+    )
+    rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "transmission_angle"
+
+    @property
+    def types(self) -> tuple[QuickReturnType, ...]:
+        """The types that are asked for."""
+        if self.mechanism != "auto":
+            return (self.mechanism,)
+        if self.positions is not None:
+            return ("fourbar",)
+        return ROCKERS if self.swing is not None else SLIDERS
+
+    @property
+    def o2(self) -> complex:
+        """The crank's fixed pivot, where no rotopole decides."""
+        return complex(*(self.crank_pivot or (0.0, 0.0)))
+
+    @property
+    def rotation(self) -> float:
+        """Of the body from its first position to its second, degrees in [−180, 180]."""
+        assert self.positions is not None
+        first, second = self.positions
+        return math.remainder(second.angle - first.angle, 360.0)
+
+    @property
+    def pole(self) -> complex | None:
+        """The rotopole: the point that both positions of the body have in common, or the stated one."""
+        if self.positions is None:
+            return None if self.rotopole is None else complex(*self.rotopole)
+        first, second = (position.point for position in self.positions)
+        turn = math.radians(self.rotation)
+        # Half the way, and from there square to it by cot(β/2) times as much.
+        return 0.5 * (first + second) + 0.5j * (second - first) / math.tan(0.5 * turn)
+
+    @property
+    def swing_angle(self) -> float | None:
+        """The swing, stated or that of the positions; degrees."""
+        return self.swing if self.positions is None else abs(self.rotation)
+
+    @property
+    def link_ratio_limit(self) -> float | None:
+        """Longest link over shortest at most: as stated, or as limits of length imply where the size is free."""
+        limits = [self.constraints.max_link_ratio] if self.constraints.max_link_ratio is not None else []
+        lengths = self.constraints.link_length
+        if lengths is not None and self.rocker_length is None and lengths.max is not None and lengths.min > 0.0:
+            limits.append(lengths.max / lengths.min)
+        return min(limits, default=None)
+
+    def scaled(self, shortest: float, longest: float, rocker: float) -> float:
+        """The scale of a linkage that swings, by its shortest and longest link and its rocker."""
+        lengths = self.constraints.link_length
+        if self.rocker_length is not None:
+            return self.rocker_length / rocker
+        pole = self.pole
+        if self.positions is not None and pole is not None and abs(self.positions[0].point - pole) > 0.0:
+            return abs(self.positions[0].point - pole) / rocker
+        if lengths is not None and lengths.max is not None:
+            return lengths.max / longest
+        return lengths.min / shortest if lengths is not None and lengths.min > 0.0 else 1.0 / rocker
+
+    def contradictions(self) -> list[Contradiction]:
+        """An output that is not the type's, and demands that exclude one another."""
+        if self.positions is not None:
+            return [*self._of_positions(), *self.constraints.contradictions()]
+        found = []
+        if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDERS):
+            found.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
+        elif self.rotopole is not None and self.mechanism != "fourbar":
+            found.append(Contradiction("/rotopole", "only a crank-rocker is put at a rotopole: state the type fourbar"))
+        if self.rotopole is not None and self.crank_pivot is not None:
+            found.append(Contradiction("/crank_pivot", "the rotopole says where the linkage is; leave it out"))
+        if self.mechanism == "auto" and (self.swing is None) == (self.stroke is None):
+            which = "neither" if self.swing is None else "both"
+            found.append(Contradiction("/swing", f"state the swing or the stroke of the output; {which} is given"))
+        if self.mechanism in ROCKERS:
+            found += self._one("swing", "stroke", "swings")
+        if self.mechanism in SLIDERS:
+            found += self._one("stroke", "swing", "slides")
+        return [*found, *self.constraints.contradictions()]
+
+    def _of_positions(self) -> list[Contradiction]:
+        """What two positions of a body exclude."""
+        found = []
+        for name in ("swing", "stroke", "crank_pivot"):
+            if getattr(self, name) is not None:
+                found.append(Contradiction(f"/{name}", f"the positions of the body say all; leave the {name} out"))
+        if self.mechanism not in ("fourbar", "auto"):
+            found.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
+        if abs(self.rotation) < LEAST_ROTATION:
+            detail = "the body must turn between its positions; a translation has no rotopole"
+            return [*found, Contradiction("/positions/1/angle", detail)]
+        pole = self.pole
+        assert pole is not None
+        assert self.positions is not None
+        if self.rotopole is not None:
+            reach = max(abs(position.point - pole) for position in self.positions)
+            if abs(complex(*self.rotopole) - pole) > SAME_POLE * max(reach, abs(pole)):
+                detail = f"the positions have theirs at ({pole.real:.9g}, {pole.imag:.9g}); leave it out or correct it"
+                found.append(Contradiction("/rotopole", detail))
+        return found
+
+    def _one(self, wanted: str, other: str, does: str) -> list[Contradiction]:
+        found = []
+        if getattr(self, wanted) is None:
+            found.append(Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}: state its {wanted}"))
+        if getattr(self, other) is not None:
+            found.append(Contradiction(f"/{other}", f"the output of a {self.mechanism} {does}; leave the {other} out"))
+        return found

@@ -1,0 +1,139 @@
+"""Crank-shaper and Whitworth: the crank pin slides in a link about O4, whose end C drives a ram.
+
+Both invert the slider-crank, with the crank shorter or longer than the ground. With δ = π (T − 1)/(T + 1):
+
+* crank-shaper: the link swings by ψ between the tangents from O4 to the crank's circle, sin(ψ/2) = a/d, and the crank
+  turns by π + ψ in the slow stroke: ψ = δ. Its arm O4–C of r = H/(2 sin(ψ/2)) has its ends at one height, so that a ram
+  across the middle of the swing has the stroke H exactly; at the height in the middle of the arc's rise the coupler
+  leans least, by sin⁻¹ of r (1 − cos(ψ/2))/2b.
+* Whitworth: the link turns through. The ram's line passes through O4 square to the ground line; the ram's limits stand
+  where C is on that line, H = 2r, and the crank turns by π + 2 sin⁻¹(d/a) in the slow stroke: d/a = sin(δ/2). The
+  coupler leans most by sin⁻¹(r/b).
+
+A ratio of 1 would need a crank (a distance of the pivots) without length; every greater one is reached.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from kinematics.linkage.planar.catalogue import quick_return
+from synthesis.kinds.quick_return.design import (
+    QuickReturnLinks,
+    QuickReturnMechanism,
+    RatioRange,
+)
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.model.linkage_answer import (
+    FixedPivots,
+    Line,
+    Link,
+    Skeleton,
+    Slide,
+)
+from synthesis.model.linkages import to_point
+
+REACH = 0.9
+"""How far out the crank pin comes on the slotted link, as a share of its arm to C: the block stays clear of the pin."""
+
+SHAPER_COUPLER = 1.0
+"""Coupler of a crank-shaper in strokes, where no transmission angle asks for a longer one."""
+
+WHITWORTH_COUPLER = 4.0
+"""Coupler of a Whitworth in arms, for a transmission angle of 75.5°, where none asks for a longer one."""
+
+SLACK = 1e-9
+"""Share by which a coupler is longer than the demanded transmission angle needs."""
+
+
+def crank_shaper_reachable(problem: QuickReturnProblem) -> RatioRange:
+    """Time ratios of crank-shapers."""
+    return _above_one(problem, "crank_shaper", "equal strokes would need a crank without length")
+
+
+def whitworth_reachable(problem: QuickReturnProblem) -> RatioRange:
+    """Time ratios of Whitworth mechanisms."""
+    return _above_one(problem, "whitworth", "equal strokes would need both fixed pivots in one place")
+
+
+def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
+    """The crank-shaper, at the beginning of its slow stroke."""
+    assert problem.stroke is not None
+    half = 0.5 * _delta(problem)
+    sine = math.sin(half)
+    rocker = 0.5 * problem.stroke / sine
+    ground = REACH * rocker / (1.0 + sine)
+    rise = rocker * 2.0 * math.sin(0.5 * half) ** 2
+    coupler = max(SHAPER_COUPLER * problem.stroke, 0.5 * rise * _stretch(problem))
+    return [_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, rocker - 0.5 * rise, -half)]
+
+
+def whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
+    """The Whitworth mechanism, at the beginning of its slow stroke."""
+    assert problem.stroke is not None
+    half = 0.5 * _delta(problem)
+    rocker = 0.5 * problem.stroke
+    crank = REACH * rocker / (1.0 + math.sin(half))
+    coupler = rocker * max(WHITWORTH_COUPLER, _stretch(problem))
+    return [_mechanism(problem, "whitworth", crank * math.sin(half), crank, rocker, coupler, 0.0, -half)]
+
+
+def _above_one(problem: QuickReturnProblem, name: str, reason: str) -> RatioRange:
+    return RatioRange(
+        type=name, least=1.0, least_included=False, greatest=None, reaches=problem.time_ratio > 1.0, reason=reason
+    )
+
+
+def _delta(problem: QuickReturnProblem) -> float:
+    return math.pi * (problem.time_ratio - 1.0) / (problem.time_ratio + 1.0)
+
+
+def _stretch(problem: QuickReturnProblem) -> float:
+    """Coupler over the height that it bridges, for the demanded transmission angle."""
+    demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
+    return (1.0 + SLACK) / math.cos(demanded)
+
+
+def _mechanism(
+    problem: QuickReturnProblem,
+    kind: str,
+    ground: float,
+    crank: float,
+    rocker: float,
+    coupler: float,
+    height: float,
+    crank_angle: float,
+) -> QuickReturnMechanism:
+    """The mechanism with its ram at a height over O4 along the stated direction, O2 over O4; crank angle from there."""
+    turn = math.radians(problem.ground_angle)
+    o2 = problem.o2
+    up = 1j * cmath.exp(1j * turn)
+    o4 = o2 - ground * up
+    line = o4 + height * up
+    made = quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
+    joints = {name: to_point(complex(z)) for name, z in made.joints.items()}
+    return QuickReturnMechanism.model_validate(
+        {
+            "type": kind,
+            "fixed_pivots": FixedPivots(input=to_point(o2), output=to_point(o4)),
+            "links": QuickReturnLinks(ground=ground, crank=crank, rocker=rocker, coupler=coupler),
+            "slide": Line(point=to_point(line), angle=problem.ground_angle),
+            "assembly": "open",
+            "reference_input_angle": math.degrees(crank_angle) + problem.ground_angle,
+            "skeleton": Skeleton(
+                joints=joints,
+                links=[Link(name=name, joints=list(listed)) for name, listed in made.links.items()],
+                slides=[
+                    Slide(
+                        joint=slide.joint,
+                        link=slide.link,
+                        point=to_point(complex(slide.point)),
+                        angle=math.degrees(float(slide.angle)),
+                    )
+                    for slide in made.slides
+                ],
+                input_link="input",
+            ),
+        }
+    )

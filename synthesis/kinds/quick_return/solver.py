@@ -1,0 +1,168 @@
+"""Quick return: the best mechanism of each type that is asked for, verified, and what each type can reach.
+
+Each type has a function that says which time ratios it reaches, with the reason, and one that makes candidates. What
+is returned has been driven and measured.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from synthesis.kinds.quick_return import (
+    crank_rocker,
+    drag_link,
+    offset_slider,
+    slotted,
+)
+from synthesis.kinds.quick_return.design import (
+    QuickReturnDesign,
+    QuickReturnMechanisms,
+    QuickReturnResult,
+    RatioRange,
+)
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.verification import verify_quick_return
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+
+
+class _Type(NamedTuple):
+    """How one type is made; ``proven``: its first candidate is the best there is, or there is none."""
+
+    reachable: Callable[[QuickReturnProblem], RatioRange]
+    candidates: Callable[[QuickReturnProblem], Sequence[QuickReturnMechanisms]]
+    proven: bool
+
+
+TYPES: dict[str, _Type] = {
+    "fourbar": _Type(crank_rocker.reachable, crank_rocker.crank_rockers, proven=True),
+    "drag_link_rocker": _Type(drag_link.rocker_reachable, drag_link.drag_link_rockers, proven=False),
+    "offset_slider_crank": _Type(offset_slider.reachable, offset_slider.offset_slider_cranks, proven=True),
+    "crank_shaper": _Type(slotted.crank_shaper_reachable, slotted.crank_shapers, proven=False),
+    "whitworth": _Type(slotted.whitworth_reachable, slotted.whitworths, proven=False),
+    "drag_link_slider": _Type(drag_link.slider_reachable, drag_link.drag_link_sliders, proven=False),
+}
+"""Every type by its name."""
+
+_REASONS = {"shortest_link": "link_length", "longest_link": "link_length"}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> QuickReturnResult:
+    """Solve a problem of quick return."""
+    ranges, passed, failed = [], [], []
+    short: list[str] = []
+    rejected: Counter[str] = Counter()
+    candidates = 0
+    names = problem.types
+    for n, name in enumerate(names):
+        progress(n / len(names), f"designing: {name.replace('_', ' ')}")
+        of_type = TYPES[name]
+        reach = of_type.reachable(problem)
+        ranges.append(reach)
+        if not reach.reaches:
+            continue
+        made = of_type.candidates(problem)
+        if not made:
+            short.append(name)
+        for mechanism in made:
+            candidates += 1
+            design = verify_quick_return(problem, mechanism)
+            if design is None:
+                rejected["cannot_be_driven"] += 1
+            elif design.verification.passed:
+                passed.append(design)
+            else:
+                failed.append(design)
+                check = next(check.name for check in design.verification.checks if not check.passed)
+                rejected[_REASONS.get(check, check)] += 1
+    progress(1.0, "verified")
+    shown = _of_each_type(_ranked(passed, problem.rank_by), -(-problem.max_designs // len(names)))
+    if problem.include_failed:
+        shown += _ranked(failed, problem.rank_by)
+    complete = all(not reach.reaches or TYPES[reach.type].proven for reach in ranges) and _as_derived(rejected)
+    return QuickReturnResult(
+        designs=shown[: problem.max_designs],
+        search=Search(
+            method="quick_return",
+            complete=complete,
+            candidates=candidates,
+            accepted=len(passed),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=_summary(problem, ranges, passed, rejected, short, complete=complete),
+        reachable=ranges,
+    )
+
+
+def _as_derived(rejected: Counter[str]) -> bool:
+    """Whether nothing was rejected but for limits of which the best candidate is known to come nearest."""
+    return rejected.keys() <= {"transmission_angle"}
+
+
+_KEYS: dict[str, Callable[[QuickReturnDesign], float]] = {
+    "quality": lambda design: -design.metrics.quality,
+    "accuracy": lambda design: 0.0,  # all are exact
+    "size": lambda design: design.metrics.size,
+    "transmission_angle": lambda design: -round(design.metrics.min_transmission_angle, 6),
+}
+
+
+def _ranked(designs: list[QuickReturnDesign], rank_by: str) -> list[QuickReturnDesign]:
+    """Designs in the order asked for; ties by quality."""
+    return sorted(designs, key=lambda design: (_KEYS[rank_by](design), -design.metrics.quality))
+
+
+def _of_each_type(designs: list[QuickReturnDesign], count: int) -> list[QuickReturnDesign]:
+    """The first designs of each type, so many at most, in their order."""
+    seen: Counter[str] = Counter()
+    chosen = []
+    for design in designs:
+        seen[design.mechanism.type] += 1
+        if seen[design.mechanism.type] <= count:
+            chosen.append(design)
+    return chosen
+
+
+def _summary(
+    problem: QuickReturnProblem,
+    ranges: list[RatioRange],
+    passed: list[QuickReturnDesign],
+    rejected: Counter[str],
+    short: list[str],
+    *,
+    complete: bool,
+) -> str:
+    lines = []
+    for reach in ranges:
+        if not reach.reaches:
+            lines.append(f"{reach.type} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}.")
+    within = "" if problem.link_ratio_limit is None else f" with a link ratio within {problem.link_ratio_limit:g}"
+    lines += [
+        f"There is no {name}{within}." if TYPES[name].proven else f"No {name}{within} was found." for name in short
+    ]
+    if passed:
+        best = max(passed, key=lambda design: design.metrics.min_transmission_angle)
+        lines.insert(
+            0,
+            f"{len(passed)} designs have a measured time ratio of {problem.time_ratio:g}; the best transmission angle "
+            f"is {best.metrics.min_transmission_angle:.3f}°, of a {best.mechanism.type}.",
+        )
+    else:
+        lines.insert(0, "No design exists." if complete else "No design was found.")
+        if rejected:
+            counts = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
+            lines.append(f"Rejected: {counts}.")
+    return " ".join(lines)
+
+
+def _said(reach: RatioRange) -> str:
+    to = "" if reach.greatest is None else f" to below {reach.greatest:.6g}"
+    from_ = f"from {reach.least:g}" if reach.least_included else f"above {reach.least:g}"
+    spread = f"{from_}{to}"
+    if reach.greatest is not None and reach.greatest <= reach.least:
+        spread = "none"
+    return f"reachable with this output: {spread} ({reach.reason})"

@@ -1,0 +1,228 @@
+"""Verification of quick-return mechanisms: the finished mechanism is driven and its limit positions are looked for.
+
+Nothing of the solvers' formulas is used: the output's rate over a turn of the crank comes from the analysis core, its
+roots are the limit positions, and time ratio, swing and stroke follow from these.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar.classification import BarkerClass
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import (
+    GROUND,
+    Mechanism,
+    TopologyError,
+)
+from kinematics.linkage.planar.strokes import Strokes, strokes
+from synthesis.kinds.quick_return.design import (
+    DragLinkMechanism,
+    LimitPosition,
+    QuickReturnDesign,
+    QuickReturnMechanisms,
+    QuickReturnMetrics,
+)
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, RockerPosition
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.outcome.ranking import quality
+from synthesis.proof.checks import at_least, at_most
+from synthesis.proof.turning import turn_of
+
+RATIO_MET = 1e-9
+"""Share by which the measured time ratio may differ from the demanded one; rounding leaves some 1e-14."""
+
+SWING_MET = 1e-9
+"""Degrees by which the measured swing may differ."""
+
+BODY_MET = 1e-9
+"""Share of its distance from the rocker's pivot, and radians, by which a body on the rocker may miss its positions."""
+
+STROKE_MET = 1e-9
+"""Share by which the measured stroke may differ."""
+
+OUTPUTS = {
+    "fourbar": "output",
+    "slider_crank": "B",
+    "crank_shaper": "D",
+    "whitworth": "D",
+    "drag_link_rocker": "output",
+    "drag_link_slider": "C",
+}
+"""The output of each type: a link that swings, or the joint of a slide."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanisms) -> QuickReturnDesign | None:
+    """Drive a mechanism through a turn of its crank and measure it.
+
+    Parameters
+    ----------
+    problem : QuickReturnProblem
+        What was asked.
+    design : a mechanism
+        Dimensions only; the skeleton is looked at where it is the dimensions, as for drag links.
+
+    Returns
+    -------
+    QuickReturnDesign or None
+        None where the dimensions make no mechanism whose output reverses exactly twice while the crank turns through.
+    """
+    told = design.model_dump(exclude=None if isinstance(design, DragLinkMechanism) else {"skeleton"})
+    output = OUTPUTS[design.type]
+    try:
+        mechanism = _GIVEN.validate_python(told).mechanism()
+        # Where a body stands on the rocker, only the skeleton says.
+        carrier = None if problem.positions is None else _GIVEN.validate_python(design.model_dump()).mechanism()
+        here = holding_reference(mechanism, branches(mechanism))
+        measured = strokes(mechanism, output)
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None  # ValidationError: a length beyond what any statement may hold
+    if measured is None or here is None or not here.full:
+        return None
+    turn = turn_of(mechanism)
+    swings = output in mechanism.links
+    travel = math.degrees(measured.travel) if swings else measured.travel
+    lengths = [length for length in _lengths(design) if length > 0.0]
+    ratio = max(lengths) / min(lengths)
+    least = min(turn.transmission.values(), default=0.0)
+    # The task's size: the way of the output's pin, as the chord of its arc or along its slide.
+    task = 2.0 * _rocker(design) * abs(math.sin(0.5 * measured.travel)) if swings else travel
+    barker = _barker(design)
+    metrics = QuickReturnMetrics(
+        time_ratio=measured.time_ratio,
+        slow_rotation=math.degrees(measured.slow),
+        fast_rotation=math.degrees(measured.fast),
+        swing=travel if swings else None,
+        stroke=None if swings else travel,
+        grashof=None if barker is None else barker.motion,
+        barker=None if barker is None else barker.code,
+        min_transmission_angle=math.degrees(least),
+        transmission_angles={link: math.degrees(angle) for link, angle in turn.transmission.items()},
+        full_rotation=turn.turns,
+        link_ratio=ratio,
+        size=turn.size,
+        quality=quality(math.sin(least), max(lengths) / task, ratio),
+    )
+    checks = [
+        *_task_checks(problem, metrics),
+        *_body_checks(problem, design, carrier, measured),
+        *_constraint_checks(problem, mechanism, lengths, metrics),
+    ]
+    return QuickReturnDesign(
+        mechanism=design,
+        targets=_limits(measured, float(mechanism.reference_input), swings=swings),
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _limits(measured: Strokes, reference: float, *, swings: bool) -> list[LimitPosition]:
+    """The limit positions, in the turn whose first one is nearest to the reference; angles of links from (−180°, 180°]
+    on."""
+    inputs = measured.inputs - 2.0 * math.pi * round((measured.inputs[0] - reference) / (2.0 * math.pi))
+    outputs = measured.outputs
+    if swings:
+        outputs = np.degrees(outputs - 2.0 * math.pi * math.ceil(outputs[0] / (2.0 * math.pi) - 0.5))
+    return [LimitPosition(index=k, input_angle=math.degrees(inputs[k]), output=float(outputs[k])) for k in range(2)]
+
+
+def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> list[Check]:
+    off = abs(metrics.time_ratio / problem.time_ratio - 1.0)
+    checks = [
+        Check(name="crank_turns", passed=metrics.full_rotation),
+        Check(name="time_ratio", passed=off <= RATIO_MET, value=off, limit=RATIO_MET),
+    ]
+    if problem.swing_angle is not None:
+        off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing_angle)
+        checks.append(Check(name="swing", passed=off <= SWING_MET, value=off, limit=SWING_MET))
+    if problem.stroke is not None:
+        off = math.inf if metrics.stroke is None else abs(metrics.stroke / problem.stroke - 1.0)
+        checks.append(Check(name="stroke", passed=off <= STROKE_MET, value=off, limit=STROKE_MET))
+    return checks
+
+
+def _body_checks(
+    problem: QuickReturnProblem, design: QuickReturnMechanisms, mechanism: Mechanism | None, measured: Strokes
+) -> list[Check]:
+    """The body on the rocker stands at its two positions when the driven rocker is at its limits.
+
+    The skeleton says where the body is fixed on the rocker; nothing else does.
+    """
+    if problem.positions is None:
+        return []
+    assert isinstance(design, FourbarMechanism)
+    assert mechanism is not None
+    motion = drive(mechanism, measured.inputs, order=0)
+    points = motion.joints["C"][0]
+    turned = motion.angles["output"][0] - mechanism.link_angle("output")
+    angles = (design.reference_body_angle or 0.0) + np.degrees(turned)
+    size = max(abs(position.point - complex(*design.fixed_pivots.output)) for position in problem.positions)
+    size = max(size, design.links.output)
+
+    def missed(k: int, position: RockerPosition) -> float:
+        turn = math.radians(math.remainder(angles[k] - position.angle, 360.0))
+        return max(float(abs(points[k] - position.point)) / size, abs(turn))
+
+    first, second = problem.positions
+    worst = min(max(missed(k, first), missed(1 - k, second)) for k in (0, 1))
+    return [Check(name="reaches_targets", passed=worst <= BODY_MET, value=worst, limit=BODY_MET)]
+
+
+def _constraint_checks(
+    problem: QuickReturnProblem, mechanism: Mechanism, lengths: list[float], metrics: QuickReturnMetrics
+) -> list[Check]:
+    limits, checks = problem.constraints, []
+    if limits.min_transmission_angle is not None:
+        checks.append(at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle))
+    if limits.grashof != "any":
+        wanted = "rocker_rocker" if limits.grashof == "non_grashof" else limits.grashof
+        checks.append(Check(name="grashof", passed=metrics.grashof == wanted))
+    if limits.full_rotation:
+        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
+    if limits.link_length is not None:
+        if limits.link_length.min > 0.0:
+            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min))
+        if limits.link_length.max is not None:
+            checks.append(at_most("longest_link", max(lengths), limits.link_length.max))
+    if limits.max_link_ratio is not None:
+        checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
+    fixed = set(mechanism.links[GROUND])
+    for name, region, joints in (
+        ("fixed_pivot_region", limits.fixed_pivot_region, fixed),
+        ("moving_pivot_region", limits.moving_pivot_region, mechanism.joints.keys() - fixed - {"P"}),
+    ):
+        if region is not None:
+            places = [complex(mechanism.joints[joint]) for joint in joints]
+            checks.append(Check(name=name, passed=all(map(region.contains, places))))
+    return checks
+
+
+def _lengths(design: QuickReturnMechanisms) -> list[float]:
+    links = design.links if isinstance(design.links, dict) else design.links.model_dump()
+    return list(links.values())
+
+
+def _rocker(design: QuickReturnMechanisms) -> float:
+    """Length of the output link of a mechanism whose output swings."""
+    return design.links["output"] if isinstance(design.links, dict) else float(design.links.model_dump()["output"])
+
+
+def _barker(design: QuickReturnMechanisms) -> BarkerClass | None:
+    """Grashof's class and Barker's code of the fourbar that the crank drives."""
+    if isinstance(design, FourbarMechanism):
+        d, a, b, c = _lengths(design)
+    elif isinstance(design, DragLinkMechanism):
+        d, a, b, c = (design.links[name] for name in ("ground", "input", "coupler", "driven_crank"))
+    else:
+        return None
+    return barker_class(Fourbar.from_lengths(a, b, c, d))

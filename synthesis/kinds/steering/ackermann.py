@@ -1,0 +1,110 @@
+"""Ackermann's steering linkage: a symmetrical fourbar with the least greatest steering error.
+
+The arms, of k pivot distances, lean by α from the vehicle's axis, towards each other where the tie rod is behind the
+kingpins, apart where it is ahead. For a given arm the greatest error up to the lock has one least value over α, where
+errors of both signs are equally large; over k it is searched for between the limits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from kinematics.linkage.steering import outer_angle
+from synthesis.kinds.steering.problem import SteeringProblem
+from synthesis.model.linkage_answer import FourbarMechanism, Link
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+
+Real = NDArray[np.float64]
+
+LEANS = np.radians(np.linspace(0.5, 80.0, 160))
+"""Angles of the arms that are looked at first."""
+
+COARSE, FINE = 65, 721
+"""Inner angles at which the error is looked at: for all arms, and for one."""
+
+ARMS = 9
+"""Lengths of the arms that are looked at first."""
+
+ANGLE_FOUND, ARM_FOUND = 1e-10, 1e-7
+"""How nearly the best angle (radians) and length (pivot distances) are found; the error is least there, and flat."""
+
+Side = Literal["behind", "ahead"]
+
+
+def ackermann_linkages(problem: SteeringProblem) -> list[FourbarMechanism]:
+    """The best linkage with the tie rod on each allowed side, and the best ones with the shortest and longest arms."""
+    ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
+    low, high = problem.arms
+    found = []
+    for side in problem.sides:
+        lengths = np.linspace(low, high, ARMS) if high > low else np.array([low])
+        errors = [best_lean(float(k), ratio, lock, side)[1] for k in lengths]
+        n = int(np.argmin(errors))
+        if not math.isfinite(errors[n]):
+            continue
+        best = float(lengths[n])
+        if high > low:
+            ends = float(lengths[max(n - 1, 0)]), float(lengths[min(n + 1, ARMS - 1)])
+            closer = minimize_scalar(
+                lambda k, side=side: best_lean(float(k), ratio, lock, side)[1],
+                bounds=ends,
+                method="bounded",
+                options={"xatol": ARM_FOUND},
+            )
+            best = float(closer.x) if closer.fun < errors[n] else best
+        for k in dict.fromkeys((best, low, high)):
+            lean, error = best_lean(k, ratio, lock, side)
+            if math.isfinite(error):
+                found.append(_mechanism(problem, k, lean, side))
+    return found
+
+
+def best_lean(arm: float, ratio: float, lock: float, side: Side) -> tuple[float, float]:
+    """The angle of the arms with the least greatest error, and that error; radians, infinite where none reaches."""
+    theta = np.linspace(0.0, lock, COARSE)[1:]
+    worst = np.abs(_errors(arm, LEANS[:, None], theta, ratio, side)).max(axis=1)
+    worst = np.where(np.isfinite(worst), worst, np.inf)
+    n = int(np.argmin(worst))
+    if not math.isfinite(worst[n]):
+        return math.nan, math.inf
+    theta = np.linspace(0.0, lock, FINE)[1:]
+
+    def greatest(lean: float) -> float:
+        found = float(np.abs(_errors(arm, np.asarray(lean), theta, ratio, side)).max())
+        return found if math.isfinite(found) else math.pi
+
+    ends = float(LEANS[max(n - 1, 0)]), float(LEANS[min(n + 1, len(LEANS) - 1)])
+    closer = minimize_scalar(greatest, bounds=ends, method="bounded", options={"xatol": ANGLE_FOUND})
+    return float(closer.x), float(closer.fun)
+
+
+def _errors(arm: float, lean: Real, theta: Real, ratio: float, side: Side) -> Real:
+    """Steering errors at inner angles; NaN where the tie rod does not reach."""
+    sense = 1.0 if side == "behind" else -1.0
+    left = arm * sense * (np.sin(lean) - 1j * np.cos(lean))
+    right = -left.conjugate()
+    rod = 1.0 - 2.0 * left.real
+    reach = 1.0 - left * np.exp(1j * theta)
+    f = np.abs(reach)
+    # B on the circles about A and O4, on the side where it stands in the straight position.
+    along = (f * f + rod * rod - arm * arm) / (2.0 * f)
+    with np.errstate(invalid="ignore"):
+        across = -sense * np.sqrt((rod - along) * (rod + along))
+    turned = (reach / f * (along + 1j * across) - reach) / right
+    return np.asarray(np.angle(turned) - outer_angle(theta, ratio))
+
+
+def _mechanism(problem: SteeringProblem, arm: float, lean: float, side: Side) -> FourbarMechanism:
+    """The linkage in the straight position, its kingpins on the x-axis, the vehicle along y."""
+    half, sense = 0.5 * problem.pivot_distance, 1.0 if side == "behind" else -1.0
+    left = arm * problem.pivot_distance * sense * complex(math.sin(lean), -math.cos(lean))
+    a, b = -half + left, half - left.conjugate()
+    made = fourbar_mechanism(FourbarConfiguration(complex(-half), a, b, complex(half), a))
+    joints = {name: place for name, place in made.skeleton.joints.items() if name != "P"}
+    links = [Link(name=link.name, joints=[j for j in link.joints if j != "P"]) for link in made.skeleton.links]
+    return made.model_copy(update={"skeleton": made.skeleton.model_copy(update={"joints": joints, "links": links})})

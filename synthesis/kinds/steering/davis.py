@@ -1,0 +1,70 @@
+"""Davis's steering gear, which steers correctly at every angle: its arms lean by α with 2 tan α = w/L.
+
+The arms spread where the bar is behind the kingpins and close where it is ahead. With the bar at the height h and moved
+by x the outer wheel turns to tan⁻¹(tan α + x/h) − α and the inner one to α − tan⁻¹(tan α − x/h); every lock below a
+right angle is reached.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from kinematics.linkage.steering import davis_arm_angle, outer_angle
+from synthesis.kinds.steering.design import DavisMechanism
+from synthesis.kinds.steering.problem import SteeringProblem
+from synthesis.model.linkage_answer import (
+    Link,
+    Skeleton,
+    Slide,
+)
+from synthesis.model.linkages import to_point
+
+BEYOND = 1.1
+"""Length of the slotted arms over what they need at the lock."""
+
+
+def davis_gears(problem: SteeringProblem) -> list[DavisMechanism]:
+    """The gear with its bar on each allowed side."""
+    return [_mechanism(problem, -1.0 if side == "behind" else 1.0) for side in problem.sides]
+
+
+def _mechanism(problem: SteeringProblem, ahead: float) -> DavisMechanism:
+    """The gear in the straight position, its kingpins on the x-axis, the vehicle along y."""
+    half, ratio = 0.5 * problem.pivot_distance, problem.pivot_distance / problem.wheelbase
+    lean, lock = float(davis_arm_angle(ratio)), math.radians(problem.lock)
+    length = 0.5 * sum(problem.arms) * problem.pivot_distance
+    arm = ahead * length * complex(math.sin(lean), math.cos(lean))
+    # The slots are longest used by the arm that leans most from the square to its bar.
+    leaning = max(lean + float(outer_angle(lock, ratio)), lock - lean)
+    slot = BEYOND * math.cos(lean) / math.cos(leaning) * arm
+    places = {
+        "O2": complex(-half),
+        "O4": complex(half),
+        "A": -half + arm,
+        "B": half - arm.conjugate(),
+        "C": -half + slot,
+        "D": half - slot.conjugate(),
+    }
+    joints = {name: to_point(z) for name, z in places.items()}
+    left, right = (math.degrees(cmath.phase(z)) for z in (arm, -arm.conjugate()))
+    return DavisMechanism(
+        fixed_pivots={name: joints[name] for name in ("O2", "O4")},
+        links={"ground": 2.0 * half, "bar": abs(places["B"] - places["A"])},
+        skeleton=Skeleton(
+            joints=joints,
+            links=[
+                Link(name="ground", joints=["O2", "O4"]),
+                Link(name="bar", joints=["A", "B"]),
+                Link(name="left_arm", joints=["O2", "C"]),
+                Link(name="right_arm", joints=["O4", "D"]),
+            ],
+            slides=[
+                Slide(joint="A", link="ground", point=joints["A"], angle=0.0),
+                Slide(joint="B", link="ground", point=joints["A"], angle=0.0),
+                Slide(joint="A", link="left_arm", point=joints["O2"], angle=left),
+                Slide(joint="B", link="right_arm", point=joints["O4"], angle=right),
+            ],
+            input_link="A",
+        ),
+    )

@@ -1,0 +1,71 @@
+"""Answers to problems of steering."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field
+
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Result,
+    Verification,
+    blank,
+)
+from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
+
+
+class DavisMechanism(Answer):
+    """Davis's steering gear: a bar that slides along the axle, with pins in the slots of both arms."""
+
+    type: Literal["davis"] = "davis"
+    fixed_pivots: dict[str, Point] = Field(description="The kingpins: O2 left, O4 right.")
+    links: dict[str, float] = Field(description="ground between the kingpins, and bar between its pins.")
+    skeleton: Skeleton
+
+
+SteeringMechanisms = Annotated[FourbarMechanism | DavisMechanism, Discriminator("type")]
+"""Any steering mechanism; the field ``type`` tells which."""
+
+
+class SteeringPosition(Answer):
+    """The steering turned to the left, as measured on the driven mechanism; degrees."""
+
+    index: int
+    input_angle: float = Field(description="What drives it: angle of the left arm, degrees, or place of the bar.")
+    inner: float
+    outer: float
+    required: float = Field(description="What the outer wheel should have.")
+    error: float = Field(description="outer − required.")
+
+
+class SteeringMetrics(Answer):
+    """Measured properties of a steering mechanism."""
+
+    steering_error: float = Field(description="Greatest magnitude up to the lock, to both sides, degrees.")
+    correct_at: list[float] = Field(description="Inner angles between which the error changes sign, degrees.")
+    outer_lock: float = Field(description="Angle of the outer wheel at the lock, degrees.")
+    arm_length: float = Field(description="Of a steering arm; of Davis's gear, in the straight position.")
+    arm_angle: float = Field(description="Of the arms from the vehicle's axis in the straight position, degrees.")
+    tie_rod: Literal["behind", "ahead"]
+    turning_radius: float = Field(
+        description="Of the outer front wheel's path at the lock, were its angle the required one."
+    )
+    min_transmission_angle: float = Field(description="Over the whole range, degrees.")
+    link_ratio: float = Field(description="Longest link over shortest.")
+    size: float = Field(description="Diagonal of the box around all joints in the straight position.")
+    bar_travel: float | None = Field(default=None, exclude_if=blank, description="Of Davis's bar, to each side.")
+
+
+class SteeringDesign(Answer):
+    """A steering mechanism with the proof of what it does."""
+
+    mechanism: SteeringMechanisms
+    targets: list[SteeringPosition]
+    verification: Verification
+    metrics: SteeringMetrics
+
+
+class SteeringResult(Result[SteeringDesign]):
+    """Steering mechanisms, the least steering error first."""

@@ -1,0 +1,244 @@
+"""Verification of steering mechanisms: they are driven to both locks, and the wheels' angles are measured.
+
+A fourbar is driven at its left arm in closed form, any other mechanism by its closures. The vehicle turns to the left
+where the arms turn counter-clockwise: the left wheel is then the inner one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+from scipy.interpolate import CubicSpline
+
+from kinematics.errors import DimensionError
+from kinematics.linkage import positions, stays_on_branch, transmission_extremes
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
+from kinematics.linkage.steering import outer_angle
+from synthesis.kinds.steering.design import (
+    SteeringDesign,
+    SteeringMechanisms,
+    SteeringMetrics,
+    SteeringPosition,
+)
+from synthesis.kinds.steering.problem import SteeringProblem
+from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import driven_fourbar
+from synthesis.proof.checks import at_least, at_most
+
+Real = NDArray[np.float64]
+
+SAMPLES = 2001
+"""Inputs from lock to lock, on each side of the straight position half of them."""
+
+SHOWN = 17
+"""Positions that an answer lists, from straight to the lock."""
+
+LOCKED = 1e-9
+"""Radians by which the inner wheel may miss the lock; its input is found by halving."""
+
+HALVINGS = 60
+"""Times that a range is halved to find a lock: 2⁻⁶⁰ of it is less than rounding leaves."""
+
+EXACT = 1e-9
+"""Degrees of steering error that are rounding: what Davis's gear may have."""
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class _Driven(NamedTuple):
+    """Wheel angles over inputs from lock to lock; radians, counter-clockwise from straight."""
+
+    inputs: Real
+    left: Real
+    right: Real
+    transmission: float
+    on_branch: bool
+
+
+def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> SteeringDesign | None:
+    """Drive a steering mechanism from lock to lock and measure it.
+
+    Parameters
+    ----------
+    problem : SteeringProblem
+        What was asked.
+    design : a mechanism
+        In the straight position. Dimensions only; Davis's gear has its skeleton as its dimensions.
+
+    Returns
+    -------
+    SteeringDesign or None
+        None where the dimensions make no mechanism that reaches both locks.
+    """
+    driven = _fourbar(problem, design) if isinstance(design, FourbarMechanism) else _gear(problem, design.model_dump())
+    if driven is None:
+        return None
+    ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
+    to_left = driven.left >= 0.0
+    inner = np.where(to_left, driven.left, -driven.right)
+    outer = np.where(to_left, driven.right, -driven.left)
+    error = np.degrees(outer - outer_angle(inner, ratio))
+    worst = float(np.abs(error).max())
+    joints = {name: complex(*place) for name, place in design.skeleton.joints.items()}
+    arm = joints["A"] - joints["O2"]
+    behind = arm.imag < 0.0
+    required = float(outer_angle(lock, ratio))
+    half = inner[to_left], outer[to_left], error[to_left], driven.inputs[to_left]
+    lengths = [length for length in _lengths(design) if length > 0.0]
+    metrics = SteeringMetrics(
+        steering_error=worst,
+        correct_at=_changes(np.degrees(half[0]), half[2]) if worst > EXACT else [],
+        outer_lock=math.degrees(float(half[1][-1])),
+        arm_length=abs(arm),
+        arm_angle=math.degrees(math.atan2(arm.real if behind else -arm.real, abs(arm.imag))),
+        tie_rod="behind" if behind else "ahead",
+        turning_radius=problem.wheelbase / math.sin(required)
+        + 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance),
+        min_transmission_angle=math.degrees(driven.transmission),
+        link_ratio=max(lengths) / min(lengths),
+        size=math.hypot(*np.ptp(np.array(list(joints.values())).view(np.float64).reshape(-1, 2), axis=0)),
+        bar_travel=None if isinstance(design, FourbarMechanism) else float(np.abs(driven.inputs).max()),
+    )
+    checks = [
+        Check(name="reaches_locks", passed=abs(float(inner.max()) - lock) <= LOCKED),
+        Check(name="same_branch", passed=driven.on_branch),
+    ]
+    if not isinstance(design, FourbarMechanism):
+        checks.append(at_most("steers_correctly", worst, EXACT))
+    if problem.max_steering_error is not None:
+        checks.append(at_most("steering_error", worst, problem.max_steering_error))
+    checks += _constraint_checks(problem, design, lengths, metrics)
+    listed = np.linspace(0, len(half[0]) - 1, SHOWN).round().astype(int)
+    stated = np.degrees(half[3]) if isinstance(design, FourbarMechanism) else half[3]
+    return SteeringDesign(
+        mechanism=design,
+        targets=[
+            SteeringPosition(
+                index=n,
+                input_angle=float(stated[k]),
+                inner=math.degrees(float(half[0][k])),
+                outer=math.degrees(float(half[1][k])),
+                required=math.degrees(float(outer_angle(half[0][k], ratio))),
+                error=float(half[2][k]),
+            )
+            for n, k in enumerate(listed)
+        ],
+        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        metrics=metrics,
+    )
+
+
+def _constraint_checks(
+    problem: SteeringProblem, design: SteeringMechanisms, lengths: list[float], metrics: SteeringMetrics
+) -> list[Check]:
+    limits, checks = problem.constraints, []
+    if limits.min_transmission_angle is not None:
+        checks.append(at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle))
+    if limits.full_rotation or limits.grashof not in ("any", "non_grashof", "double_rocker"):
+        checks.append(Check(name="full_rotation", passed=False))
+    if limits.link_length is not None:
+        if limits.link_length.min > 0.0:
+            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min))
+        if limits.link_length.max is not None:
+            checks.append(at_most("longest_link", max(lengths), limits.link_length.max))
+    if limits.max_link_ratio is not None:
+        checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
+    fixed = {name: complex(*design.skeleton.joints[name]) for name in ("O2", "O4")}
+    moving = {name: complex(*place) for name, place in design.skeleton.joints.items() if name not in fixed}
+    for name, region, places in (
+        ("fixed_pivot_region", limits.fixed_pivot_region, fixed),
+        ("moving_pivot_region", limits.moving_pivot_region, moving),
+    ):
+        if region is not None:
+            checks.append(Check(name=name, passed=all(map(region.contains, places.values()))))
+    return checks
+
+
+def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | None:
+    """The fourbar driven at its left arm, to the lock on one side and until the right wheel locks on the other."""
+    try:
+        linkage, assembly, straight = driven_fourbar(design)
+    except DimensionError:
+        return None
+    lock = math.radians(problem.lock)
+    start = positions(linkage, straight, assembly)
+
+    def right(turned: Real) -> Real:
+        at = positions(linkage, straight + turned, assembly).output_angle
+        return np.asarray(np.angle(np.exp(1j * (at - float(start.output_angle)))))
+
+    low = _where(right, -lock, lock)
+    if low is None:
+        return None
+    half = SAMPLES // 2
+    left = np.concatenate([np.linspace(low, 0.0, half + 1)[:-1], np.linspace(0.0, lock, half + 1)])
+    moved = right(left)
+    if not np.isfinite(moved).all():
+        return None
+    least = float(transmission_extremes(linkage, straight + low, straight + lock)[0])
+    stays = bool(stays_on_branch(linkage, straight + low, straight + lock))
+    return _Driven(straight + left, left, moved, least, stays)
+
+
+def _gear(problem: SteeringProblem, told: dict[str, object]) -> _Driven | None:
+    """Davis's gear driven at its bar, until the inner wheel locks on either side."""
+    try:
+        mechanism: Mechanism = _GIVEN.validate_python(told).mechanism()
+        drive(mechanism, np.zeros(1), order=0)
+    except (ValidationError, MechanismError, DimensionError, TopologyError):
+        return None
+    lock, size = math.radians(problem.lock), problem.pivot_distance
+    # A bar behind the kingpins moves to the right for a turn to the left.
+    sense = -1.0 if float(mechanism.joints["A"].imag) > 0.0 else 1.0
+    straight = float(mechanism.reference_input)
+
+    def arm(name: str, travel: Real) -> Real:
+        turned = drive(mechanism, straight + sense * travel, order=0).angles[name][0] - mechanism.link_angle(name)
+        return np.asarray(np.angle(np.exp(1j * turned)))
+
+    far = size
+    while not float(arm("left_arm", np.array([far]))[0]) > lock:
+        far *= 2.0
+        if far > 1e6 * size:
+            return None
+    low, high = 0.0, far
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if float(arm("left_arm", np.array([middle]))[0]) < lock else (low, middle)
+    travel = np.linspace(-high, high, SAMPLES)
+    motion = drive(mechanism, straight + sense * travel, order=1)
+    left, right = arm("left_arm", travel), arm("right_arm", travel)
+    if not (np.isfinite(left).all() and np.isfinite(right).all()):
+        return None
+    sines = [float(np.abs(sine).min()) for sine in motion.sines.values()]
+    return _Driven(straight + sense * travel, left, right, math.asin(min(*sines, 1.0)), bool(motion.smooth.all()))
+
+
+def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
+    """The left wheel's angle, negative, at which the right one stands at −lock; None where it does not get there."""
+    # The right wheel is the inner one there and turns farther; beyond its lock it may have no position at all.
+    if float(right(np.array([low]))[0]) > -lock:
+        return None
+    high = 0.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        beyond = not float(right(np.array([middle]))[0]) > -lock
+        low, high = (middle, high) if beyond else (low, middle)
+    return high
+
+
+def _lengths(design: SteeringMechanisms) -> list[float]:
+    return list(design.links.values() if isinstance(design.links, dict) else design.links.model_dump().values())
+
+
+def _changes(inner: Real, error: Real) -> list[float]:
+    """Inner angles at which the error changes sign, beyond the straight position: by cubic pieces between samples."""
+    return [float(at) for at in CubicSpline(inner, error).roots(extrapolate=False) if at > inner[1]]

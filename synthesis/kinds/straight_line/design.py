@@ -1,0 +1,94 @@
+"""Answers to problems of straight lines."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field
+
+from synthesis.kinds.straight_line.problem import LineMechanism
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Result,
+    Verification,
+    blank,
+)
+from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
+
+
+class ExactLineMechanism(Answer):
+    """Peaucellier's eightbar, Hart's sixbar or Scott-Russell's slider-crank; the skeleton says all.
+
+    Peaucellier: crank O2–A, arms O4–B and O4–C, rhombus A B P C. Hart: crank O2–A, crossed parallelogram B C E D with
+    O4 on B–C, A on B–D and P on E–C. Scott-Russell: crank O2–A to the middle of the coupler P–B, B on a slide through
+    O2.
+    """
+
+    type: Literal["peaucellier", "hart", "scott_russell"]
+    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, and O4 of an inversor.")
+    links: dict[str, float] = Field(description="Lengths by the names of the skeleton's links.")
+    skeleton: Skeleton
+
+
+LineMechanisms = Annotated[FourbarMechanism | ExactLineMechanism, Discriminator("type")]
+"""Any straight-line mechanism; the field ``type`` tells which."""
+
+
+class LinePoint(Answer):
+    """P at an end of the line, as measured."""
+
+    index: int
+    input_angle: float = Field(description="Absolute input angle, degrees, continuous from the first.")
+    x: float
+    y: float
+    deviation: float = Field(description="Distance from the demanded line, length units.")
+
+
+class StraightLineMetrics(Answer):
+    """Measured properties of a straight-line mechanism."""
+
+    family: LineMechanism
+    proportions: Literal["optimal", "classical", "exact"] = Field(
+        description="Whether the proportions are the best of the family, those of the books, or such that the line is "
+        "exact; free proportions of an exact mechanism are those of best quality."
+    )
+    deviation: float = Field(description="Greatest distance of P from the demanded line, length units.")
+    straightness_error: float = Field(
+        description="Width of the strip along the line's direction that holds P's path, percent of the length."
+    )
+    velocity_variation: float = Field(
+        description="Greatest less least velocity along the line at constant input speed, percent of the mean."
+    )
+    mean_velocity: float = Field(description="Along the line, length units per radian of the input.")
+    middle_velocity: float = Field(description="The same in the middle of the input's range.")
+    input_rotation: float = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
+    moving_links: int
+    grashof: str | None = Field(description="Of a fourbar; null for others.")
+    barker: str | None
+    min_transmission_angle: float = Field(description="Along the line, degrees.")
+    transmission_angles: dict[str, float] = Field(
+        description="The least along the line at each dyad of links, by the name of its first link, degrees."
+    )
+    cycle_transmission_angle: float | None = Field(
+        default=None, exclude_if=blank, description="Over the whole turn of an input that turns through, degrees."
+    )
+    same_branch: bool
+    visits_in_order: bool = Field(description="Whether P runs along the line without turning back.")
+    full_rotation: bool
+    link_ratio: float = Field(description="Longest link over shortest.")
+    size: float = Field(description="Diagonal of the box around all joints while P is on the line.")
+    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
+
+
+class StraightLineDesign(Answer):
+    """A straight-line mechanism with the proof of what it does."""
+
+    mechanism: LineMechanisms
+    targets: list[LinePoint]
+    verification: Verification
+    metrics: StraightLineMetrics
+
+
+class StraightLineResult(Result[StraightLineDesign]):
+    """Straight-line mechanisms, best first in the measure that was asked for."""

@@ -1,0 +1,240 @@
+"""Fourbars with an approximate straight line: the proportions that a type leaves free, and what they give.
+
+Each type is a family of shapes in a frame of its own, O2 at the origin and O4 on the real axis at 1, or with a crank of
+length 1. The motion that counts is the input turning by the given range, counter-clockwise, about a middle that is
+known by symmetry up to an offset:
+
+hoeken     crank 1, ground L1, coupler = output = B P = L3, with A, B, P in line; the middle is θ2 = 180° exactly. B is
+           the centre of a circle through A, O4, P, and A P a diameter of it (Norton, Sec. 3.7, Fig. 3-29)
+chebyshev  crossed, equal rockers, P amid the coupler
+watt       equal rockers on opposite sides, P amid the coupler
+roberts    equal rockers, P below the coupler's middle
+evans      crank 1, P beyond A on the line B A; a rocker in place of Scott-Russell's slide
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage import CROSSED, OPEN, Fourbar, coupler_motion, positions
+from synthesis.kinds.straight_line.problem import LineMechanism
+from synthesis.numerics.narrowing import Values
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SAMPLES = 65
+"""Inputs at which a motion is judged, in Chebyshev's spacing; a band of six ripples is seen to 1 %."""
+
+SPARSER = 4
+"""Velocity and transmission angle, which change slowly, are kept above their limits at every fourth sample."""
+
+FORWARD = 0.02
+"""Least velocity along the line, in units of the mean: P must not turn back."""
+
+OFF_MIDDLE, OFF_CHORD = 0.6, 0.3
+"""Most that the middle of the range may lie off its place by symmetry, and the line off the chord, radians."""
+
+MIDDLES = np.linspace(-0.9 * OFF_MIDDLE, 0.9 * OFF_MIDDLE, 13)
+"""Offsets of the middle that are tried at first."""
+
+TURNS = 0.02
+"""A crank of 1 is this much shorter at least than Grashof's condition asks: at zero it would meet a change point."""
+
+
+class Shapes(NamedTuple):
+    """Fourbars, the middles of their input ranges (radians), and lengths that must be positive; shape (m, ...)."""
+
+    linkage: Fourbar
+    middle: Real
+    spare: Real
+
+
+@dataclass(frozen=True)
+class Family:
+    """A type of straight-line fourbar.
+
+    ``classical`` are the proportions of the books, ``low`` and ``high`` bounds of what is sensible. ``symmetric`` says
+    that middle and direction are exact and nothing is to be found of them.
+    """
+
+    name: LineMechanism
+    make: Callable[[Real], Shapes]
+    assembly: int
+    classical: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    symmetric: bool = False
+
+    def bounds(self, *, fixed: tuple[float, ...] | None = None) -> tuple[Real, Real]:
+        """Bounds of a shape, with the proportions fixed or not."""
+        off = [] if self.symmetric else [OFF_MIDDLE, OFF_CHORD]
+        low, high = (self.low, self.high) if fixed is None else (fixed, fixed)
+        return np.array([*low, *(-x for x in off)]), np.array([*high, *off])
+
+    def beginnings(self, proportions: Real) -> Real:
+        """Shapes with given proportions (m, k) and, where the middle is open, several offsets of it."""
+        if self.symmetric:
+            return proportions
+        repeated = np.repeat(proportions, len(MIDDLES), axis=0)
+        offsets = np.stack([np.tile(MIDDLES, len(proportions)), np.zeros(len(repeated))], axis=1)
+        return np.concatenate([repeated, offsets], axis=1)
+
+
+class Demands(NamedTuple):
+    """What a motion is judged by: the input's range (radians), the measure, and what the linkage must keep."""
+
+    span: float
+    velocity: bool
+    transmission: float
+    link_ratio: float
+
+
+class Line(NamedTuple):
+    """How P runs: points (m, N), and the line's direction (unit vectors), its length, the input's angles."""
+
+    p: Complex
+    velocity: Complex
+    direction: Complex
+    length: Real
+    theta: Real
+
+
+def chebyshev_nodes(count: int) -> Real:
+    """Points in [−1/2, 1/2] that lie densest at the ends, which they contain."""
+    return np.asarray(-0.5 * np.cos(np.pi * np.arange(count) / (count - 1)))
+
+
+def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, Shapes]:
+    """The motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
+    k = len(family.classical)
+    made = family.make(shapes[:, :k])
+    middle = made.middle if family.symmetric else made.middle + shapes[:, k]
+    theta = middle[:, None] + span * nodes
+    found = coupler_motion(made.linkage, theta, np.full(len(shapes), family.assembly))
+    chord = found.p[:, -1] - found.p[:, 0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # By symmetry the line of Hoeken's linkage lies along the axis; elsewhere near the chord.
+        along = np.sign(chord.real) + 0j if family.symmetric else chord / np.abs(chord) * np.exp(1j * shapes[:, k + 1])
+        length = (chord * along.conj()).real
+    return Line(found.p, found.velocity, along, length, theta), made
+
+
+def values_of(family: Family, demands: Demands, nodes: Real) -> Callable[[Real], Values]:
+    """What is minimised and what is kept, by shape."""
+
+    def values(shapes: Real) -> Values:
+        line, made = run(family, shapes, demands.span, nodes)
+        turned = line.direction.conj()[:, None]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            across = (line.p * turned).imag / line.length[:, None]
+            speed = (line.velocity * turned).real * (demands.span / line.length)[:, None]
+            positive = np.concatenate(
+                [
+                    speed[:, ::SPARSER] - FORWARD,
+                    _transmission(made.linkage, line.theta[:, ::SPARSER]) - math.sin(demands.transmission) ** 2,
+                    _ratios(made.linkage, demands.link_ratio),
+                    made.spare,
+                ],
+                axis=1,
+            )
+        if demands.velocity:
+            return Values(speed, across, positive)
+        return Values(across, np.empty((len(shapes), 0)), positive)
+
+    return values
+
+
+def configuration(family: Family, shape: Real, span: float) -> tuple[Complex, Line]:
+    """Joints O2, A, B, O4, P at the start of the range, and the motion of one shape in the family's frame."""
+    line, made = run(family, shape[None], span, chebyshev_nodes(SAMPLES))
+    at = positions(made.linkage, line.theta[:, :1], np.array([family.assembly]))
+    pivots = made.linkage.input_pivot[0], made.linkage.output_pivot[0]
+    return np.array([pivots[0], at.a[0, 0], at.b[0, 0], pivots[1], at.p[0, 0]]), Line(*(part[0] for part in line))
+
+
+def _transmission(linkage: Fourbar, theta: Real) -> Real:
+    """sin² of the transmission angle, by the law of cosines in the triangle A B O4."""
+    pin = linkage.input_pivot[:, None] + linkage.input[:, None] * np.exp(1j * theta)
+    diagonal = np.abs(linkage.output_pivot[:, None] - pin)
+    b, c = linkage.coupler[:, None], linkage.output[:, None]
+    return np.asarray(1.0 - ((b * b + c * c - diagonal * diagonal) / (2.0 * b * c)) ** 2)
+
+
+def _ratios(linkage: Fourbar, most: float) -> Real:
+    """log(most) − log(longest / shortest), for each pair of links."""
+    logs = np.log(linkage.lengths)
+    return np.asarray((math.log(most) + logs[:, :, None] - logs[:, None, :]).reshape(len(logs), -1))
+
+
+def _hoeken(x: Real) -> Shapes:
+    ground, coupler = x[:, 0], x[:, 1]
+    linkage = Fourbar.from_lengths(np.ones_like(ground), coupler, coupler, ground, 2.0 * coupler)
+    spare = np.stack([ground - 1.0 - TURNS, 2.0 * coupler - ground - 1.0 - TURNS], axis=1)
+    return Shapes(linkage, np.full(len(x), np.pi), spare)
+
+
+def _norton(x: Real) -> Shapes:
+    """Hoeken's linkages with 2 L3 = 3 L1 − L2, on which Norton's Table 3-1 lies."""
+    return _hoeken(np.stack([x[:, 0], 1.5 * x[:, 0] - 0.5], axis=1))
+
+
+def _beside(height: Real) -> Real:
+    """Root of a square of a height that must be positive for the middle position to exist."""
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(height)
+
+
+def _chebyshev(x: Real) -> Shapes:
+    rocker, coupler = x[:, 0], x[:, 1]
+    reach = 0.5 * (1.0 + coupler)
+    middle = np.arctan2(_beside(rocker**2 - reach**2), reach)
+    linkage = Fourbar.from_lengths(rocker, coupler, rocker, np.ones_like(rocker), 0.5 * coupler)
+    return Shapes(linkage, middle, np.empty((len(x), 0)))
+
+
+def _watt(x: Real) -> Shapes:
+    rocker, coupler = x[:, 0], x[:, 1]
+    with np.errstate(invalid="ignore"):
+        # In the middle A and B lie opposite each other about the ground's middle: |1 − 2 a e^{iθ}| = b.
+        middle = np.arccos((1.0 + 4.0 * rocker**2 - coupler**2) / (4.0 * rocker))
+    linkage = Fourbar.from_lengths(rocker, coupler, rocker, np.ones_like(rocker), 0.5 * coupler)
+    return Shapes(linkage, middle, np.empty((len(x), 0)))
+
+
+def _roberts(x: Real) -> Shapes:
+    rocker, coupler, drop = x[:, 0], x[:, 1], x[:, 2]
+    reach = 0.5 * (1.0 - coupler)
+    middle = np.arctan2(_beside(rocker**2 - reach**2), reach)
+    linkage = Fourbar.from_lengths(rocker, coupler, rocker, np.ones_like(rocker), 0.5 * coupler - 1j * drop)
+    return Shapes(linkage, middle, np.empty((len(x), 0)))
+
+
+def _evans(x: Real) -> Shapes:
+    coupler, rocker, beyond = x[:, 0], x[:, 1], x[:, 2]
+    pivot = x[:, 3] - 1j * x[:, 4]
+    linkage = Fourbar(np.zeros(len(x)), pivot, np.ones(len(x)), coupler, rocker, -beyond)
+    return Shapes(linkage, np.zeros(len(x)), np.empty((len(x), 0)))
+
+
+HOEKEN = Family("hoeken", _hoeken, OPEN, (2.625, 3.4375), (1.0, 1.0), (6.0, 12.0), symmetric=True)
+NORTON = Family("hoeken", _norton, OPEN, (1.9,), (1.0,), (6.0,), symmetric=True)
+
+FOURBARS: dict[str, Family] = {
+    "hoeken": HOEKEN,
+    "chebyshev": Family("chebyshev", _chebyshev, CROSSED, (1.25, 0.5), (0.3, 0.1), (4.0, 3.0)),
+    "watt": Family("watt", _watt, CROSSED, (2.0 / math.sqrt(17.0), 1.0 / math.sqrt(17.0)), (0.2, 0.1), (2.0, 2.0)),
+    "roberts": Family("roberts", _roberts, OPEN, (0.5, 0.5, math.sqrt(3.0) / 4.0), (0.3, 0.1, 0.05), (2.0, 2.0, 2.0)),
+    "evans": Family(
+        "evans", _evans, OPEN, (1.0, 3.0, 1.0, 1.9, 3.0), (0.5, 0.8, 0.3, 0.2, 0.3), (3.0, 6.0, 4.0, 6.0, 6.0)
+    ),
+}
+"""By the names of the types. Classical: Chebyshev 4:5:2; Watt rockers 2, coupler 1 at right angles to both in the
+middle; Roberts ground twice the coupler, all other sides equal to it; Evans' grasshopper crank = A B = A P with a
+rocker of three times that at right angles to the way of B."""

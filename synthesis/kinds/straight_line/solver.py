@@ -1,0 +1,321 @@
+"""Straight-line mechanisms: the narrowest or most even of each type, placed on the line and verified."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections import Counter
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.kinds.straight_line.design import (
+    ExactLineMechanism,
+    StraightLineDesign,
+    StraightLineResult,
+)
+from synthesis.kinds.straight_line.exact import (
+    ExactLine,
+    hart,
+    peaucellier,
+    scott_russell,
+)
+from synthesis.kinds.straight_line.families import (
+    FOURBARS,
+    NORTON,
+    SAMPLES,
+    Demands,
+    Family,
+    chebyshev_nodes,
+    configuration,
+    values_of,
+)
+from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
+from synthesis.kinds.straight_line.verification import verify_straight_line
+from synthesis.model.answer import Search
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    Link,
+    Skeleton,
+    Slide,
+)
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    fourbar_mechanism,
+    to_point,
+)
+from synthesis.numerics.narrowing import merits, narrowest
+
+Real = NDArray[np.float64]
+
+LINK_RATIO = 5.0
+"""Longest link over shortest of a fourbar, at most, where the client says nothing: several families grow straighter the
+more uneven their links are, without end."""
+
+TRANSMISSION = 20.0
+"""Least transmission angle along the line, degrees, where the client says nothing; at a toggle P runs fast and far."""
+
+STRAIGHT = 0.01
+"""Width of the strip in which the line has to stay while its velocity is made even, as a share of its length, where the
+client says nothing; for Hoeken's linkages it is the width of Norton's family at its most even."""
+
+DRAWN = 160
+"""Proportions drawn at random in a family's bounds, of which the best is improved beside the classical ones."""
+
+COARSER, NEARLY = 4, 1e-2
+"""A first descent looks at every fourth sample, and ends where a step gains less than this share."""
+
+KEPT = 0.98
+"""Share of a demanded deviation that is used: between two samples P is somewhat farther off."""
+
+SAME_DESIGN = 1e-4
+"""Designs whose joints agree to this share of the length are one and the same."""
+
+SLACK = 1e-6
+"""Violation of a constraint with which a shape still counts as one; verification decides."""
+
+EXACT = {"peaucellier": peaucellier, "hart": hart, "scott_russell": scott_russell}
+"""Sizing of the exact types."""
+
+Proportions = Literal["optimal", "classical", "exact"]
+
+
+class _Candidate(NamedTuple):
+    """Joints of a mechanism at the start of its range: P begins at 0 and runs to ``length`` along +x, input ccw.
+
+    ``exact`` is the mechanism of an exact line in its own frame, None for a fourbar.
+    """
+
+    family: LineMechanism
+    proportions: Proportions
+    joints: dict[str, complex]
+    exact: ExactLine | None = None
+
+
+def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> StraightLineResult:
+    """Solve a problem of a straight line."""
+    found: list[StraightLineDesign] = []
+    failed: list[StraightLineDesign] = []
+    rejected: Counter[str] = Counter()
+    candidates = 0
+    types = problem.types
+    for n, name in enumerate(types):
+        progress(n / len(types), f"searching {name.replace('_', ' ')} linkages")
+        made = _exact(problem, name) if name in EXACT else _fourbars(problem, name)
+        if not made:
+            rejected["no_such_linkage"] += 1
+            candidates += 1
+        for candidate in made:
+            candidates += 1
+            design = _best_side(problem, candidate)
+            if design is None:
+                rejected["cannot_be_driven"] += 1
+            elif design.verification.passed:
+                found.append(design)
+            else:
+                failed.append(design)
+                rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    progress(1.0, "verified")
+    designs = sorted(found, key=lambda design: _key(problem, design))
+    if problem.include_failed:
+        designs += sorted(failed, key=lambda design: _key(problem, design))
+    return StraightLineResult(
+        designs=designs[: problem.max_designs],
+        search=Search(
+            method="sequential linear programming in each family; exact mechanisms by their dimensions",
+            complete=False,
+            candidates=candidates,
+            accepted=len(found),
+            rejected=dict(rejected),
+            seed=problem.seed,
+        ),
+        summary=_summary(problem, found, rejected),
+    )
+
+
+def warm_up() -> None:
+    """Load the kernels: one fourbar, and one mechanism of each exact type."""
+    for name in ("hoeken", *EXACT):
+        problem = StraightLineProblem(kind="straight_line", length=1.0, crank_range=60.0, mechanism=name)
+        solve_straight_line(problem, lambda fraction, message: None)
+
+
+def _key(problem: StraightLineProblem, design: StraightLineDesign) -> tuple[float, float]:
+    metrics = design.metrics
+    own = metrics.straightness_error if problem.optimize == "straightness" else metrics.velocity_variation
+    # Widths at the level of rounding are all alike.
+    accuracy = max(own, 1e-9)
+    by = {
+        "quality": accuracy,
+        "accuracy": max(metrics.straightness_error, 1e-9),
+        "size": metrics.size,
+        "transmission_angle": -metrics.min_transmission_angle,
+    }[problem.rank_by]
+    return by, -metrics.quality
+
+
+def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_Candidate]:
+    """The best of a family of fourbars, and the one of classical proportions."""
+    family = FOURBARS[name]
+    constraints = problem.constraints
+    demands = Demands(
+        math.radians(problem.range_of(name)),
+        problem.optimize == "velocity",
+        math.radians(
+            TRANSMISSION if constraints.min_transmission_angle is None else constraints.min_transmission_angle
+        ),
+        LINK_RATIO if constraints.max_link_ratio is None else constraints.max_link_ratio,
+    )
+    nodes = chebyshev_nodes(SAMPLES)
+    if name == "hoeken":
+        shapes = _hoeken(problem, demands, nodes)
+    else:
+        limit = 0.5 * STRAIGHT if problem.max_deviation is None else KEPT * problem.max_deviation / problem.length
+        shapes = _shapes(problem, family, demands, nodes, limit)
+    made = [_placed(problem, family, shape, demands.span, proportions) for proportions, shape in shapes.items()]
+    if len(made) == 2 and max(abs(z - made[1].joints[name]) for name, z in made[0].joints.items()) < (
+        SAME_DESIGN * problem.length
+    ):
+        return made[:1]
+    return made
+
+
+def _hoeken(problem: StraightLineProblem, demands: Demands, nodes: Real) -> dict[Proportions, Real]:
+    """The best of both free proportions, and the best of Norton's family, which sets how straight it must be."""
+    family = FOURBARS["hoeken"]
+    norton = narrowest(values_of(NORTON, demands, nodes), np.array(NORTON.classical), *NORTON.bounds())
+    found: dict[Proportions, Real] = {}
+    start, limit = np.array(family.classical), np.inf
+    if norton is not None:
+        start = np.array([norton.shape[0], 1.5 * norton.shape[0] - 0.5])
+        if demands.velocity:
+            limit = 0.5 * float(np.ptp(values_of(NORTON, demands, nodes)(norton.shape[None]).limited))
+    if problem.max_deviation is not None:
+        limit = KEPT * problem.max_deviation / problem.length
+    starts = [start]
+    if demands.velocity and problem.max_deviation is not None:
+        straightest = values_of(family, demands._replace(velocity=False), nodes)
+        fit = narrowest(straightest, np.array(family.classical), *family.bounds())
+        starts += [] if fit is None else [fit.shape]
+    values = values_of(family, demands, nodes)
+    fits = [narrowest(values, start, *family.bounds(), half_limit=limit) for start in starts]
+    sound = [fit for fit in fits if fit is not None and fit.violation <= SLACK]
+    if sound:
+        found["optimal"] = min(sound, key=lambda fit: fit.half_width).shape
+    if norton is not None and norton.violation <= SLACK:
+        found["classical"] = starts[0]
+    return found
+
+
+def _shapes(
+    problem: StraightLineProblem, family: Family, demands: Demands, nodes: Real, limit: float
+) -> dict[Proportions, Real]:
+    """The best of classical proportions, in its range and direction alone, and the best of all."""
+    values, coarse = values_of(family, demands, nodes), values_of(family, demands, nodes[::COARSER])
+    found: dict[Proportions, Real] = {}
+    low, high = np.array(family.low), np.array(family.high)
+    # More even proportions are more common among good ones: the power draws them towards the lower bounds.
+    drawn = low + (high - low) * np.random.default_rng(problem.seed).random((DRAWN, len(low))) ** 1.5
+    starts = []
+    for proportions in (np.array([family.classical]), drawn):
+        shapes = family.beginnings(proportions)
+        merit = merits(coarse(shapes), limit)[2]
+        if np.isfinite(merit).any():
+            starts.append(shapes[int(merit.argmin())])
+    if not starts:
+        return {}
+    if np.array_equal(starts[0][: len(low)], family.classical):
+        fixed = family.bounds(fixed=family.classical)
+        first = narrowest(coarse, starts[0], *fixed, half_limit=limit, arrived=NEARLY)
+        classical = None if first is None else narrowest(values, first.shape, *fixed, half_limit=limit)
+        if classical is not None:
+            starts[0] = classical.shape
+            if classical.violation <= SLACK:
+                found["classical"] = classical.shape
+    fits = [narrowest(coarse, start, *family.bounds(), half_limit=limit, arrived=NEARLY) for start in starts]
+    sound = [fit for fit in fits if fit is not None and fit.violation <= SLACK]
+    if sound:
+        nearly = min(sound, key=lambda fit: fit.half_width).shape
+        best = narrowest(values, nearly, *family.bounds(), half_limit=limit)
+        if best is not None and best.violation <= SLACK:
+            found["optimal"] = best.shape
+    return found
+
+
+def _placed(
+    problem: StraightLineProblem, family: Family, shape: Real, span: float, proportions: Proportions
+) -> _Candidate:
+    """A shape, scaled and moved so that P runs from 0 to the length along +x, in the middle of its strip."""
+    joints, line = configuration(family, shape, span)
+    turned = line.direction.conjugate()
+    across = (line.p * turned).imag
+    origin = (line.p[0] * turned).real + 0.5j * (across.min() + across.max())
+    places = (joints * turned - origin) * (problem.length / float(line.length))
+    named = dict(zip(("O2", "A", "B", "O4", "P"), places.tolist(), strict=True))
+    return _Candidate(family.name, proportions, named)
+
+
+def _exact(problem: StraightLineProblem, name: LineMechanism) -> list[_Candidate]:
+    made = EXACT[name](problem.length, math.radians(problem.range_of(name)))
+    if made is None:
+        return []
+    begin = complex(made.mechanism.joints["P"])
+    joints = {joint: -1j * (complex(z) - begin) for joint, z in made.mechanism.joints.items()}
+    return [_Candidate(name, "exact", joints, made)]
+
+
+def _best_side(problem: StraightLineProblem, candidate: _Candidate) -> StraightLineDesign | None:
+    """The design with the input turning the demanded way, or the way that meets the constraints."""
+    designs = []
+    for rotation in ("ccw", "cw"):
+        if problem.rotation in ("any", rotation):
+            mechanism = _mechanism(problem, candidate, mirrored=rotation == "cw")
+            design = verify_straight_line(problem, mechanism, candidate.family, candidate.proportions)
+            if design is not None and design.verification.passed:
+                return design
+            designs.append(design)
+    return next((design for design in designs if design is not None), None)
+
+
+def _mechanism(
+    problem: StraightLineProblem, candidate: _Candidate, *, mirrored: bool
+) -> FourbarMechanism | ExactLineMechanism:
+    start, along = complex(*problem.start), cmath.exp(1j * math.radians(problem.direction))
+    joints = {name: start + along * (z.conjugate() if mirrored else z) for name, z in candidate.joints.items()}
+    if candidate.exact is None:
+        return fourbar_mechanism(FourbarConfiguration(*(joints[name] for name in ("O2", "A", "B", "O4", "P"))))
+    made = candidate.exact.mechanism
+    slides = []
+    for slide in made.slides:
+        # The slides pass through joints, and their lines along +y in the frame of P's line.
+        turned = float(slide.angle) - 0.5 * math.pi
+        angle = math.degrees((-turned if mirrored else turned) + math.radians(problem.direction))
+        slides.append(Slide(joint=slide.joint, link=slide.link, point=to_point(joints[slide.joint]), angle=angle))
+    return ExactLineMechanism(
+        type=candidate.family,
+        fixed_pivots={name: to_point(joints[name]) for name in made.links[GROUND]},
+        links=candidate.exact.links,
+        skeleton=Skeleton(
+            joints={name: to_point(z) for name, z in joints.items()},
+            links=[Link(name=name, joints=list(listed)) for name, listed in made.links.items()],
+            slides=slides,
+            input_link=made.input,
+        ),
+    )
+
+
+def _summary(problem: StraightLineProblem, found: list[StraightLineDesign], rejected: Counter[str]) -> str:
+    if not found:
+        reasons = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
+        return (
+            f"No straight-line mechanism was found that meets every demand ({reasons}); that none exists is not proven."
+        )
+    best = min(found, key=lambda design: _key(problem, design)).metrics
+    return (
+        f"{len(found)} straight-line mechanisms; the first, {best.family.replace('_', '-')}, keeps within "
+        f"{best.straightness_error:.3g} % of the length across the line, with a velocity that varies by "
+        f"{best.velocity_variation:.3g} %."
+    )

@@ -1,1 +1,0 @@
-"""Layshaft gearboxes of vehicles: tooth numbers for given gears with one tooth sum."""

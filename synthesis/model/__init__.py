@@ -1,0 +1,1 @@
+"""What every statement and every answer is made of, whatever the kind."""

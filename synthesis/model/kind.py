@@ -1,0 +1,50 @@
+"""What a kind of problem declares of itself: its statement, its answer and its solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from synthesis.model.answer import Result
+from synthesis.model.statement import StatedProblem
+
+Progress = Callable[[float, str], None]
+"""Called with the fraction done, 0 to 1, and a short message."""
+
+P = TypeVar("P", bound=StatedProblem)
+R = TypeVar("R", bound=Result[Any])
+
+
+@dataclass(frozen=True)
+class Kind(Generic[P, R]):
+    """One kind of problem.
+
+    Attributes
+    ----------
+    name : str
+        What the field ``kind`` of its statements holds.
+    problem, result : type
+        The models of the statement and of the answer.
+    solve : callable
+        From a consistent statement to its answer. It imports the solver when it is called: whoever only needs the
+        models does not wait for the compiled kernels.
+    warm_up : callable, optional
+        Compiles the kernels that ``solve`` needs, or loads them from their cache. Where it is left out the examples of
+        the kind are solved instead.
+    """
+
+    name: str
+    problem: type[P]
+    result: type[R]
+    solve: Callable[[P, Progress], R]
+    warm_up: Callable[[], None] | None = None
+
+    @property
+    def examples(self) -> list[dict[str, Any]]:
+        """Runnable statements, as a client would post them; the first is the plainest."""
+        schema_extra = self.problem.model_config["json_schema_extra"]
+        assert isinstance(schema_extra, dict)
+        stated = schema_extra["examples"]
+        assert isinstance(stated, list)
+        return [statement for statement in stated if isinstance(statement, dict)]

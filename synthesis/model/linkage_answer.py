@@ -1,0 +1,273 @@
+"""Linkages as answers: dimensions that their users know them by, the skeleton, and what was measured on them.
+
+The numbers of a mechanism are dimensions only; what was measured on it stands beside it in ``targets``,
+``verification`` and ``metrics``.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field
+
+from synthesis.model.answer import (
+    Answer,
+    Point,
+    Verification,
+    blank,
+)
+
+
+class Link(Answer):
+    """A rigid link and the joints on it."""
+
+    name: str
+    joints: list[str]
+
+
+class Slide(Answer):
+    """A joint that stays on a line fixed in a link; the line is given in the reference configuration."""
+
+    joint: str
+    link: str
+    point: Point
+    angle: float
+
+
+class GearPair(Answer):
+    """Rotation of the second link = ratio × rotation of the first, both relative to ground."""
+
+    links: tuple[str, str]
+    ratio: float
+
+
+class Skeleton(Answer):
+    """The configuration at the first target, from which the mechanism can be rebuilt with rigid links alone."""
+
+    joints: dict[str, Point]
+    links: list[Link]
+    slides: list[Slide] = Field(default=[])
+    gears: list[GearPair] = Field(default=[])
+    input_link: str
+
+
+class FixedPivots(Answer):
+    """Fixed pivots O2 (input) and O4 (output)."""
+
+    input: Point
+    output: Point
+
+
+class FourbarLinks(Answer):
+    """Link lengths; Norton's d, a, b, c."""
+
+    ground: float
+    input: float
+    coupler: float
+    output: float
+
+
+class CouplerPoint(Answer):
+    """P on the coupler: distance from A, and angle from the line A → B to the line A → P, degrees."""
+
+    distance: float
+    angle: float
+
+
+class FourbarMechanism(Answer):
+    """A pin-jointed fourbar. ``open``: B lies to the left of the directed line from A to O4; ``crossed``: right."""
+
+    type: Literal["fourbar"] = "fourbar"
+    fixed_pivots: FixedPivots
+    links: FourbarLinks
+    coupler_point: CouplerPoint
+    assembly: Literal["open", "crossed"]
+    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: float | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Angle of the body's line at the first target, absolute, degrees; "
+        "left out where it is the demanded one exactly.",
+    )
+    skeleton: Skeleton
+
+
+class Line(Answer):
+    """A line in the plane: a point of it and its angle, degrees."""
+
+    point: Point
+    angle: float
+
+
+class SliderCrankLinks(Answer):
+    """Link lengths of a slider-crank."""
+
+    crank: float
+    coupler: float
+
+
+class SliderCrankMechanism(Answer):
+    """A slider-crank whose coupler carries the body: pin A on the crank, pin B on the slide.
+
+    ``open``: B is the farther along the slide's direction of the two places that the coupler reaches.
+    """
+
+    type: Literal["slider_crank"] = "slider_crank"
+    fixed_pivot: Point
+    links: SliderCrankLinks
+    slide: Line = Field(description="The line of pin B on the ground.")
+    offset: float = Field(
+        description="Distance of the fixed pivot from the slide's line, positive where the pivot is to the line's left."
+    )
+    coupler_point: CouplerPoint
+    assembly: Literal["open", "crossed"]
+    driven_by: Literal["crank", "slider"]
+    reference_input_angle: float = Field(description="Crank angle at the first target, absolute, degrees.")
+    reference_body_angle: float | None = Field(
+        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
+    )
+    skeleton: Skeleton
+
+
+class InvertedLinks(Answer):
+    """Link lengths of an inverted slider-crank; ``output`` is from O4 to B, the foot of O4 on the line of pin A."""
+
+    ground: float
+    input: float
+    output: float
+
+
+class BlockSlide(Answer):
+    """The line on which pin A moves in the block: through B, parallel to the body's line that the block guides."""
+
+    link: Literal["output"] = "output"
+    angle: float = Field(description="Angle of the line from the line O4 → B, degrees.")
+
+
+class InvertedSliderCrankMechanism(Answer):
+    """An inverted slider-crank whose coupler carries the body: pin A on the input, and a line through a block at O4.
+
+    ``coupler_point`` is P: its distance from A, and the angle from the line A → O4 to the line A → P at the first
+    target. ``open``: A lies ahead of B in the line's direction, ``crossed``: behind.
+    """
+
+    type: Literal["inverted_slider_crank"] = "inverted_slider_crank"
+    fixed_pivots: FixedPivots
+    links: InvertedLinks
+    slide: BlockSlide
+    coupler_point: CouplerPoint
+    assembly: Literal["open", "crossed"]
+    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: float | None = Field(
+        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
+    )
+    skeleton: Skeleton
+
+
+class FivebarLinks(Answer):
+    """Link lengths of a geared fivebar; ``output`` is the geared crank at the other fixed pivot."""
+
+    ground: float
+    input: float
+    coupler_1: float
+    coupler_2: float
+    output: float
+
+
+class GearedFivebarMechanism(Answer):
+    """A geared fivebar: cranks O2–A and O5–B, geared to one another, and couplers A–C (with P) and B–C.
+
+    ``open``: C lies to the left of the directed line from A to B.
+    """
+
+    type: Literal["geared_fivebar"] = "geared_fivebar"
+    fixed_pivots: FixedPivots = Field(description="O2 (input) and O5 (output).")
+    links: FivebarLinks
+    gear_ratio: float = Field(description="Rotation of the output over that of the input.")
+    phase: float = Field(description="Output angle from the ground line when the input lies along it, degrees.")
+    coupler_point: CouplerPoint = Field(description="P on coupler 1: its angle is from the line A → C.")
+    assembly: Literal["open", "crossed"]
+    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: float | None = Field(
+        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
+    )
+    skeleton: Skeleton
+
+
+class SixbarMechanism(Answer):
+    """A fourbar with a driver dyad: crank O6–D and link D–C, where C is a point of the driven link.
+
+    Watt's sixbar of the second kind, two fourbars in series, where input or output is driven; Stephenson's of the third
+    kind where the coupler is. ``links`` are lengths by name; the skeleton says all.
+    """
+
+    type: Literal["watt_2", "stephenson_3"]
+    fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6.")
+    links: dict[str, float] = Field(
+        description="ground, input, coupler and output of the fourbar; crank and driver_coupler of the driver; "
+        "driver_ground, its fixed pivot's distance from the driven link's (from O2 where the coupler is driven); "
+        "driver_arm, C's distance from that pivot (from A where the coupler is driven)."
+    )
+    reference_body_angle: float | None = Field(
+        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
+    )
+    skeleton: Skeleton
+
+
+LinkageMechanism = Annotated[
+    FourbarMechanism | SliderCrankMechanism | InvertedSliderCrankMechanism | GearedFivebarMechanism | SixbarMechanism,
+    Discriminator("type"),
+]
+"""Any linkage that an answer may hold; the field ``type`` tells which."""
+
+
+class Target(Answer):
+    """One demanded position as the driven mechanism meets it."""
+
+    index: int
+    input_angle: float = Field(
+        description="Absolute input angle, degrees, continuous along the motion from the first target."
+    )
+    residual: float = Field(
+        description="Larger of the distance to the demanded point, as a share of the task's size, "
+        "and the difference to the demanded angle in radians."
+    )
+    point_residual: float = Field(description="Distance of P from the demanded point, length units.")
+    angle_residual: float | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Difference of the body's angle to the demanded angle, degrees, where an angle is demanded.",
+    )
+
+
+class LinkageMetrics(Answer):
+    """Measured properties of a linkage that were not demanded."""
+
+    grashof: (
+        Literal["double_crank", "crank_rocker", "double_rocker", "rocker_crank", "rocker_rocker", "change_point"] | None
+    ) = Field(description="Of a fourbar, with a driver dyad too; null for others.")
+    barker: str | None = Field(description="Barker's code of a fourbar, e.g. GCRR.")
+    min_transmission_angle: float = Field(description="Over the used range of the input, degrees.")
+    transmission_angles: dict[str, float] = Field(
+        description="The least at each dyad of links over that range, by the name of its first link, degrees."
+    )
+    same_branch: bool
+    visits_in_order: bool
+    full_rotation: bool
+    input_rotation: float = Field(description="Rotation of the input from the first target to the last, degrees.")
+    link_ratio: float = Field(description="Longest link over shortest.")
+    rms_residual: float = Field(
+        description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
+        "angle is demanded, its difference in radians, added in squares."
+    )
+    size: float = Field(description="Diagonal of the box around all joints and the point P at all targets.")
+    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
+
+
+class LinkageDesign(Answer):
+    """A mechanism with the proof of what it does."""
+
+    mechanism: LinkageMechanism
+    targets: list[Target]
+    verification: Verification
+    metrics: LinkageMetrics

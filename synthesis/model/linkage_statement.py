@@ -1,0 +1,80 @@
+"""What problems of linkages share: constraints, the order of the answers, and the shapes that regions have."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from synthesis.model.statement import (
+    ABSURD,
+    Contradiction,
+    Flag,
+    Interval,
+    PositiveNumber,
+    Sizable,
+    StatedProblem,
+    Statement,
+)
+
+ON_EDGE = 1e-9
+"""Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
+
+
+class Region(Statement):
+    """A rectangle with sides along the axes, in length units."""
+
+    x: Interval
+    y: Interval
+
+    def contains(self, point: complex) -> bool:
+        """Whether a point lies in the region, its edges (to rounding) included."""
+        (left, right), (low, high) = self.x, self.y
+        slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
+        across = left - slack <= point.real <= right + slack
+        return across and low - slack <= point.imag <= high + slack
+
+
+class LengthLimits(Statement):
+    """Shortest and longest link allowed, in length units."""
+
+    min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable] = 0.0
+    max: PositiveNumber | None = None
+
+    @model_validator(mode="after")
+    def _min_below_max(self) -> Self:
+        if self.max is not None and self.min >= self.max:
+            raise ValueError("min must be below max")
+        return self
+
+
+class Constraints(Statement):
+    """What a usable linkage must satisfy; everything has a default that demands nothing beyond a sound motion."""
+
+    min_transmission_angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0)] | None = Field(
+        default=None, description="Least transmission angle over the used range of the input, degrees."
+    )
+    grashof: Literal["any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"] = "any"
+    full_rotation: Flag = Field(default=False, description="The input link must be able to turn through.")
+    same_branch: Flag = Field(default=True, description="No toggle position between the targets.")
+    in_order: Flag = Field(default=True, description="The input, turning one way, visits the targets in order.")
+    link_length: LengthLimits | None = None
+    max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
+        default=None, description="Longest link over shortest link, at most."
+    )
+    fixed_pivot_region: Region | None = None
+    moving_pivot_region: Region | None = Field(default=None, description="For the moving pivots in the first position.")
+
+    def contradictions(self) -> list[Contradiction]:
+        """Demands that exclude one another, with paths below the problem."""
+        if self.full_rotation and self.grashof in ("double_rocker", "non_grashof"):
+            detail = f"the input of a {self.grashof} linkage does not turn through; drop one of the demands"
+            return [Contradiction("/constraints/full_rotation", detail)]
+        return []
+
+
+class LinkageProblem(StatedProblem):
+    """Fields that all linkage problems share."""
+
+    constraints: Constraints = Constraints()
+    rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "quality"

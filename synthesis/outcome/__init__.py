@@ -1,0 +1,1 @@
+"""What comes of a search: which designs are returned, in which order, and the account of the rest."""

@@ -1,1 +1,0 @@
-"""Parallel motion: a link that a sixbar carries along a coupler curve without turning it."""

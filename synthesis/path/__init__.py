@@ -1,1 +1,0 @@
-"""Path generation: linkages whose coupler point goes through points or along a curve."""

@@ -1,0 +1,91 @@
+"""Extremes of what a driven mechanism does: a grid's, looked at ever closer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import Mechanism
+
+Real = NDArray[np.float64]
+
+Quantity = Callable[[MechanismMotion], Real]
+
+GRID = 1441
+"""Inputs at which transmission angles are looked at first."""
+
+CLOSER, LOOKS = 17, 6
+"""Inputs in each closer look, and the number of looks: 8⁶ times finer than the grid."""
+
+
+def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
+    """The least of a quantity, looked for ever closer about its least value on a grid.
+
+    Parameters
+    ----------
+    of : callable
+        The quantity at inputs (n,), shape (n,); not finite where there is no position, as rounding may have it at a
+        toggle, or where it has no value.
+    inputs, values : ndarray, shape (m,), m >= 2
+        The grid, rising or falling, in the unit of the input (radians or a length), not looked beyond; and the quantity
+        there.
+
+    Returns
+    -------
+    tuple of float
+        The input and the least, of what is finite; both NaN where the grid has nothing finite.
+    """
+    if not np.isfinite(values).any():
+        return math.nan, math.nan
+    n = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
+    at, least, place = float(inputs[n]), float(values[n]), float(inputs[n])
+    step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
+    low, high = sorted((inputs[0], inputs[-1]))
+    for _ in range(LOOKS):
+        closer = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
+        found = of(closer)
+        if not np.isfinite(found).any():
+            break
+        n = int(np.argmin(np.where(np.isfinite(found), found, np.inf)))
+        at = float(closer[n])
+        if found[n] < least:
+            place, least = at, float(found[n])
+        step *= 2.0 / (CLOSER - 1)
+    return place, least
+
+
+def least_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> float:
+    """The least of a quantity between the first input and the last, of which the values on a grid are known."""
+    return least_near(lambda closer: of(drive(mechanism, closer, order=1)), inputs, values)[1]
+
+
+def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
+    """The least and the greatest of a quantity."""
+    least = least_of(mechanism, inputs, values, of)
+    return least, -least_of(mechanism, inputs, -values, lambda found: -of(found))
+
+
+def least_angles(at: Callable[[Real], MechanismMotion], low: float, high: float) -> dict[str, float]:
+    """The least transmission angle at each closure between two inputs, radians; 0 where nothing closes.
+
+    ``at`` drives the mechanism to inputs (n,), of which ``low`` and ``high`` are the first and the last.
+    """
+    grid = np.linspace(low, high, GRID)
+    found = {}
+    for link, sines in at(grid).sines.items():
+
+        def sine(closer: Real, link: str = link) -> Real:
+            return np.abs(at(closer).sines[link])
+
+        _, least = least_near(sine, grid, np.abs(sines))
+        found[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))
+    return found
+
+
+def sine_at(link: str) -> Quantity:
+    """Magnitude of the sine of the transmission angle at a closure."""
+    return lambda found: np.abs(found.sines[link])

@@ -1,1 +1,0 @@
-"""Quick return: mechanisms with a given time ratio."""

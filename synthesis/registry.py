@@ -1,0 +1,86 @@
+"""All kinds of problems, collected from their folders, and the union of their statements.
+
+A new kind is one import and one entry here; see docs/adding-a-kind.md.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Union
+
+from pydantic import Discriminator, Tag, TypeAdapter
+
+from synthesis.kinds import (
+    cam,
+    dwell,
+    function,
+    gear_train,
+    gearbox,
+    layshaft_gearbox,
+    motion,
+    parallel_motion,
+    path,
+    planetary_train,
+    quick_return,
+    steering,
+    straight_line,
+)
+from synthesis.model.kind import Kind
+from synthesis.model.statement import StatedProblem
+
+KINDS: dict[str, Kind[Any, Any]] = {
+    folder.KIND.name: folder.KIND
+    for folder in (
+        motion,
+        path,
+        quick_return,
+        straight_line,
+        steering,
+        dwell,
+        parallel_motion,
+        gear_train,
+        planetary_train,
+        gearbox,
+        layshaft_gearbox,
+        function,
+        cam,
+    )
+}
+"""Every kind of problem by its name, in the order in which they are offered."""
+
+
+def _tag(statement: Any) -> str | None:
+    kind = statement.get("kind") if isinstance(statement, dict) else getattr(statement, "kind", None)
+    return f"<{kind}>" if isinstance(kind, str) and kind in KINDS else None
+
+
+if TYPE_CHECKING:
+    Problem = StatedProblem
+else:
+    _members = tuple(Annotated[kind.problem, Tag(f"<{name}>")] for name, kind in KINDS.items())
+    Problem = Annotated[
+        Union[_members],  # noqa: UP007  (made of a list)
+        Discriminator(
+            _tag,
+            custom_error_type="unknown_kind",
+            custom_error_message=f"kind must be given and be one of: {', '.join(KINDS)}",
+        ),
+    ]
+    """Any problem; the field ``kind`` tells which."""
+
+
+def parse_problem(statement: dict[str, Any]) -> Problem:
+    """The problem of a JSON-like statement; raises pydantic's ValidationError for an ill-formed one."""
+    return _PROBLEM.validate_python(statement)
+
+
+def examples(kind: str) -> list[dict[str, Any]]:
+    """The runnable examples of a kind, as a client would post them."""
+    return KINDS[kind].examples
+
+
+def example(kind: str) -> dict[str, Any]:
+    """The first of them."""
+    return examples(kind)[0]
+
+
+_PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem)

@@ -1,1 +1,0 @@
-"""Steering: linkages and gears between two stub axles."""

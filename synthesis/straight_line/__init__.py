@@ -1,1 +1,0 @@
-"""Straight lines: linkages whose coupler point follows one, approximately or exactly."""
