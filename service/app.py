@@ -17,12 +17,12 @@ from service.access.keys import KeyStore
 from service.analyst import Analyst
 from service.api import analyses, docs, errors, events, health, jobs, metrics, problems, studio
 from service.drawings import Drawings
-from service.jobs.changes import Changes
 from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
 from service.jobs.executor import Executor
-from service.jobs.feed import Feed
 from service.jobs.finished import CAPACITY_BYTES, FinishedJobs
+from service.jobs.notifier import ChangeNotifier
+from service.jobs.poller import JobPoller
 from service.jobs.retention import keep_tidy
 from service.jobs.store import JobStore
 from service.metrics import Metrics
@@ -45,29 +45,29 @@ def create_app(settings: Settings, executor: Executor, measured: Metrics) -> Fas
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         engine = connect(settings.store_url, durable=True)
         store = JobStore(engine)
-        changes = Changes(asyncio.get_running_loop())
+        notifier = ChangeNotifier(asyncio.get_running_loop())
         app.state.analyst = Analyst()
         app.state.analyst.start(after=lambda: executor.ready() > 0)
         app.state.drawings = Drawings()
         try:
-            executor.subscribe(changes.publish)
+            executor.subscribe(notifier.publish)
             executor.start()
             await run_in_threadpool(upgrade, engine)
             await run_in_threadpool(executor.resume)
             # A SQLite store has one server; of any other, another server may remove a job.
             finished = FinishedJobs(CAPACITY_BYTES if sqlite_file(settings.store_url) else 0)
-            app.state.desk = JobDesk(store, executor, changes, measured, settings.max_queued, finished)
+            app.state.desk = JobDesk(store, executor, notifier, measured, settings.max_queued, finished)
             app.state.gate = Gate(KeyStore(engine), settings.rate_limit_rule)
-            feed = app.state.feed = Feed(store, changes)
-            measured.watch(lambda: feed.listeners, executor.ready, store.unfinished)
-            following = asyncio.create_task(feed.run())
+            poller = app.state.poller = JobPoller(store, notifier)
+            measured.watch(lambda: poller.listeners, executor.ready, store.unfinished)
+            polling = asyncio.create_task(poller.run())
             tidying = asyncio.create_task(keep_tidy(store, finished, settings.retention_days))
             yield
             tidying.cancel()
-            changes.close()
-            await following
+            notifier.close()
+            await polling
         finally:
-            changes.close()
+            notifier.close()
             await run_in_threadpool(executor.stop)
             engine.dispose()
 

@@ -66,7 +66,7 @@ class WebServer(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Answer the requests that wait for a job now, so that they do not hold the service up, and stop."""
-        self._app.state.desk.changes.close()
+        self._app.state.desk.notifier.close()
         if self._announcement is not None:
             self._announcement.cancel()
         await super().shutdown(sockets)

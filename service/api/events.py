@@ -20,7 +20,7 @@ from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import NO_JOB, TAG, ULID
 from service.api.schemas import list_item, progress
 from service.head import asked_for_head
-from service.jobs.feed import Feed, Follower
+from service.jobs.poller import Follower, JobPoller
 from service.jobs.schema import JobSummary
 from service.jobs.states import Status
 
@@ -60,13 +60,13 @@ _EVENT = {
 }
 
 
-async def _feed(request: Request) -> Feed:
-    feed = request.app.state.feed
-    assert isinstance(feed, Feed)
-    return feed
+async def _poller(request: Request) -> JobPoller:
+    poller = request.app.state.poller
+    assert isinstance(poller, JobPoller)
+    return poller
 
 
-News = Annotated[Feed, Depends(_feed)]
+Poller = Annotated[JobPoller, Depends(_poller)]
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 
@@ -89,7 +89,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
 )
 async def follow_job(
     request: Request,
-    feed: News,
+    poller: Poller,
     tenant: Tenant,
     job_id: str,
     last_event_id: Annotated[
@@ -101,12 +101,12 @@ async def follow_job(
 
     A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
     """
-    if feed.listeners >= MAX_LISTENERS:
+    if poller.listeners >= MAX_LISTENERS:
         raise Refusal(
             503, "too-many-listeners", "Too many listeners", "Too many clients listen to jobs at once; ask again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
-    job = await _present(feed, job_id) if ULID.fullmatch(job_id) else None
+    job = await _present(poller, job_id) if ULID.fullmatch(job_id) else None
     if job is None or job.tenant != tenant:
         raise not_found(NO_JOB)
     seen = _seen(last_event_id)
@@ -114,23 +114,23 @@ async def follow_job(
         return Response(status_code=204)
     if asked_for_head(request.scope):
         return EventSourceResponse(_nothing(), headers=_HEADERS)
-    return EventSourceResponse(_events(feed, job, seen), headers=_HEADERS)
+    return EventSourceResponse(_events(poller, job, seen), headers=_HEADERS)
 
 
-async def _present(feed: Feed, job_id: str) -> JobSummary | None:
-    with feed.follow(job_id) as follower:
-        await follower.news(STORE_ANSWERS_S)
+async def _present(poller: JobPoller, job_id: str) -> JobSummary | None:
+    with poller.follow(job_id) as follower:
+        await follower.changed(STORE_ANSWERS_S)
         if not follower.read:
             raise store_unavailable()
         return follower.job
 
 
-async def _events(feed: Feed, job: JobSummary, seen: tuple[int, Status] | None) -> AsyncIterator[bytes]:
+async def _events(poller: JobPoller, job: JobSummary, seen: tuple[int, Status] | None) -> AsyncIterator[bytes]:
     """The stream of a job. It ends with the job, or without an event when the service stops."""
-    with feed.follow(job.id) as follower:
-        follower.tell(job)
-        while not feed.closed:
-            if not await follower.news(KEEP_ALIVE_S):
+    with poller.follow(job.id) as follower:
+        follower.update(job)
+        while not poller.closed:
+            if not await follower.changed(KEEP_ALIVE_S):
                 yield format_sse_event(comment="keep-alive")
                 continue
             event = _event(follower, seen)

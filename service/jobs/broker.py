@@ -1,9 +1,9 @@
 """The broker: Celery over RabbitMQ or Redis carries the ids of jobs from the servers to the worker hosts.
 
 A message is an id and nothing else, so that losing one or getting it twice is no harm: the row in the store says what
-is to be done, only one claim of it succeeds, and a queued job whose message seems to be lost is sent again
-(:mod:`service.jobs.watch`). Celery does the queueing: one message at a time for each worker that is free, acknowledged
-when its job is done with, and given to another host when the first one is gone.
+is to be done, only one claim of it succeeds, and the message of a queued job that seems to be lost is sent again
+(:mod:`service.jobs.recovery`). Celery does the queueing: one message at a time for each free worker, acknowledged when
+its job is done with, and given to another host when the first one is gone.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a client can do with jobs: the store, the executor and the news of changes under one counter."""
+"""What a client can do with jobs: the store, the executor and the notifier behind one object."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import Literal
 import structlog
 from starlette.concurrency import run_in_threadpool
 
-from service.jobs.changes import Changes
 from service.jobs.executor import Executor
 from service.jobs.finished import FinishedJobs
+from service.jobs.notifier import ChangeNotifier
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
 from service.jobs.store import JobStore, Repeatable
@@ -27,7 +27,7 @@ class JobDesk:
 
     store: JobStore
     executor: Executor
-    changes: Changes
+    notifier: ChangeNotifier
     metrics: Metrics
     max_queued: int
     finished: FinishedJobs
@@ -58,7 +58,7 @@ class JobDesk:
         if new:
             log.info("job accepted", job=job.id, kind=kind)
             self.metrics.accepted(kind)
-        with self.changes.watch(job.id) as changed:
+        with self.notifier.watch(job.id) as changed:
             if new:
                 self.executor.submit(job.id)
             elif wait_s > 0:
@@ -86,7 +86,7 @@ class JobDesk:
     async def _ended(self, job: JobRow, changed: asyncio.Event, wait_s: float) -> JobRow:
         try:
             async with asyncio.timeout(wait_s):
-                while not job.status.finished and not self.changes.closed:
+                while not job.status.finished and not self.notifier.closed:
                     await changed.wait()
                     changed.clear()
                     job = await self.get(job.tenant, job.id) or job
@@ -129,7 +129,7 @@ class JobDesk:
         if await run_in_threadpool(self.store.cancel, job_id):
             log.info("job cancelled", job=job_id, was=job.status)
             self.executor.cancel(job_id)
-            self.changes.publish(job_id)
+            self.notifier.publish(job_id)
         return await self.get(tenant, job_id)
 
     async def ready(self) -> str | None:

@@ -13,9 +13,9 @@ import structlog
 from service.jobs.broker import BrokerUnreachable, Publisher
 from service.jobs.database import connect
 from service.jobs.executor import Changed
-from service.jobs.news import News
+from service.jobs.listener import StoreListener
+from service.jobs.recovery import Recovery
 from service.jobs.store import JobStore
-from service.jobs.watch import Watch
 from service.settings import Settings
 
 STOP_TIMEOUT_S = 2.0
@@ -40,8 +40,8 @@ class CeleryExecutor:
         self._publisher = Publisher(settings)
         self._queue: SimpleQueue[str | None] = SimpleQueue()
         self._sender = threading.Thread(target=self._send, name="sender", daemon=True)
-        self._watch = Watch(self._store, self._publisher, self._count_workers)
-        self._news: News | None = None
+        self._recovery = Recovery(self._store, self._publisher, self._count_workers)
+        self._listener: StoreListener | None = None
         self._workers = 0
 
     def start(self) -> None:
@@ -50,15 +50,15 @@ class CeleryExecutor:
             self._sender.start()
 
     def resume(self) -> None:
-        """Begin to watch over the jobs of all servers, and to hear of them."""
+        """Begin to recover the jobs of all servers, and to listen for their changes."""
         self._count_workers()
-        self._watch.start()
-        if self._news is not None:
-            self._news.start()
+        self._recovery.start()
+        if self._listener is not None:
+            self._listener.start()
 
     def subscribe(self, changed: Changed) -> None:
-        """Tell ``changed`` from now on of each job that has moved from one state to another."""
-        self._news = News(self._settings.store_url, changed)
+        """Call ``changed`` from now on with each job whose state changes."""
+        self._listener = StoreListener(self._settings.store_url, changed)
 
     def submit(self, job_id: str) -> None:
         """Send the queued job to the worker hosts."""
@@ -74,10 +74,10 @@ class CeleryExecutor:
     def stop(self) -> None:
         """Stop sending. What is not sent yet is due in the store, and another server sends it."""
         self._queue.put(None)
-        threads = [self._sender, self._watch, *([] if self._news is None else [self._news])]
-        self._watch.stop()
-        if self._news is not None:
-            self._news.stop()
+        threads = [self._sender, self._recovery, *([] if self._listener is None else [self._listener])]
+        self._recovery.stop()
+        if self._listener is not None:
+            self._listener.stop()
         for thread in threads:
             if thread.is_alive():
                 thread.join(STOP_TIMEOUT_S)

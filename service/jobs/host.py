@@ -25,8 +25,8 @@ from service import logs
 from service.jobs.broker import TASK, Publisher, celery_app
 from service.jobs.database import LaterTables, connect, unreachable, upgrade
 from service.jobs.local import LocalExecutor
+from service.jobs.recovery import Recovery
 from service.jobs.store import JobStore
-from service.jobs.watch import Watch
 from service.metrics import HostMetrics
 from service.settings import Settings
 
@@ -49,7 +49,7 @@ class Host:
         self._engine = connect(settings.store_url, durable=False)
         self._store = JobStore(self._engine)
         self._publisher = Publisher(settings)
-        self._watch = Watch(self._store, self._publisher, lambda: None)
+        self._recovery = Recovery(self._store, self._publisher, lambda: None)
         self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
         self._stopping = threading.Event()
         self._lock = threading.Lock()
@@ -62,7 +62,7 @@ class Host:
         self.lanes.subscribe(self._done_with)
         self.lanes.start()
         self._beating.start()
-        self._watch.start()
+        self._recovery.start()
 
     def work(self, job_id: str) -> None:
         """Have a lane run the job, and wait until it is done with it."""
@@ -85,7 +85,7 @@ class Host:
         if self._stopping.is_set():
             return
         self._stopping.set()
-        self._watch.stop()
+        self._recovery.stop()
         self.lanes.stop()
         try:
             self._store.host_is_gone(self.id)

@@ -24,8 +24,8 @@ from service import logs
 from service.jobs import faults
 from service.jobs.database import connect, unreachable
 from service.jobs.orphans import die_with
+from service.jobs.progress import ProgressWriter
 from service.jobs.store import Claim, JobStore
-from service.jobs.telling import Teller
 
 Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "superseded"]
 """What became of a job as its worker knows it; ``superseded``: cancelled or given to another attempt meanwhile."""
@@ -67,7 +67,7 @@ class WorkerSettings:
 @dataclass(frozen=True, slots=True)
 class _Post:
     store: JobStore
-    teller: Teller
+    progress: ProgressWriter
     settings: WorkerSettings
 
 
@@ -89,9 +89,9 @@ def start(settings: WorkerSettings) -> None:
     dispatch = importlib.import_module("synthesis.dispatch")
     dispatch.warm_up()
     store = JobStore(connect(settings.store_url, durable=False))
-    teller = Teller(store)
+    progress = ProgressWriter(store)
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
-    _post = _Post(store, teller, settings)
+    _post = _Post(store, progress, settings)
     store.ping()
     # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
@@ -123,7 +123,7 @@ def run(job_id: str, mark: str) -> Ran:
 
 def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
     try:
-        result = _solve(post.teller, job_id, claim)
+        result = _solve(post.progress, job_id, claim)
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
         stored = _stored(post.store.fail, job_id, claim.attempt, fault.as_json(job_id))
@@ -150,12 +150,12 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
             time.sleep(RETRY_PERIOD_S)  # the answer is kept; a store that is started again needs seconds
 
 
-def _solve(teller: Teller, job_id: str, claim: Claim) -> str:
+def _solve(writer: ProgressWriter, job_id: str, claim: Claim) -> str:
     from synthesis import dispatch
     from synthesis.registry import KINDS
 
     problem = KINDS[claim.kind].problem.model_validate_json(claim.problem)
-    with teller.of(job_id, claim.attempt) as progress:
+    with writer.attempt(job_id, claim.attempt) as progress:
         return dispatch.solve(problem, progress).model_dump_json()
 
 

@@ -10,9 +10,9 @@ import httpx
 import pytest
 
 from service.api import events
-from service.jobs.changes import Changes
 from service.jobs.database import connect, upgrade
-from service.jobs.feed import PERIOD_S, Feed
+from service.jobs.notifier import ChangeNotifier
+from service.jobs.poller import PERIOD_S, JobPoller
 from service.jobs.store import JobStore
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
@@ -220,36 +220,36 @@ def store(tmp_path):
     engine.dispose()
 
 
-def with_feed(store, listen):
-    """Run a coroutine function beside a feed of the store; nothing may be left that listens."""
+def with_poller(store, listen):
+    """Run a coroutine function beside a poller of the store; nothing may be left that listens."""
 
     async def run():
-        changes = Changes(asyncio.get_running_loop())
-        feed = Feed(store, changes)
-        reading = asyncio.create_task(feed.run())
+        notifier = ChangeNotifier(asyncio.get_running_loop())
+        poller = JobPoller(store, notifier)
+        reading = asyncio.create_task(poller.run())
         try:
             async with asyncio.timeout(20):
-                return await listen(feed)
+                return await listen(poller)
         finally:
-            changes.close()
+            notifier.close()
             await asyncio.wait_for(reading, 5.0)
-            assert feed.listeners == 0
+            assert poller.listeners == 0
 
     return asyncio.run(run())
 
 
-async def stream(feed, job, seen=None):
-    return events_of(b"".join([text async for text in events._events(feed, job, seen)]).decode())
+async def stream(poller, job, seen=None):
+    return events_of(b"".join([text async for text in events._events(poller, job, seen)]).decode())
 
 
 def new_job(store):
     return store.create(tenant="", kind="motion", label=None, problem="{}")
 
 
-async def begun(feed, job):
+async def begun(poller, job):
     """A stream of the job that has become a listener."""
-    following = asyncio.create_task(stream(feed, job))
-    while not feed.listeners:
+    following = asyncio.create_task(stream(poller, job))
+    while not poller.listeners:
         await asyncio.sleep(0)
     return following
 
@@ -257,8 +257,8 @@ async def begun(feed, job):
 def test_the_store_is_read_once_for_all_listeners(store):
     job = new_job(store)
 
-    async def listen(feed):
-        streams = [asyncio.create_task(stream(feed, job)) for _ in range(300)]
+    async def listen(poller):
+        streams = [asyncio.create_task(stream(poller, job)) for _ in range(300)]
         began = time.monotonic()
         await asyncio.sleep(1.0)  # the reads of a time are counted
         reads, most = store.reads, 2 + (time.monotonic() - began) / PERIOD_S
@@ -266,7 +266,7 @@ def test_the_store_is_read_once_for_all_listeners(store):
         store.succeed(job.id, claim.attempt, "{}")
         return reads, most, await asyncio.gather(*streams)
 
-    reads, most, seen = with_feed(store, listen)
+    reads, most, seen = with_poller(store, listen)
     assert 1 <= reads <= most
     assert {tuple(states(of_one)) for of_one in seen} == {("queued", "succeeded")}
 
@@ -275,26 +275,26 @@ def test_the_store_is_not_read_for_nobody(store):
     job = new_job(store)
     store.cancel(job.id)
 
-    async def listen(feed):
+    async def listen(poller):
         await asyncio.sleep(0.6)  # more than two periods
         assert store.reads == 0
-        await stream(feed, store.get(job.id))
+        await stream(poller, store.get(job.id))
         await asyncio.sleep(0.6)  # and again
         return store.reads
 
-    assert with_feed(store, listen) <= 1
+    assert with_poller(store, listen) <= 1
 
 
 def test_a_job_that_is_removed_before_its_end_was_seen(store):
     job = new_job(store)
 
-    async def listen(feed):
-        following = await begun(feed, job)
+    async def listen(poller):
+        following = await begun(poller, job)
         store.cancel(job.id)
         store.delete(job.id)
         return await following
 
-    seen = with_feed(store, listen)
+    seen = with_poller(store, listen)
     assert [(event.name, event.data.get("status")) for event in seen] in (
         [("state", "queued"), ("removed", None)],
         [("state", "queued"), ("state", "cancelled")],  # read in between
@@ -305,15 +305,15 @@ def test_silence_is_broken_by_comments(store, monkeypatch):
     monkeypatch.setattr(events, "KEEP_ALIVE_S", 0.05)
     job = new_job(store)
 
-    async def listen(feed):
+    async def listen(poller):
         chunks = []
-        async for chunk in events._events(feed, job, None):
+        async for chunk in events._events(poller, job, None):
             chunks.append(chunk)
             if len(chunks) == 3:
                 store.cancel(job.id)
         return chunks
 
-    chunks = with_feed(store, listen)
+    chunks = with_poller(store, listen)
     assert chunks[1:3] == [b": keep-alive\n\n"] * 2
     assert events_of(chunks[-1].decode())[0].final
 
@@ -326,10 +326,10 @@ def test_listeners_wait_while_the_store_does_not_answer(store):
         store.summaries = summaries
         raise OSError("no store")
 
-    async def listen(feed):
+    async def listen(poller):
         store.summaries = out_of_reach
-        following = await begun(feed, job)
+        following = await begun(poller, job)
         store.cancel(job.id)
         return await following
 
-    assert states(with_feed(store, listen))[-1] == "cancelled"
+    assert states(with_poller(store, listen))[-1] == "cancelled"

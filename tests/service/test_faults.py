@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs.changes import Changes
-from service.jobs.telling import PERIOD_S
+from service.jobs.notifier import ChangeNotifier
+from service.jobs.progress import PERIOD_S
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, alive, environment, stored, until, workers_of
 from tests.service.scripted_server import (
     BROKEN,
@@ -177,11 +177,11 @@ def test_a_job_that_comes_while_an_idle_worker_dies_runs_in_the_next_one(server)
     assert not (server.folder / "late-call").exists()
 
 
-def test_news_for_a_loop_that_is_closed_are_dropped():
+def test_a_change_for_a_closed_loop_is_dropped():
     loop = asyncio.new_event_loop()
-    changes = Changes(loop)
+    notifier = ChangeNotifier(loop)
     loop.close()
-    changes.publish("job")
+    notifier.publish("job")
 
 
 def test_progress_is_seen_while_the_job_runs(server):

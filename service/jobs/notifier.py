@@ -1,4 +1,8 @@
-"""Tells whoever waits for a job that it has changed."""
+"""Wakes the coroutines of this server that wait for a job when it changes.
+
+A change becomes known in a thread: a lane is done with a job, or :mod:`service.jobs.listener` hears of it. Nothing is
+read here; whoever is woken reads the store, directly or through :mod:`service.jobs.poller`.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +11,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 
-class Changes:
-    """Passes the news of changed jobs from any thread to coroutines that watch a job on one event loop."""
+class ChangeNotifier:
+    """Passes the ids of changed jobs from any thread to coroutines on one event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
         self._watches: dict[str, set[asyncio.Event]] = {}
-        self._of_all: set[Callable[[str | None], None]] = set()
+        self._callbacks: set[Callable[[str | None], None]] = set()
         self.closed = False
         """True once nobody should wait any longer, because the service stops."""
 
     def publish(self, job_id: str | None) -> None:
         """Wake the watchers of a job, or of all jobs where it may be any. Callable from any thread."""
-        # A job may end while the service stops. The loop may be closed between any question and the call, so it is
-        # not asked; when it is gone, so are the watchers.
+        # A job may end while the service stops. The loop may close between a check and the call, so there is no check;
+        # when the loop is gone, so are the watchers.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._wake, job_id)
 
@@ -40,29 +44,29 @@ class Changes:
                 del self._watches[job_id]
 
     @contextmanager
-    def watch_all(self, told: Callable[[str | None], None]) -> Iterator[None]:
-        """Call ``told`` with the id of every job that changes, and with None where it may be any, as at the end.
+    def watch_all(self, callback: Callable[[str | None], None]) -> Iterator[None]:
+        """Call ``callback`` with the id of every job that changes, and with None where it may be any, as at the end.
 
         On the event loop only.
         """
-        self._of_all.add(told)
+        self._callbacks.add(callback)
         try:
             yield
         finally:
-            self._of_all.discard(told)
+            self._callbacks.discard(callback)
 
     def close(self) -> None:
         """Wake everybody for the last time, so that no request is kept waiting by a service that stops."""
         self.closed = True
         for job_id in list(self._watches):
             self._wake(job_id)
-        for told in list(self._of_all):
-            told(None)
+        for callback in list(self._callbacks):
+            callback(None)
 
     def _wake(self, job_id: str | None) -> None:
-        watched = self._watches if job_id is None else [job_id]
-        for watched_id in watched:
+        job_ids = self._watches if job_id is None else [job_id]
+        for watched_id in job_ids:
             for event in self._watches.get(watched_id, ()):
                 event.set()
-        for told in self._of_all:
-            told(job_id)
+        for callback in self._callbacks:
+            callback(job_id)

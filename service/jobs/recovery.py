@@ -1,7 +1,7 @@
-"""Watches over the jobs of several servers: takes up those whose worker host is gone, sends again what seems lost.
+"""Recovers the jobs of several servers: requeues those whose worker host is gone, sends lost messages again.
 
-Every server and every worker host has such a watch, so that it goes on as long as any of them does; the store sees to
-it that each job is taken up by one of them.
+Every server and every worker host runs this thread, so that jobs are recovered as long as any of them lives; the store
+sees to it that each job is taken up by one of them only.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from service.jobs.store import LEASE_S, JobStore
 
 PERIOD_S = 1.0
 
-AT_ONCE = 200
-"""Jobs that are sent again in one go."""
+MAX_SENT_AT_ONCE = 200
+"""Jobs that are sent again in one round, so that a round does not delay the next by much."""
 
 log = structlog.get_logger(__name__)
 
 
-class Watch(threading.Thread):
-    """Looks after all jobs once a second until it is stopped; calls ``beside`` as often."""
+class Recovery(threading.Thread):
+    """Recovers jobs once a second until it is stopped; calls ``each_round`` as often."""
 
-    def __init__(self, store: JobStore, publisher: Publisher, beside: Callable[[], None]) -> None:
-        super().__init__(name="watch", daemon=True)
+    def __init__(self, store: JobStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
+        super().__init__(name="recovery", daemon=True)
         self._store = store
         self._publisher = publisher
-        self._beside = beside
+        self._each_round = each_round
         self._stopping = threading.Event()
         self._trusted_from = float("-inf")
 
@@ -42,20 +42,20 @@ class Watch(threading.Thread):
         self._stopping.set()
 
     def run(self) -> None:
-        """Look after the jobs until told to stop."""
+        """Recover jobs until :meth:`stop`."""
         while not self._stopping.wait(PERIOD_S):
             try:
                 self._publisher.probe()
-                self._beside()
+                self._each_round()
                 self._take_up_abandoned()
                 self._send_again()
             except SQLAlchemyError as error:
                 if not unreachable(error):
-                    log.exception("the jobs could not be looked after")
-                # Nobody could renew a lease meanwhile, so for a while none that is over means anything.
+                    log.exception("jobs could not be recovered")
+                # Nobody could renew a lease meanwhile, so an expired one proves nothing until all have had time to.
                 self._trusted_from = time.monotonic() + LEASE_S
             except Exception:  # whatever it is, the next round must come
-                log.exception("the jobs could not be looked after")
+                log.exception("jobs could not be recovered")
 
     def _take_up_abandoned(self) -> None:
         if time.monotonic() < self._trusted_from:
@@ -68,7 +68,7 @@ class Watch(threading.Thread):
     def _send_again(self) -> None:
         if not self._publisher.reachable:
             return
-        due = self._store.due(AT_ONCE)
+        due = self._store.due(MAX_SENT_AT_ONCE)
         for n, job_id in enumerate(due):
             try:
                 self._publisher.send(job_id)

@@ -1,4 +1,4 @@
-"""Hears from PostgreSQL which jobs have changed, whichever server or worker has changed them."""
+"""Listens to PostgreSQL for changes of jobs (``LISTEN``), whichever server or worker host has made them."""
 
 from __future__ import annotations
 
@@ -14,23 +14,22 @@ from service.jobs.database import listening
 from service.jobs.executor import Changed
 
 CHANNEL = "mechsynth_jobs"
-"""What the trigger on the table of jobs notifies."""
+"""The channel that the trigger on the table of jobs notifies."""
 
 LISTEN_S = 1.0
-"""How long a listener hears nothing of being stopped."""
+"""Longest wait for a notification before the thread looks whether it is to stop."""
 
 RETRY_PERIOD_S = 0.5
+"""Pause before a lost connection is made again."""
 
 log = structlog.get_logger(__name__)
 
 
-class News(threading.Thread):
-    """Tells ``changed`` the ids of jobs that have moved from one state to another, and None when it may have missed
-    some.
-    """
+class StoreListener(threading.Thread):
+    """Calls ``changed`` with the id of each job whose state changes, and with None when it may have missed some."""
 
     def __init__(self, url: str, changed: Changed) -> None:
-        super().__init__(name="news", daemon=True)
+        super().__init__(name="store-listener", daemon=True)
         self._engine = listening(url)
         self._changed = changed
         self._stopping = threading.Event()
@@ -40,14 +39,14 @@ class News(threading.Thread):
         self._stopping.set()
 
     def run(self) -> None:
-        """Listen until told to stop."""
+        """Listen until :meth:`stop`."""
         while not self._stopping.is_set():
             try:
                 self._listen()
             except Exception as error:  # psycopg's own errors come through here, and SQLAlchemy's
                 if not isinstance(error, (OSError, SQLAlchemyError, psycopg.Error)):
-                    log.exception("the news of the store could not be followed")
-                log.warning("no news from the store", error=type(error).__name__)
+                    log.exception("the store could not be listened to")
+                log.warning("no notifications from the store", error=type(error).__name__)
                 self._stopping.wait(RETRY_PERIOD_S)
 
     def _listen(self) -> None:

@@ -1,8 +1,8 @@
-"""Follows the jobs that somebody listens to: one reader of the store for all listeners together.
+"""Polls the store for the jobs whose event streams are open: one reader for all streams together.
 
-A worker writes its progress into the store and tells nobody, so the store has to be asked. It is asked for all followed
-jobs at once, every :data:`PERIOD_S` and whenever one of them is known to have changed; the number of listeners makes
-no difference to it. A job that nobody follows is not read, and a finished one not again.
+A worker writes its progress into the store without a notification, so the store has to be polled. All followed jobs are
+read at once, every :data:`PERIOD_S` and whenever :mod:`service.jobs.notifier` says that one of them has changed; the
+number of streams makes no difference to the store. A job that nobody follows is not read, a finished one not again.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from dataclasses import dataclass, field
 import structlog
 from starlette.concurrency import run_in_threadpool
 
-from service.jobs.changes import Changes
+from service.jobs.notifier import ChangeNotifier
 from service.jobs.schema import JobSummary
 from service.jobs.store import JobStore
 
 PERIOD_S = 0.25
-"""How old the news of a job can be. Workers note their progress five times a second at most."""
+"""Greatest age of what a stream shows. Workers store their progress at most five times a second."""
 
 log = structlog.get_logger(__name__)
 
@@ -33,35 +33,35 @@ class Follower:
     """The job as it was read last; None before the first reading, and of a job that is not there (any more)."""
     read: bool = False
     """Whether the job was looked for in the store."""
-    _news: asyncio.Event = field(default_factory=asyncio.Event)
+    _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def news(self, within_s: float) -> bool:
+    async def changed(self, within_s: float) -> bool:
         """Wait for a change of the job; False when there is none in time."""
         try:
             async with asyncio.timeout(within_s):
-                await self._news.wait()
+                await self._changed.wait()
         except TimeoutError:
             return False
-        self._news.clear()
+        self._changed.clear()
         return True
 
-    def tell(self, job: JobSummary | None) -> None:
-        """Pass on what the store says of the job."""
+    def update(self, job: JobSummary | None) -> None:
+        """Take what the store says of the job."""
         if not self.read or job != self.job:
             self.job, self.read = job, True
-            self._news.set()
+            self._changed.set()
 
     def wake(self) -> None:
         """End a wait without a change."""
-        self._news.set()
+        self._changed.set()
 
 
-class Feed:
-    """Tells followers of the changes of their jobs. To be used on the event loop only."""
+class JobPoller:
+    """Keeps followers up to date with their jobs. To be used on the event loop only."""
 
-    def __init__(self, store: JobStore, changes: Changes) -> None:
+    def __init__(self, store: JobStore, notifier: ChangeNotifier) -> None:
         self._store = store
-        self._changes = changes
+        self._notifier = notifier
         self._followers: dict[str, set[Follower]] = {}
         self._nudged = asyncio.Event()
 
@@ -73,11 +73,11 @@ class Feed:
     @property
     def closed(self) -> bool:
         """Whether nobody should listen any longer, because the service stops."""
-        return self._changes.closed
+        return self._notifier.closed
 
     @contextmanager
     def follow(self, job_id: str) -> Iterator[Follower]:
-        """The news of a job; the first is what it is now."""
+        """Follow a job; the first change is the state that it has now."""
         follower = Follower()
         followers = self._followers.setdefault(job_id, set())
         followers.add(follower)
@@ -91,7 +91,7 @@ class Feed:
 
     async def run(self) -> None:
         """Read for the followers until the service stops, then wake them all."""
-        with self._changes.watch_all(self._nudge):
+        with self._notifier.watch_all(self._nudge):
             while not self.closed:
                 await self._wait()
                 self._nudged.clear()
@@ -115,19 +115,19 @@ class Feed:
         wanted = self._unfinished()
         if not wanted:
             return
-        # Who begins to follow while the store is being asked may have missed what it will answer.
+        # Whoever begins to follow during the query is left to the next one: its answer may be older than they are.
         asked = [(job_id, follower) for job_id in wanted for follower in self._followers[job_id]]
         try:
-            found = await run_in_threadpool(self._store.summaries, wanted)
-        except Exception:  # whatever a database driver raises: those who listen wait until it answers again
-            log.exception("the store could not be read for those who listen")
+            summaries = await run_in_threadpool(self._store.summaries, wanted)
+        except Exception:  # whatever a database driver raises: the streams wait until it answers again
+            log.exception("the store could not be read for the event streams")
             await asyncio.sleep(PERIOD_S)
             return
         for job_id, follower in asked:
-            follower.tell(found.get(job_id))
+            follower.update(summaries.get(job_id))
 
     def _unfinished(self) -> list[str]:
-        """The followed jobs that can have news."""
+        """The followed jobs that can still change."""
         return [job_id for job_id, followers in self._followers.items() if not all(map(_done, followers))]
 
 
