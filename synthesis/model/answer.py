@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from typing import Generic, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
+
+from synthesis.model.dimension import Dimension, Measured
 
 Point = tuple[float, float]
 
 
-class Answer(BaseModel):
+class Answer(Measured):
     """Base of every model that the service writes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def blank(value: float | None) -> bool:
+def blank(value: object) -> bool:
     """Whether a field that may be left out is."""
     return value is None
 
@@ -27,6 +29,9 @@ class Check(Answer):
     passed: bool
     value: float | None = Field(default=None, exclude_if=blank)
     limit: float | None = Field(default=None, exclude_if=blank)
+    dimension: Dimension | None = Field(
+        default=None, exclude_if=blank, description="What value and limit measure; left out for a pure number."
+    )
 
 
 class Verification(Answer):

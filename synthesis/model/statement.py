@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
+
+from synthesis.model.dimension import Measured
 
 ABSURD = 1e9
 """Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
@@ -50,7 +52,7 @@ class ContradictionError(ValueError):
         super().__init__(f"{contradiction.path}: {contradiction.detail}")
 
 
-class Statement(BaseModel):
+class Statement(Measured):
     """Base of every model that a client writes: unknown fields are refused, values cannot change."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

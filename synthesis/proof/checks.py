@@ -15,6 +15,7 @@ from synthesis.kinds.motion.demanded import (
 )
 from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
 from synthesis.model.answer import Check
+from synthesis.model.dimension import ANGLE, LENGTH, Dimension
 from synthesis.model.linkage_answer import Target
 from synthesis.model.linkage_statement import Constraints
 
@@ -197,7 +198,7 @@ def constraint_checks(
         checks.append(Check(name="visits_in_order", passed=metrics.visits_in_order))
     if constraints.min_transmission_angle is not None:
         checks.append(
-            at_least("transmission_angle", metrics.min_transmission_angle, constraints.min_transmission_angle)
+            at_least("transmission_angle", metrics.min_transmission_angle, constraints.min_transmission_angle, ANGLE)
         )
     if constraints.grashof != "any":
         wanted = "rocker_rocker" if constraints.grashof == "non_grashof" else constraints.grashof
@@ -206,9 +207,9 @@ def constraint_checks(
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     if constraints.link_length is not None:
         if constraints.link_length.min > 0.0:
-            checks.append(at_least("shortest_link", min(lengths), constraints.link_length.min))
+            checks.append(at_least("shortest_link", min(lengths), constraints.link_length.min, LENGTH))
         if constraints.link_length.max is not None:
-            checks.append(at_most("longest_link", max(lengths), constraints.link_length.max))
+            checks.append(at_most("longest_link", max(lengths), constraints.link_length.max, LENGTH))
     if constraints.max_link_ratio is not None:
         checks.append(at_most("link_ratio", metrics.link_ratio, constraints.max_link_ratio))
     if constraints.fixed_pivot_region is not None:
@@ -222,11 +223,11 @@ def constraint_checks(
     return checks
 
 
-def at_least(name: str, value: float, limit: float) -> Check:
+def at_least(name: str, value: float, limit: float, dimension: Dimension | None = None) -> Check:
     """A check of a value against a lower limit."""
-    return Check(name=name, passed=value >= limit * (1.0 - LIMIT_SLACK), value=value, limit=limit)
+    return Check(name=name, passed=value >= limit * (1.0 - LIMIT_SLACK), value=value, limit=limit, dimension=dimension)
 
 
-def at_most(name: str, value: float, limit: float) -> Check:
+def at_most(name: str, value: float, limit: float, dimension: Dimension | None = None) -> Check:
     """A check of a value against an upper limit."""
-    return Check(name=name, passed=value <= limit * (1.0 + LIMIT_SLACK), value=value, limit=limit)
+    return Check(name=name, passed=value <= limit * (1.0 + LIMIT_SLACK), value=value, limit=limit, dimension=dimension)

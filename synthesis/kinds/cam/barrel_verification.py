@@ -32,6 +32,7 @@ from synthesis.kinds.cam.verification import (
     program_checks,
 )
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE, LENGTH
 
 Real = NDArray[np.float64]
 
@@ -94,13 +95,13 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         limits = problem.limits
         fall = limits.pressure_angle_fall or limits.pressure_angle
         checks += rate_checks(problem, _measure(walls["lower"], radius, roller), lift, allowed)
-        checks.append(at_most("pressure_angle", measured.rising, limits.pressure_angle, MEASURED_SLACK))
-        checks.append(at_most("pressure_angle_fall", measured.falling, fall, MEASURED_SLACK))
+        checks.append(at_most("pressure_angle", measured.rising, limits.pressure_angle, MEASURED_SLACK, ANGLE))
+        checks.append(at_most("pressure_angle_fall", measured.falling, fall, MEASURED_SLACK, ANGLE))
         checks.append(at_least("curvature_ratio", least / roller, limits.curvature_ratio, MEASURED_SLACK))
         if limits.hub_radius > 0.0:
-            checks.append(at_least("hub_radius", radius, limits.hub_radius, LIMIT_SLACK))
+            checks.append(at_least("hub_radius", radius, limits.hub_radius, LIMIT_SLACK, LENGTH))
         if limits.size is not None:
-            checks.append(at_most("size", radius, limits.size, LIMIT_SLACK))
+            checks.append(at_most("size", radius, limits.size, LIMIT_SLACK, LENGTH))
     return Verification(passed=all(check.passed for check in checks), checks=checks), measured
 
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.cam.problem import CamProblem, Move
 from synthesis.model.answer import Check
+from synthesis.model.dimension import Dimension
 
 Real = NDArray[np.float64]
 Measure = Callable[[Real], tuple[Real, Real]]
@@ -99,7 +100,13 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
         if limit is not None:
             peak = max(part.peak(name) for part in parts)
             checks.append(
-                Check(name=f"peak_{name}", passed=peak <= limit * (1.0 + PEAK_SLACK), value=peak, limit=limit)
+                Check(
+                    name=f"peak_{name}",
+                    passed=peak <= limit * (1.0 + PEAK_SLACK),
+                    value=peak,
+                    limit=limit,
+                    dimension=Dimension(name),
+                )
             )
     off = max(_displacement_deviation(problem, measure, part) for part in parts) / lift
     checks.append(Check(name="meets_positions", passed=off <= reproduced, value=min(off, 1e9), limit=reproduced))

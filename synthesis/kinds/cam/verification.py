@@ -39,6 +39,7 @@ from synthesis.kinds.cam.problem import (
     TranslatingRoller,
 )
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, VELOCITY, Dimension
 
 Real = NDArray[np.float64]
 
@@ -226,26 +227,38 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
         for name, where in (("pressure_angle", measured.rising), ("pressure_angle_fall", ~measured.rising)):
             steepest[name] = math.degrees(float(measured.pressure_angle[where].max())) if where.any() else 0.0
         fall = limits.pressure_angle_fall or limits.pressure_angle
-        checks.append(at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK))
-        checks.append(at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK))
+        checks.append(
+            at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK, ANGLE)
+        )
+        checks.append(at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK, ANGLE))
         radius = mechanism.follower.roller_radius or 0.0
         ratio = pitch_radius(measured, radius) / radius
         checks.append(at_least("curvature_ratio", ratio, limits.curvature_ratio, MEASURED_SLACK))
         base = (mechanism.prime_radius or 0.0) - radius
     else:
-        checks.append(at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK))
+        checks.append(at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK, LENGTH))
         checks.append(Check(name="convex", passed=math.isinf(measured.concave_radius)))
         if limits.face_width is not None:
-            checks.append(at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK))
+            checks.append(at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK, LENGTH))
         base = mechanism.base_radius or 0.0
     pivot = mechanism.follower.pivot_distance
     if pivot is not None:
         # The cam turns all around, so that its greatest radius comes to where the arm is borne.
-        checks.append(Check(name="clears_pivot", passed=measured.radius < pivot, value=measured.radius, limit=pivot))
+        checks.append(
+            Check(
+                name="clears_pivot",
+                passed=measured.radius < pivot,
+                value=measured.radius,
+                limit=pivot,
+                dimension=LENGTH,
+            )
+        )
     if limits.hub_radius > 0.0:
-        checks.append(at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK))
+        checks.append(at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK, LENGTH))
     if limits.size is not None:
-        checks.append(at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK))
+        checks.append(
+            at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK, LENGTH)
+        )
     return checks
 
 
@@ -280,10 +293,11 @@ def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> l
     checks = [Check(name="keeps_the_statement", passed=off / lift <= STATED, value=off / lift, limit=STATED)]
     where = _open_angles(problem, angle)
     if where.any():
-        for name, values in (("velocity", v), ("acceleration", a), ("jerk", j)):
-            limit = getattr(problem.limits, name)
+        for dimension, values in ((VELOCITY, v), (ACCELERATION, a), (JERK, j)):
+            limit = getattr(problem.limits, dimension)
             if limit is not None:
-                checks.append(at_most(f"table_{name}", float(np.abs(values[where]).max()), limit, LIMIT_SLACK))
+                peak = float(np.abs(values[where]).max())
+                checks.append(at_most(f"table_{dimension}", peak, limit, LIMIT_SLACK, dimension))
     return checks
 
 
@@ -299,11 +313,13 @@ def _open_angles(problem: CamProblem, angle: Real) -> NDArray[np.bool_]:
     return where
 
 
-def at_least(name: str, value: float, limit: float, slack: float) -> Check:
+def at_least(name: str, value: float, limit: float, slack: float, dimension: Dimension | None = None) -> Check:
     """A measured value that may not fall below a limit."""
-    return Check(name=name, passed=value >= limit * (1.0 - slack), value=min(value, 1e9), limit=limit)
+    return Check(
+        name=name, passed=value >= limit * (1.0 - slack), value=min(value, 1e9), limit=limit, dimension=dimension
+    )
 
 
-def at_most(name: str, value: float, limit: float, slack: float) -> Check:
+def at_most(name: str, value: float, limit: float, slack: float, dimension: Dimension | None = None) -> Check:
     """A measured value that may not exceed a limit."""
-    return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit)
+    return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit, dimension=dimension)

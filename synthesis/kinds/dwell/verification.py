@@ -31,6 +31,7 @@ from synthesis.kinds.dwell.design import (
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import OUTPUT
 from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import at_most, constraint_checks
 from synthesis.proof.closer import (
@@ -160,7 +161,7 @@ def _checks(
         Check(name="way", passed=off <= WAY_MET, value=off, limit=WAY_MET),
     ]
     for rest in targets:
-        checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed))
+        checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed, OUTPUT))
         checks.append(at_most(f"dwell_{rest.index + 1}_at_end", rest.off_end, END))
     if len(targets) == 2:
         apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)

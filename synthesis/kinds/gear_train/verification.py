@@ -22,6 +22,7 @@ from synthesis.kinds.gear_train.design import (
 )
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import LENGTH
 
 SAME_DISTANCE = 1e-12
 """Share of a centre distance by which equal ones may differ in rounding."""
@@ -163,7 +164,7 @@ def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[C
         distances = metrics.centre_distances
         apart = max(distances) - min(distances)
         limit = SAME_DISTANCE * max(distances)
-        checks.append(Check(name="coaxial", passed=apart <= limit, value=apart, limit=limit))
+        checks.append(Check(name="coaxial", passed=apart <= limit, value=apart, limit=limit, dimension=LENGTH))
     if problem.hunting_tooth == "require":
         checks.append(Check(name="hunting_tooth", passed=metrics.hunting_tooth))
     if problem.interference == "refuse":

@@ -18,6 +18,7 @@ from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.answer import Verification
+from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.checks import at_most
@@ -62,7 +63,7 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
     if limit is None or limit.max is None:
         links = mechanism.links
         longest = max(links.ground, links.input, links.coupler, links.output)
-        checks.append(at_most("longest_link", longest, problem.longest_link))
+        checks.append(at_most("longest_link", longest, problem.longest_link, LENGTH))
     return design.model_copy(
         update={
             "metrics": design.metrics.model_copy(update=gone._asdict()),

@@ -28,6 +28,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_curve import astray
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import (
     GearedFivebarMechanism,
     SliderCrankMechanism,
@@ -183,5 +184,5 @@ def _path_checks(
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     limit = problem.constraints.link_length
     if problem.matched and (limit is None or limit.max is None):
-        checks.append(at_most("longest_link", longest, problem.longest_link))
+        checks.append(at_most("longest_link", longest, problem.longest_link, LENGTH))
     return checks

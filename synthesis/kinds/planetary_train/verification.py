@@ -24,6 +24,7 @@ from synthesis.kinds.planetary_train.design import (
 )
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import LENGTH
 
 
 def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:
@@ -38,7 +39,13 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
         if problem.max_size is not None:
             size = size_of(mechanism) * mechanism.module
             checks.append(
-                Check(name="size", passed=size <= problem.max_size * (1.0 + 1e-12), value=size, limit=problem.max_size)
+                Check(
+                    name="size",
+                    passed=size <= problem.max_size * (1.0 + 1e-12),
+                    value=size,
+                    limit=problem.max_size,
+                    dimension=LENGTH,
+                )
             )
     return Verification(passed=all(check.passed for check in checks), checks=checks)
 
@@ -155,6 +162,7 @@ def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrange
         passed=least >= problem.least_room,
         value=least * mechanism.module if rooms else None,
         limit=problem.min_clearance,
+        dimension=LENGTH,
     )
 
 

@@ -32,6 +32,7 @@ from synthesis.kinds.quick_return.design import (
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, RockerPosition
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import at_least, at_most
@@ -144,7 +145,7 @@ def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> li
     ]
     if problem.swing_angle is not None:
         off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing_angle)
-        checks.append(Check(name="swing", passed=off <= SWING_MET, value=off, limit=SWING_MET))
+        checks.append(Check(name="swing", passed=off <= SWING_MET, value=off, limit=SWING_MET, dimension=ANGLE))
     if problem.stroke is not None:
         off = math.inf if metrics.stroke is None else abs(metrics.stroke / problem.stroke - 1.0)
         checks.append(Check(name="stroke", passed=off <= STROKE_MET, value=off, limit=STROKE_MET))
@@ -183,7 +184,9 @@ def _constraint_checks(
 ) -> list[Check]:
     limits, checks = problem.constraints, []
     if limits.min_transmission_angle is not None:
-        checks.append(at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle))
+        checks.append(
+            at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle, ANGLE)
+        )
     if limits.grashof != "any":
         wanted = "rocker_rocker" if limits.grashof == "non_grashof" else limits.grashof
         checks.append(Check(name="grashof", passed=metrics.grashof == wanted))
@@ -191,9 +194,9 @@ def _constraint_checks(
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     if limits.link_length is not None:
         if limits.link_length.min > 0.0:
-            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min))
+            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min, LENGTH))
         if limits.link_length.max is not None:
-            checks.append(at_most("longest_link", max(lengths), limits.link_length.max))
+            checks.append(at_most("longest_link", max(lengths), limits.link_length.max, LENGTH))
     if limits.max_link_ratio is not None:
         checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
     fixed = set(mechanism.links[GROUND])

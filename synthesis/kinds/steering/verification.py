@@ -29,6 +29,7 @@ from synthesis.kinds.steering.design import (
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.checks import at_least, at_most
@@ -112,9 +113,9 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         Check(name="same_branch", passed=driven.on_branch),
     ]
     if not isinstance(design, FourbarMechanism):
-        checks.append(at_most("steers_correctly", worst, EXACT))
+        checks.append(at_most("steers_correctly", worst, EXACT, ANGLE))
     if problem.max_steering_error is not None:
-        checks.append(at_most("steering_error", worst, problem.max_steering_error))
+        checks.append(at_most("steering_error", worst, problem.max_steering_error, ANGLE))
     checks += _constraint_checks(problem, design, lengths, metrics)
     listed = np.linspace(0, len(half[0]) - 1, SHOWN).round().astype(int)
     stated = np.degrees(half[3]) if isinstance(design, FourbarMechanism) else half[3]
@@ -141,14 +142,16 @@ def _constraint_checks(
 ) -> list[Check]:
     limits, checks = problem.constraints, []
     if limits.min_transmission_angle is not None:
-        checks.append(at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle))
+        checks.append(
+            at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle, ANGLE)
+        )
     if limits.full_rotation or limits.grashof not in ("any", "non_grashof", "double_rocker"):
         checks.append(Check(name="full_rotation", passed=False))
     if limits.link_length is not None:
         if limits.link_length.min > 0.0:
-            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min))
+            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min, LENGTH))
         if limits.link_length.max is not None:
-            checks.append(at_most("longest_link", max(lengths), limits.link_length.max))
+            checks.append(at_most("longest_link", max(lengths), limits.link_length.max, LENGTH))
     if limits.max_link_ratio is not None:
         checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
     fixed = {name: complex(*design.skeleton.joints[name]) for name in ("O2", "O4")}

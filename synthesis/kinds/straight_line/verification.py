@@ -31,6 +31,7 @@ from synthesis.kinds.straight_line.design import (
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import LENGTH, PERCENT
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import at_most, constraint_checks
@@ -169,9 +170,11 @@ def _checks(
         off = metrics.deviation / length
         checks.append(Check(name="exact_line", passed=off <= limit, value=off, limit=limit))
     if problem.max_deviation is not None:
-        checks.append(at_most("deviation", metrics.deviation, problem.max_deviation))
+        checks.append(at_most("deviation", metrics.deviation, problem.max_deviation, LENGTH))
     if problem.max_velocity_variation is not None:
-        checks.append(at_most("velocity_variation", metrics.velocity_variation, problem.max_velocity_variation))
+        checks.append(
+            at_most("velocity_variation", metrics.velocity_variation, problem.max_velocity_variation, PERCENT)
+        )
     if problem.rotation != "any":
         checks.append(Check(name="rotation", passed=(sense > 0) == (problem.rotation == "ccw")))
     pins = [complex(mechanism.joints[name]) for name in mechanism.joints if name not in (*mechanism.links[GROUND], "P")]

@@ -1,0 +1,109 @@
+"""What a number measures: said once, on the field that holds it, or on the check that compares it.
+
+``Annotated[float, LENGTH]`` is a number of length units; the annotation may stand anywhere in a field's type, so that
+``list[Length]`` and ``Point | None`` have a dimension too. A number without one is pure: a ratio, a count, a share.
+Two dimensions depend on the problem: a *displacement* is that of a cam's follower, a length or degrees of its arm; an
+*output* is the angle of a link or the place of a slider.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from enum import StrEnum
+from functools import cache
+from typing import Annotated, Any, get_args
+
+from pydantic import BaseModel, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+
+class Dimension(StrEnum):
+    """What a number measures; its unit follows from the units of the problem."""
+
+    LENGTH = "length"
+    AREA = "area"
+    INVERSE_LENGTH = "inverse length"
+    ANGLE = "angle"
+    DISPLACEMENT = "displacement"
+    VELOCITY = "velocity"
+    ACCELERATION = "acceleration"
+    JERK = "jerk"
+    ACCELERATION_SQUARED = "acceleration squared"
+    OUTPUT = "output"
+    OUTPUT_PER_RADIAN = "output per radian"
+    OUTPUT_PER_RADIAN_SQUARED = "output per radian squared"
+    LENGTH_PER_RADIAN = "length per radian"
+    ROTATIONAL_SPEED = "rotational speed"
+    RADIAN_FREQUENCY = "radian frequency"
+    FORCE = "force"
+    STIFFNESS = "stiffness"
+    MASS = "mass"
+    TORQUE = "torque"
+    PERCENT = "percent"
+
+
+LENGTH = Dimension.LENGTH
+AREA = Dimension.AREA
+INVERSE_LENGTH = Dimension.INVERSE_LENGTH
+ANGLE = Dimension.ANGLE
+DISPLACEMENT = Dimension.DISPLACEMENT
+VELOCITY = Dimension.VELOCITY
+ACCELERATION = Dimension.ACCELERATION
+JERK = Dimension.JERK
+ACCELERATION_SQUARED = Dimension.ACCELERATION_SQUARED
+OUTPUT = Dimension.OUTPUT
+OUTPUT_PER_RADIAN = Dimension.OUTPUT_PER_RADIAN
+OUTPUT_PER_RADIAN_SQUARED = Dimension.OUTPUT_PER_RADIAN_SQUARED
+LENGTH_PER_RADIAN = Dimension.LENGTH_PER_RADIAN
+ROTATIONAL_SPEED = Dimension.ROTATIONAL_SPEED
+RADIAN_FREQUENCY = Dimension.RADIAN_FREQUENCY
+FORCE = Dimension.FORCE
+STIFFNESS = Dimension.STIFFNESS
+MASS = Dimension.MASS
+TORQUE = Dimension.TORQUE
+PERCENT = Dimension.PERCENT
+
+Length = Annotated[float, LENGTH]
+Angle = Annotated[float, ANGLE]
+"""Degrees."""
+
+
+class Measured(BaseModel):
+    """Base of every model whose numbers have dimensions: its JSON schema says them, as ``x-dimension``."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core_schema)
+        properties = handler.resolve_ref_schema(schema).get("properties", {})
+        for name, dimension in dimensions(cls).items():
+            properties[name]["x-dimension"] = dimension.value
+        return schema
+
+
+@cache
+def dimensions(model: type[BaseModel]) -> dict[str, Dimension]:
+    """The dimension of each field of a model that holds numbers of one; fields that hold models have none.
+
+    Raises
+    ------
+    TypeError
+        If a field holds numbers of two dimensions: it is two fields.
+    """
+    measured = {}
+    for name, field in model.model_fields.items():
+        of_field = {entry for entry in field.metadata if isinstance(entry, Dimension)} | set(_within(field.annotation))
+        if len(of_field) > 1:
+            raise TypeError(f"{model.__name__}.{name} measures {' and '.join(sorted(of_field))}: make two fields of it")
+        for dimension in of_field:
+            measured[name] = dimension
+    return measured
+
+
+def _within(annotation: Any) -> Iterator[Dimension]:
+    """The dimensions in a type: in the metadata of what is annotated, and in the members of unions and containers."""
+    for part in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
+        if isinstance(part, Dimension):
+            yield part
+        else:
+            yield from _within(part)
