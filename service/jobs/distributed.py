@@ -13,6 +13,7 @@ import structlog
 from service.jobs.broker import BrokerUnreachable, Publisher
 from service.jobs.database import connect
 from service.jobs.executor import Changed
+from service.jobs.leases import LeaseStore
 from service.jobs.listener import StoreListener
 from service.jobs.recovery import Recovery
 from service.jobs.store import JobStore
@@ -35,12 +36,12 @@ class CeleryExecutor:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._engine = connect(settings.store_url, durable=False)
-        self._store = JobStore(self._engine)
-        self._store.ping()
+        JobStore(self._engine).ping()
+        self._leases = LeaseStore(self._engine)
         self._publisher = Publisher(settings)
         self._queue: SimpleQueue[str | None] = SimpleQueue()
         self._sender = threading.Thread(target=self._send, name="sender", daemon=True)
-        self._recovery = Recovery(self._store, self._publisher, self._count_workers)
+        self._recovery = Recovery(self._leases, self._publisher, self._count_workers)
         self._listener: StoreListener | None = None
         self._workers = 0
 
@@ -85,7 +86,7 @@ class CeleryExecutor:
         self._engine.dispose()
 
     def _count_workers(self) -> None:
-        self._workers = self._store.workers()
+        self._workers = self._leases.workers()
 
     def _send(self) -> None:
         while (job_id := self._queue.get()) is not None:

@@ -24,9 +24,9 @@ from ulid import ULID
 from service import logs
 from service.jobs.broker import TASK, Publisher, celery_app
 from service.jobs.database import LaterTables, connect, unreachable, upgrade
+from service.jobs.leases import LeaseStore
 from service.jobs.local import LocalExecutor
 from service.jobs.recovery import Recovery
-from service.jobs.store import JobStore
 from service.metrics import HostMetrics
 from service.settings import Settings
 
@@ -47,9 +47,9 @@ class Host:
         self.id = str(ULID())
         self.lanes = LocalExecutor(settings, metrics)
         self._engine = connect(settings.store_url, durable=False)
-        self._store = JobStore(self._engine)
+        self._leases = LeaseStore(self._engine)
         self._publisher = Publisher(settings)
-        self._recovery = Recovery(self._store, self._publisher, lambda: None)
+        self._recovery = Recovery(self._leases, self._publisher, lambda: None)
         self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
         self._stopping = threading.Event()
         self._lock = threading.Lock()
@@ -88,7 +88,7 @@ class Host:
         self._recovery.stop()
         self.lanes.stop()
         try:
-            self._store.host_is_gone(self.id)
+            self._leases.host_is_gone(self.id)
         except SQLAlchemyError as error:  # then its signs of life grow old
             log.warning("the store does not answer", error=type(error).__name__)
         self._publisher.close()
@@ -102,9 +102,9 @@ class Host:
     def _beat(self) -> None:
         while not self._stopping.wait(BEAT_PERIOD_S):
             try:
-                for claim in self._store.renew(self.lanes.claims()):
+                for claim in self._leases.renew(self.lanes.claims()):
                     self.lanes.drop(claim)
-                self._store.host_is_there(self.id, self.lanes.ready())
+                self._leases.host_is_there(self.id, self.lanes.ready())
             except SQLAlchemyError as error:
                 if not unreachable(error):
                     log.exception("the leases could not be renewed")

@@ -15,8 +15,9 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.jobs.broker import BrokerUnreachable, Publisher
 from service.jobs.database import unreachable
+from service.jobs.leases import LeaseStore
+from service.jobs.statements import LEASE_S
 from service.jobs.states import Status
-from service.jobs.store import LEASE_S, JobStore
 
 PERIOD_S = 1.0
 
@@ -29,9 +30,9 @@ log = structlog.get_logger(__name__)
 class Recovery(threading.Thread):
     """Recovers jobs once a second until it is stopped; calls ``each_round`` as often."""
 
-    def __init__(self, store: JobStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
+    def __init__(self, leases: LeaseStore, publisher: Publisher, each_round: Callable[[], None]) -> None:
         super().__init__(name="recovery", daemon=True)
-        self._store = store
+        self._leases = leases
         self._publisher = publisher
         self._each_round = each_round
         self._stopping = threading.Event()
@@ -60,7 +61,7 @@ class Recovery(threading.Thread):
     def _take_up_abandoned(self) -> None:
         if time.monotonic() < self._trusted_from:
             return
-        for job_id, status in self._store.abandoned():
+        for job_id, status in self._leases.abandoned():
             log.warning("job abandoned by its worker host", job=job_id, job_is_now=status)
             if status == Status.FAILED:
                 log.warning("job failed", job=job_id, reason="its workers died too often")
@@ -68,12 +69,12 @@ class Recovery(threading.Thread):
     def _send_again(self) -> None:
         if not self._publisher.reachable:
             return
-        due = self._store.due(MAX_SENT_AT_ONCE)
+        due = self._leases.due(MAX_SENT_AT_ONCE)
         for n, job_id in enumerate(due):
             try:
                 self._publisher.send(job_id)
             except BrokerUnreachable:
-                self._store.not_sent(due[n:])
+                self._leases.not_sent(due[n:])
                 return
         if due:
             log.info("jobs sent again", jobs=len(due))

@@ -11,20 +11,11 @@ from sqlalchemy import delete, insert, select, text, update
 
 from service.access.keys import api_keys
 from service.jobs.database import LaterTables, connect, upgrade
+from service.jobs.leases import MAX_RESEND_S, LeaseStore
 from service.jobs.schema import StoreClock, hosts, jobs, metadata
+from service.jobs.statements import LEASE_S, RESEND_S, new_row
 from service.jobs.states import FINISHED, MOVES, Status
-from service.jobs.store import (
-    LEASE_S,
-    MAX_CRASHES,
-    MAX_KILLS,
-    MAX_RESEND_S,
-    RESEND_S,
-    JobStore,
-    KeyReused,
-    QueueFull,
-    Repeatable,
-    _new_row,
-)
+from service.jobs.store import MAX_CRASHES, MAX_KILLS, JobStore, KeyReused, QueueFull, Repeatable
 from tests.cluster.backend import CHOSEN
 
 ACTIONS = {
@@ -56,6 +47,11 @@ def engine(upgraded):
 @pytest.fixture
 def store(engine):
     return JobStore(engine)
+
+
+@pytest.fixture
+def leases(engine):
+    return LeaseStore(engine)
 
 
 @pytest.fixture
@@ -296,7 +292,7 @@ def test_a_downgrade_undoes_the_upgrade(tmp_path):
 def test_jobs_of_an_older_store_are_kept(tmp_path):
     engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
     upgrade(engine, "0001")
-    row = {**_new_row("", "motion", "old", "{}"), "status": "succeeded"}
+    row = {**new_row("", "motion", "old", "{}"), "status": "succeeded"}
     del row["tenant"]  # there were none yet
     with engine.begin() as connection:
         connection.execute(insert(jobs).values(row))
@@ -338,10 +334,10 @@ def test_who_does_not_know_whether_it_has_claimed_a_job_may_ask_again(store, job
 
 
 @pytest.mark.parametrize("name", ["requeue", "give_up", "crashed"])
-def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, job, name):
+def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases, job, name):
     store.claim(job.id, "first")
     overdue(engine, job.id)
-    assert store.abandoned() == [(job.id, Status.QUEUED)]
+    assert leases.abandoned() == [(job.id, Status.QUEUED)]
     store.claim(job.id, "second")
     before = store.get(job.id)
     late = {
@@ -353,27 +349,27 @@ def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, job, n
     assert store.get(job.id) == before
 
 
-def test_only_abandoned_jobs_are_taken_back(engine, store):
+def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     for job_id in ids[:3]:
         store.claim(job_id, f"claim of {job_id[-4:]}")
-    assert store.abandoned() == []
+    assert leases.abandoned() == []
     overdue(engine, *ids)
     store.succeed(ids[0], 1, "{}")
-    assert store.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
-    assert store.abandoned() == [(ids[2], Status.QUEUED)]
-    assert store.abandoned() == []
+    assert leases.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
+    assert leases.abandoned() == [(ids[2], Status.QUEUED)]
+    assert leases.abandoned() == []
     assert [store.get(job_id).status for job_id in ids] == ["succeeded", "running", "queued", "queued"]
 
 
-def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store, job):
+def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store, leases, job):
     for kill in range(MAX_KILLS):
         store.claim(job.id, f"claim {kill}")
         overdue(engine, job.id)
-        assert store.abandoned() == [(job.id, Status.QUEUED)]
+        assert leases.abandoned() == [(job.id, Status.QUEUED)]
     store.claim(job.id, "last")
     overdue(engine, job.id)
-    assert store.abandoned() == [(job.id, Status.FAILED)]
+    assert leases.abandoned() == [(job.id, Status.FAILED)]
     assert "/problems/worker-died" in store.get(job.id).error
 
 
@@ -385,7 +381,7 @@ def test_kills_are_forgiven_more_often_than_deaths(store, job):
     assert store.crashed(job.id, "one more", killed=False) == Status.FAILED
 
 
-def test_claims_that_are_of_no_use_are_named(store):
+def test_claims_that_are_of_no_use_are_named(store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
     _, _, cancelled, removed, done, taken = ids
     for job_id in ids[1:]:
@@ -396,32 +392,32 @@ def test_claims_that_are_of_no_use_are_named(store):
     store.succeed(done, 1, "{}")
     store.requeue(taken, taken)
     store.claim(taken, "another")
-    assert store.renew({job_id: job_id for job_id in ids}) == {cancelled, removed, taken}
-    assert store.renew({}) == set()
+    assert leases.renew({job_id: job_id for job_id in ids}) == {cancelled, removed, taken}
+    assert leases.renew({}) == set()
 
 
-def test_jobs_whose_messages_may_be_lost_are_due_once_and_later_again(engine, store):
+def test_jobs_whose_messages_may_be_lost_are_due_once_and_later_again(engine, store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
-    assert store.due(10) == [], "new jobs are on their way"
+    assert leases.due(10) == [], "new jobs are on their way"
     overdue(engine, *ids)
     store.claim(ids[3], "claim")
-    assert store.due(2) == ids[:2]
-    assert store.due(10) == [ids[2]]
-    assert store.due(10) == []
+    assert leases.due(2) == ids[:2]
+    assert leases.due(10) == [ids[2]]
+    assert leases.due(10) == []
     for _ in range(50):
-        store.not_sent(ids[1:])
-        assert store.due(10) == ids[1:3], "due at once, in the same tick of the clock too"
+        leases.not_sent(ids[1:])
+        assert leases.due(10) == ids[1:3], "due at once, in the same tick of the clock too"
     store.claim(ids[0], "claim")
     store.requeue(ids[0], "claim")
-    assert store.due(10) == [ids[0]], "nobody has a message for a job that has come back"
+    assert leases.due(10) == [ids[0]], "nobody has a message for a job that has come back"
 
 
-def test_the_longer_a_job_waits_the_rarer_it_is_sent(engine, store, job):
+def test_the_longer_a_job_waits_the_rarer_it_is_sent(engine, leases, job):
     pauses = []
     for waited in (1.0, 60.0, 86_400.0):
         with engine.begin() as connection:
             connection.execute(update(jobs).values(queued_at=StoreClock() - waited, due_at=StoreClock() - 1.0))
-        assert store.due(1) == [job.id]
+        assert leases.due(1) == [job.id]
         with engine.connect() as connection:
             pauses.append(connection.execute(select(jobs.c.due_at - StoreClock())).scalar())
     assert pauses == pytest.approx([RESEND_S, 60.0, MAX_RESEND_S], abs=2.0)
@@ -432,14 +428,14 @@ def test_the_clock_of_the_store_is_the_time(engine):
         assert connection.execute(select(StoreClock())).scalar() == pytest.approx(time.time(), abs=5.0)
 
 
-def test_hosts_are_there_as_long_as_they_say_so(engine, store):
-    assert store.workers() == 0
-    store.host_is_there("one", 2)
-    store.host_is_there("two", 3)
-    store.host_is_there("one", 1)
-    assert store.workers() == 4
+def test_hosts_are_there_as_long_as_they_say_so(engine, leases):
+    assert leases.workers() == 0
+    leases.host_is_there("one", 2)
+    leases.host_is_there("two", 3)
+    leases.host_is_there("one", 1)
+    assert leases.workers() == 4
     with engine.begin() as connection:
         connection.execute(update(hosts).where(hosts.c.id == "two").values(seen_at=hosts.c.seen_at - 2 * LEASE_S))
-    assert store.workers() == 1
-    store.host_is_gone("one")
-    assert store.workers() == 0
+    assert leases.workers() == 1
+    leases.host_is_gone("one")
+    assert leases.workers() == 0

@@ -1,0 +1,123 @@
+"""Leases: which attempts and worker hosts are alive, and which queued jobs have to be sent again.
+
+Several servers and worker hosts may share a store. Words: a *claim* is the mark of one attempt, chosen by whoever has
+it run; as long as the attempt goes on, its *lease* is renewed, and when that has expired the job is abandoned. A queued
+job is *due* when its message may have been lost, and it should be sent again. Leases and dues go by the clock of the
+database, in ``due_at``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sqlalchemy import Engine, case, delete, func, insert, select, update
+
+from service.jobs.schema import StoreClock, hosts, jobs
+from service.jobs.statements import LEASE_S, MAX_IDS, RESEND_S, died
+from service.jobs.states import Status
+from service.jobs.store import MAX_KILLS
+
+MAX_RESEND_S = 600.0
+"""Longest time from one sending of a waiting job to the next."""
+
+_HOST_FORGOTTEN_S = 3600.0
+"""Rows of hosts that vanished are removed after this: long after their lease, so that the clocks do not matter."""
+
+
+class LeaseStore:
+    """Reads and changes the leases of attempts and hosts. Safe to use from many threads and processes."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+
+    def renew(self, claims: Mapping[str, str]) -> set[str]:
+        """Renew the leases of attempts, given as jobs by their claims; names the claims that are of no use any more.
+
+        Those are of jobs that were cancelled, or removed, or that another attempt has been given.
+        """
+        if not claims:
+            return set()
+        change = (
+            update(jobs)
+            .where(jobs.c.status == Status.RUNNING, jobs.c.claim.in_(claims))
+            .values(due_at=StoreClock() + LEASE_S)
+        )
+        query = select(jobs.c.id, jobs.c.status, jobs.c.claim).where(jobs.c.id.in_(set(claims.values())))
+        with self._engine.begin() as connection:
+            connection.execute(change)
+            rows = {row.id: row for row in connection.execute(query)}
+        return {claim for claim, job_id in claims.items() if _useless(rows.get(job_id), claim)}
+
+    def abandoned(self) -> list[tuple[str, Status]]:
+        """Take the running jobs whose leases are over back into the queue: whoever ran them is gone with its workers.
+
+        Returns
+        -------
+        list
+            These jobs, and what they are now; like :meth:`crashed`.
+        """
+        expired = (jobs.c.status == Status.RUNNING, jobs.c.due_at < StoreClock())
+        moves = []
+        with self._engine.connect() as connection:
+            job_ids = connection.execute(select(jobs.c.id).where(*expired)).scalars().all()
+        for job_id in job_ids:
+            change = died(job_id, MAX_KILLS).where(*expired)
+            with self._engine.begin() as connection:
+                status = connection.execute(change).scalar_one_or_none()
+            if status is not None:
+                moves.append((job_id, Status(status)))
+        return moves
+
+    def due(self, at_most: int) -> list[str]:
+        """Queued jobs whose messages may be lost, oldest first, to be sent again by the caller and nobody else.
+
+        Whoever asks next does not get them before their next time.
+        """
+        waiting = (
+            select(jobs.c.id)
+            .where(jobs.c.status == Status.QUEUED, jobs.c.due_at <= StoreClock())
+            .order_by(jobs.c.id)
+            .limit(at_most)
+            .with_for_update(skip_locked=True)
+        )
+        waited = StoreClock() - jobs.c.queued_at
+        pause = case((waited < RESEND_S, RESEND_S), (waited > MAX_RESEND_S, MAX_RESEND_S), else_=waited)
+        change = update(jobs).where(jobs.c.id.in_(waiting)).values(due_at=StoreClock() + pause).returning(jobs.c.id)
+        with self._engine.begin() as connection:
+            return sorted(connection.execute(change).scalars())
+
+    def not_sent(self, job_ids: Sequence[str]) -> None:
+        """Make jobs due again at once that :meth:`due` has given out and that could not be sent."""
+        for start in range(0, len(job_ids), MAX_IDS):
+            unsent = jobs.c.id.in_(job_ids[start : start + MAX_IDS])
+            with self._engine.begin() as connection:
+                connection.execute(
+                    update(jobs).where(unsent, jobs.c.status == Status.QUEUED).values(due_at=StoreClock())
+                )
+
+    def host_is_there(self, host_id: str, workers: int) -> None:
+        """Note a sign of life of a worker host, and how many of its workers are ready."""
+        values = {"workers": workers, "seen_at": StoreClock()}
+        with self._engine.begin() as connection:
+            if connection.execute(update(hosts).where(hosts.c.id == host_id).values(values)).rowcount == 0:
+                connection.execute(insert(hosts).values(id=host_id, **values))
+                connection.execute(delete(hosts).where(hosts.c.seen_at < StoreClock() - _HOST_FORGOTTEN_S))
+
+    def host_is_gone(self, host_id: str) -> None:
+        """Forget a worker host that has stopped."""
+        with self._engine.begin() as connection:
+            connection.execute(delete(hosts).where(hosts.c.id == host_id))
+
+    def workers(self) -> int:
+        """How many workers are ready on all hosts that are there."""
+        query = select(func.sum(hosts.c.workers)).where(hosts.c.seen_at > StoreClock() - LEASE_S)
+        with self._engine.connect() as connection:
+            return connection.execute(query).scalar() or 0
+
+
+def _useless(row: Any, claim: str) -> bool:
+    # A job that is queued is about to be claimed, and one that has ended by itself is about to be done with.
+    if row is None:
+        return True
+    return bool(row.status == Status.CANCELLED or (row.status == Status.RUNNING and row.claim != claim))
