@@ -150,26 +150,6 @@ class RunningCam:
         """The preload with which F is nowhere below a floor, the rest of the load as it is; 0 where none is needed."""
         return max(0.0, floor + self.load.preload - self.force_extremes.least)
 
-    def least_spring_rate(self, floor: float = 0.0) -> float:
-        """The spring rate with which F is nowhere below a floor, the rest of the load as it is.
-
-        The least F over the cam is a concave function of k; Newton's steps from k = 0 climb to its root and never pass
-        it. Infinite where the preload alone has to hold the follower, at s = 0, and does not.
-        """
-        if self.program.peaks[0].least < -SAME * self.program.lift:
-            raise DimensionError("displacement", "nowhere below 0, where the spring has its preload", self.program.lift)
-        rate = 0.0
-        for _ in range(STEPS):
-            worst = replace(self, load=replace(self.load, spring_rate=rate)).force_extremes
-            missing = floor - worst.least
-            s = float(self.program.motion(worst.at_least).s)
-            if missing <= CONVERGED * max(abs(floor), self.force_extremes.largest):
-                return rate
-            if s <= CONVERGED * self.program.lift:
-                return math.inf
-            rate += missing / s
-        return rate
-
     def jump_speed(self, floor: float = 0.0) -> float:
         """The speed at which F first falls to a floor; the given speed does not matter.
 

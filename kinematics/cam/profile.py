@@ -208,43 +208,6 @@ def even_angles(count: int) -> Real:
     return np.arange(count, dtype=np.float64) * (TURN / count)
 
 
-def chordal_angles(cam: Cam, tolerance: float, distance: float = 0.0) -> Real:
-    """Cam angles such that chords between an offset curve's points stay within a tolerance of it.
-
-    The sagitta of a chord is measured at its middle angle and halved steps are taken until it is small enough; joints
-    of the program are always among the angles.
-
-    Parameters
-    ----------
-    tolerance : float
-        Greatest sagitta, a length; at least 1e-9 of the cam's size.
-    distance : float
-        Which offset curve: 0 the pitch curve, −roller_radius the profile.
-    """
-    if not (math.isfinite(tolerance) and tolerance >= 1e-9 * cam.size):
-        raise DimensionError("chordal tolerance", f"at least {1e-9 * cam.size}", tolerance)
-    angles: Real = np.unique(np.concatenate([cam.program.breaks, even_angles(FEWEST_CHORDS), [TURN]]))
-    while True:
-        low, high = angles[:-1], angles[1:]
-        middle = 0.5 * (low + high)
-        a, m, b = (cam.offset_curve(at, distance) for at in (low, middle, high))
-        chord = b - a
-        length = np.abs(chord)
-        off = np.abs(((m - a) * np.conj(chord)).imag) / np.where(length > 0.0, length, 1.0)
-        sagitta = np.where(length > 1e-12 * cam.size, off, np.abs(m - a))
-        coarse = (sagitta > tolerance) & (high - low > SHORTEST_STEP)
-        if not coarse.any():
-            return angles[:-1]
-        angles = np.sort(np.concatenate([angles, middle[coarse]]))
-
-
-FEWEST_CHORDS = 24
-"""Chords that a chordal path starts from, so that a bend and its counterbend are not taken for a straight line."""
-
-SHORTEST_STEP = 1e-7
-"""Radians below which a chord is not halved any more: the curve has a corner there."""
-
-
 def _inverse(values: Real) -> Real:
     """1/x with infinity for zero."""
     infinite: Real = np.full(values.shape, np.inf)

@@ -1,4 +1,4 @@
-"""Segments of a motion program: laws, dwells, polynomials and splines that meet conditions, knots of a solver.
+"""Segments of a motion program: laws, dwells, polynomials through conditions, piecewise polynomials over knots.
 
 Angles are radians of cam rotation, displacements any unit (radians for an oscillating follower); derivatives are per
 radian of cam rotation.
@@ -70,33 +70,7 @@ def polynomial_segment(angle: float, conditions: Sequence[Condition]) -> Segment
     DimensionError
         A condition outside the segment, or conditions that do not determine one polynomial.
     """
-    return Segment("polynomial", _through(_angle(angle), conditions, len(conditions) - 1, []))
-
-
-def coefficient_segment(angle: float, coefficients: ArrayLike) -> Segment:
-    """Σ c_k (θ/β)^k with Norton's coefficients, constant first."""
-    return Segment("polynomial", polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scaled(_angle(angle), 1.0))
-
-
-def spline_segment(
-    angle: float, conditions: Sequence[Condition], degree: int, knots: Sequence[float] | None = None
-) -> Segment:
-    """The spline of a degree through conditions; all but the last derivative run through its knots.
-
-    n conditions determine n − degree − 1 inner knots. Unless given they are the averages of ``degree`` neighbouring
-    conditions' angles (de Boor, *A Practical Guide to Splines*, ch. XIII), which keeps the spline determined.
-    """
-    inner = len(conditions) - degree - 1
-    if degree < 1 or inner < 0:
-        raise DimensionError(
-            "degree of the spline", f"from 1 to {len(conditions) - 1}, one less than conditions", degree
-        )
-    if knots is None:
-        at = np.sort([condition.angle for condition in conditions])
-        knots = [float(at[k + 1 : k + 1 + degree].mean()) for k in range(inner)]
-    if len(knots) != inner or any(not 0.0 < knot < angle for knot in knots):
-        raise DimensionError("knots", f"{inner} angles within the segment", list(knots))
-    return Segment("spline", _through(_angle(angle), conditions, degree, sorted(knots)))
+    return Segment("polynomial", _through(_angle(angle), conditions))
 
 
 def knot_segment(knots: ArrayLike, coefficients: ArrayLike) -> Segment:
@@ -107,68 +81,27 @@ def knot_segment(knots: ArrayLike, coefficients: ArrayLike) -> Segment:
     return Segment("spline", pieces)
 
 
-def jerk_segment(knots: ArrayLike, state: tuple[float, float, float], jerk: ArrayLike) -> Segment:
-    """The motion from s, v, a at angle 0 under a given jerk: what a solver over knots has found, without gaps.
-
-    Parameters
-    ----------
-    knots : float, shape (n + 1,)
-        Angles from 0.
-    state : tuple of three floats
-        s, v, a at the first knot.
-    jerk : float, shape (n,) or (n, 2)
-        Of each interval: constant, or at its start and its end, linear between.
-    """
-    breaks, values = np.asarray(knots, dtype=np.float64), np.asarray(jerk, dtype=np.float64)
-    if values.ndim not in (1, 2) or len(values) != len(breaks) - 1 or values.shape[1:] not in ((), (2,)):
-        raise DimensionError("jerk", "one value, or two, for each interval between knots", values.shape)
-    ends = values if values.ndim == 2 else np.stack([values, values], axis=1)
-    coefficients = np.zeros((len(values), 5 if values.ndim == 2 else 4))
-    s, v, a = state
-    for row, h, (j0, j1) in zip(coefficients, np.diff(breaks), ends, strict=True):
-        slope = (j1 - j0) / h
-        row[:4] = s, v, a / 2.0, j0 / 6.0
-        if values.ndim == 2:
-            row[4] = slope / 24.0
-        s += h * (v + h * (a / 2.0 + h * (j0 / 6.0 + h * slope / 24.0)))
-        v += h * (a + h * (j0 / 2.0 + h * slope / 6.0))
-        a += h * (j0 + h * slope / 2.0)
-    return knot_segment(breaks, coefficients)
-
-
-def _through(angle: float, conditions: Sequence[Condition], degree: int, knots: Sequence[float]) -> Pieces:
-    """Local coefficients of the piecewise polynomial, in the unit of each piece, from one square linear system."""
+def _through(angle: float, conditions: Sequence[Condition]) -> Pieces:
+    """The polynomial in θ/β from one square linear system, whose rows are scaled to 1 and refined once."""
     if not conditions:
         raise DimensionError("conditions", "at least one", [])
-    breaks = np.array([0.0, *knots, angle])
-    spans = np.diff(breaks)
-    terms, count = degree + 1, len(spans)
-    matrix, values = np.zeros((terms * count, terms * count)), np.zeros(terms * count)
+    terms = len(conditions)
+    matrix, values = np.zeros((terms, terms)), np.zeros(terms)
     scale = max(abs(c.value) * angle**c.order for c in conditions) or 1.0
     for row, (at, order, value) in enumerate(conditions):
-        if not (0.0 <= at <= angle and math.isfinite(value) and 0 <= order <= degree):
+        if not (0.0 <= at <= angle and math.isfinite(value) and 0 <= order < terms):
             raise DimensionError(
-                "condition", f"at an angle from 0 to {angle}, of an order up to {degree}", (at, order, value)
+                "condition", f"at an angle from 0 to {angle}, of an order up to {terms - 1}", (at, order, value)
             )
-        piece = min(int(np.searchsorted(breaks, at, side="right")) - 1, count - 1)
-        here = matrix[row, piece * terms : (piece + 1) * terms]
-        here[:] = _powers((at - breaks[piece]) / spans[piece], terms, order) * (angle / spans[piece]) ** order
+        matrix[row] = _powers(at / angle, terms, order)
         values[row] = value * angle**order / scale
-    row = len(conditions)
-    for piece in range(count - 1):
-        for order in range(degree):
-            left, right = angle / spans[piece], angle / spans[piece + 1]
-            matrix[row, piece * terms : (piece + 1) * terms] = _powers(1.0, terms, order) * left**order
-            matrix[row, (piece + 1) * terms : (piece + 2) * terms] = -_powers(0.0, terms, order) * right**order
-            row += 1
     size = np.abs(matrix).max(axis=1)
     matrix, values = matrix / size[:, None], values / size
     if np.linalg.cond(matrix) > 1.0 / INDEPENDENT:
         raise DimensionError("conditions", "such that they determine one polynomial", [tuple(c) for c in conditions])
-    solution = np.linalg.solve(matrix, values)
-    solution += np.linalg.solve(matrix, values - matrix @ solution)
-    rows = solution.reshape(count, terms) * scale / spans[:, None] ** np.arange(terms)
-    return polynomial_pieces(breaks, rows)
+    coefficients = np.linalg.solve(matrix, values)
+    coefficients += np.linalg.solve(matrix, values - matrix @ coefficients)
+    return polynomial_pieces([0.0, angle], [coefficients * scale / angle ** np.arange(terms)])
 
 
 def _powers(x: float, terms: int, order: int) -> Real:

@@ -21,9 +21,6 @@ from functools import cached_property
 
 from kinematics.errors import DimensionError
 
-INCH = 25.4
-"""Millimetres in an inch: a module in mm is 25.4 / diametral pitch (Norton, eq. 9.4d)."""
-
 FULL_DEPTH_ADDENDUM = 1.0
 FULL_DEPTH_DEDENDUM = 1.25
 """Full-depth teeth, shares of the module (Norton, Table 9-1, coarse pitch)."""
@@ -33,17 +30,6 @@ PRESSURE_ANGLE = math.radians(20.0)
 ON_LIMIT = 1e-12
 """A tip this share of the limiting radius beyond it counts as on it: teeth on the limit are sound, and rounding must
 not condemn them."""
-
-
-def fine_pitch_dedendum(diametral_pitch: float) -> float:
-    """Dedendum, in modules, of a fine-pitch gear: 1.2 + 0.002 in × p_d for p_d ≥ 20 (Norton, Table 9-1).
-
-    Parameters
-    ----------
-    diametral_pitch : float
-        Teeth per inch of pitch diameter.
-    """
-    return 1.2 + 0.002 * diametral_pitch
 
 
 def involute(angle: float) -> float:
@@ -105,11 +91,6 @@ class Gear:
             raise DimensionError("addendum and dedendum", "positive", (self.addendum, self.dedendum))
         if not (self.tip_radius > 0.0 and self.root_radius > 0.0):
             raise DimensionError("tip and root radius", "positive", (self.tip_radius, self.root_radius))
-
-    @classmethod
-    def from_diametral_pitch(cls, teeth: int, diametral_pitch: float, pressure_angle: float = PRESSURE_ANGLE) -> Gear:
-        """A full-depth gear of ``diametral_pitch`` teeth per unit of pitch diameter; lengths are in that unit."""
-        return cls(teeth, 1.0 / diametral_pitch, pressure_angle)
 
     @property
     def _outward(self) -> float:
@@ -327,36 +308,6 @@ class Mesh:
         return room + (self.gear.teeth - self.pinion.teeth) * involute(self.pressure_angle) < 0.0
 
     @property
-    def trims(self) -> bool:
-        """Whether an internal pair cannot be brought together radially, only along its axes; external pairs always can.
-
-        A pinion that is moved in towards the ring's teeth, or the cutter that shapes them, passes their tips where
-        θ₁ + inv φ_a₁ − inv φ_w ≥ (z₂/z₁)(θ₂ + inv φ_a₂ − inv φ_w) with sin² θ₁ = (1 − (cos φ_a₁/cos φ_a₂)²)/(1 −
-        (z₁/z₂)²) and sin² θ₂ = ((cos φ_a₂/cos φ_a₁)² − 1)/((z₂/z₁)² − 1) (SDP/SI, Elements of Metric Gear Technology,
-        eq. 5-9, 5-10: trimming). It is no fault of gears that run: planets are put in along their axes. A ring whose
-        tips lie below its base circle has no involute there; such a pair is taken to trim.
-        """
-        if not self.gear.internal:
-            return False
-        tips = [gear.base_radius / gear.tip_radius for gear in (self.pinion, self.gear)]
-        if tips[1] > 1.0:
-            return True
-        if tips[0] >= tips[1]:
-            # The room between the tips shrinks all the way in; it is there where the pair runs.
-            return False
-        teeth = self.gear.teeth / self.pinion.teeth
-        quotient = tips[1] / tips[0]
-        squares = (1.0 - 1.0 / quotient**2) / (1.0 - 1.0 / teeth**2), (quotient**2 - 1.0) / (teeth**2 - 1.0)
-        if max(squares) > 1.0:
-            # The pinion's tip circle is larger than the ring's.
-            return True
-        one, other = (
-            math.asin(math.sqrt(square)) + involute(math.acos(tip)) - involute(self.pressure_angle)
-            for square, tip in zip(squares, tips, strict=True)
-        )
-        return one < teeth * other
-
-    @property
     def clearance(self) -> float:
         """The smaller room between a tip and the mate's root on the line of centres."""
         one, two, distance = self.pinion, self.gear, self.centre_distance
@@ -384,17 +335,6 @@ class Mesh:
         return math.pi * teeth * (1.0 - self.contact_ratio + recess**2 + approach**2)
 
 
-def rack_path(gear: Gear, rack_addendum: float) -> tuple[float, float]:
-    """Approach and recess of a gear that drives a rack of this addendum (a length, not a share).
-
-    The rack's tip line cuts the line of action at a / sin φ before the pitch point; contact cannot begin before the
-    tangent point r sin φ of the base circle (see :func:`rack_interferes`).
-    """
-    phi = gear.pressure_angle
-    recess = math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.base_radius * math.tan(phi)
-    return rack_addendum / math.sin(phi), recess
-
-
 def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
     """Whether a rack of this addendum (a length) reaches below the gear's base tangent: a > r sin² φ."""
     return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + ON_LIMIT)
@@ -418,21 +358,6 @@ def largest_gear(
     if pinion >= least_teeth_with_rack(pressure_angle, addendum):
         return None
     return max(0, math.floor((pinion * pinion * squared - 4.0 * addendum**2) / room * (1.0 + ON_LIMIT)))
-
-
-def least_pinion(ratio: float, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> float:
-    """Real number of pinion teeth from which on a gear of ``ratio`` ≥ 1 times as many does not interfere.
-
-    z = 2 k (G + √(G² + (1 + 2 G) sin² φ)) / ((1 + 2 G) sin² φ) (Norton, eq. 9.9; Rao, Sec. 6.12).
-    """
-    squared = (1.0 + 2.0 * ratio) * math.sin(pressure_angle) ** 2
-    return 2.0 * addendum * (ratio + math.sqrt(ratio * ratio + squared)) / squared
-
-
-def largest_addendum(pinion: int, gear: int, pressure_angle: float = PRESSURE_ANGLE) -> float:
-    """Largest addendum coefficient of the gear that does not interfere with the pinion, at standard distance."""
-    squared = math.sin(pressure_angle) ** 2
-    return 0.5 * (math.sqrt(gear * gear + squared * (pinion * pinion + 2.0 * pinion * gear)) - gear)
 
 
 def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:

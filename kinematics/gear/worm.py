@@ -33,26 +33,6 @@ class WormSet:
         if not all(0.0 < number < math.inf for number in numbers):
             raise DimensionError("worm set", "of positive numbers", numbers)
 
-    @classmethod
-    def from_lead(cls, lead: float, ratio: int, distance: float, threads: int = 1) -> WormSet:
-        """A set of given lead, ratio and centre distance: D_g = ratio × L / π, and the worm takes the rest.
-
-        Raises
-        ------
-        DimensionError
-            Where the gear alone fills the distance.
-        """
-        rest = 2.0 * distance - ratio * lead / math.pi
-        if not rest > 0.0:
-            raise DimensionError("distance", f"above {0.5 * ratio * lead / math.pi:.6g}", distance)
-        return cls(threads, ratio * threads, lead / threads, rest)
-
-    @classmethod
-    def from_helix(cls, threads: int, gear_teeth: int, gear_diameter: float, gear_helix: float) -> WormSet:
-        """A set of given gear: its helix angle is the worm's lead angle."""
-        pitch = math.pi * gear_diameter / gear_teeth
-        return cls(threads, gear_teeth, pitch, threads * pitch / (math.pi * math.tan(gear_helix)))
-
     @property
     def ratio(self) -> float:
         """Worm speed over gear speed, z / n."""
@@ -86,15 +66,3 @@ class WormSet:
     def is_locking(self, friction: float) -> bool:
         """Whether the gear cannot drive the worm: tan λ ≤ μ, for square threads."""
         return math.tan(self.lead_angle) <= friction
-
-
-def smallest_worm(ratio: int, axial_pitch: float, distance: float, most_threads: int) -> WormSet | None:
-    """The set of so many threads at most whose worm is smallest: the more threads, the larger the gear.
-
-    None where a gear of a single-threaded worm already fills the distance.
-    """
-    for threads in range(most_threads, 0, -1):
-        gear = ratio * threads * axial_pitch / math.pi
-        if gear < 2.0 * distance:
-            return WormSet(threads, ratio * threads, axial_pitch, 2.0 * distance - gear)
-    return None

@@ -24,20 +24,3 @@ def outer_angle(inner: ArrayLike, ratio: ArrayLike) -> Real:
 def davis_arm_angle(ratio: ArrayLike) -> Real:
     """Angle of the arms of Davis's gear from the vehicle's axis in the straight position; radians."""
     return np.asarray(np.arctan(0.5 * np.asarray(ratio, np.float64)))
-
-
-def davis_angles(height: ArrayLike, arm_angle: ArrayLike, travel: ArrayLike) -> tuple[Real, Real]:
-    """Angles of inner and outer wheel when the bar of Davis's gear has moved, radians.
-
-    Parameters
-    ----------
-    height : float
-        From the line of the kingpins to the bar.
-    arm_angle : float
-        Of the arms in the straight position, radians.
-    travel : float
-        Of the bar from there; positive for the turn in which this is the order of the wheels.
-    """
-    h, a, x = (np.asarray(value, np.float64) for value in (height, arm_angle, travel))
-    lean = h * np.tan(a)
-    return np.asarray(a - np.arctan2(lean - x, h)), np.asarray(np.arctan2(lean + x, h) - a)

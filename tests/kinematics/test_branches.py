@@ -14,34 +14,20 @@ import numpy as np
 import pytest
 
 from kinematics.errors import MechanismError
-from kinematics.linkage import (
-    CROSSED,
-    OPEN,
-    Fourbar,
-    count_circuits,
-    positions,
-    toggle_angles,
-)
+from kinematics.linkage import CROSSED, OPEN, Fourbar, positions, toggle_angles
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import (
-    branches,
-    holding_reference,
-    toggles,
-)
-from kinematics.linkage.planar.mechanism import (
-    Mechanism,
-    Slide,
-    TopologyError,
-)
+from kinematics.linkage.planar.limits import branches, holding_reference, toggles
+from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import DYADIC, EVERY, RATIOS, take
 from tests.kinematics.sampling import random_fourbars
 from tests.kinematics.sampling import take as take_fourbar
 from tests.oracles.constraints import SAME, Constraints, Trace
 from tests.oracles.elimination import Elimination
+from tests.oracles.grashof_circuits import count_circuits
 
 TURN = 2.0 * np.pi
 

@@ -11,7 +11,6 @@ from kinematics.linkage import (
     Fourbar,
     barker_class,
     can_assemble,
-    count_circuits,
     full_rotation,
     input_limits,
     positions,
@@ -24,6 +23,7 @@ from kinematics.linkage import (
 )
 from tests.kinematics.sampling import assembled_angles, plain, random_fourbars, signs, take
 from tests.oracles.continuation import configurations, follow, reaches
+from tests.oracles.grashof_circuits import count_circuits
 
 GAP = 1e-4
 """Random linkages keep this distance from change points, where neither side can be sure of a circuit."""

@@ -8,20 +8,19 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
 from kinematics.linkage import CROSSED, OPEN, Fourbar, motion, positions, toggle_angles, transmission_angle
-from kinematics.linkage.fourbar.curvature import (
+from kinematics.linkage.fourbar.curvature import path_curvature, pole
+from tests.cases import Case, cases
+from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
+from tests.oracles.differences import derivative
+from tests.oracles.fourbar_instants import (
     PAIRS,
     bresse_circles,
     instant_center_count,
     instant_centers,
     mechanical_advantage,
-    path_curvature,
-    pole,
     torque_ratio,
     velocity_ratio,
 )
-from tests.cases import Case, cases
-from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
-from tests.oracles.differences import derivative
 
 BATCH = 10_000
 FIELDS = ("input_pivot", "output_pivot", "input", "coupler", "output", "coupler_point")

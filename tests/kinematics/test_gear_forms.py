@@ -10,18 +10,20 @@ from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import GLEASON_TEETH, BevelPair, cone_angles
-from kinematics.gear.helical import (
-    HelicalGear,
+from kinematics.gear.helical import HelicalGear, helix_angle_for_distance
+from kinematics.gear.teeth import Mesh
+from kinematics.gear.worm import WormSet
+from tests.cases import Case, cases
+from tests.oracles.gear_formulas import (
     crossed_at_distance,
     crossed_by_diameters,
     helical_replacement,
-    helix_angle_for_distance,
     helix_angle_for_face,
     least_crossed_distance,
+    smallest_worm,
+    worm_of_helix,
+    worm_of_lead,
 )
-from kinematics.gear.teeth import Mesh
-from kinematics.gear.worm import WormSet, smallest_worm
-from tests.cases import Case, cases
 
 rad, deg = math.radians, math.degrees
 
@@ -162,7 +164,7 @@ def test_gleasons_teeth() -> None:
 @pytest.mark.parametrize("case", cases("worm_by_lead", "gear"))
 def test_worm_by_lead(case: Case) -> None:
     x = case.inputs
-    worm = WormSet.from_lead(x["lead"], x["ratio"], x["C"])
+    worm = worm_of_lead(x["lead"], x["ratio"], x["C"])
     case.check(Dg=worm.gear_diameter, Dw=worm.worm_diameter)
     assert worm.centre_distance == pytest.approx(x["C"])
 
@@ -179,7 +181,7 @@ def test_smallest_worm(case: Case) -> None:
 @pytest.mark.parametrize("case", cases("worm_by_helix", "gear"))
 def test_worm_by_helix(case: Case) -> None:
     x = case.inputs
-    worm = WormSet.from_helix(x["tw"], x["Tg"], x["Dg"], rad(x["psi_g"]))
+    worm = worm_of_helix(x["tw"], x["Tg"], x["Dg"], rad(x["psi_g"]))
     case.check(
         psi_w=round(deg(worm.worm_helix_angle), 9),
         R=worm.ratio,
@@ -203,7 +205,7 @@ def test_worm_by_helix(case: Case) -> None:
         lambda: cone_angles(1.0, 0.5),
         lambda: BevelPair(30, 20, 2.0),
         lambda: WormSet(1, 20, 1.0, -2.0),
-        lambda: WormSet.from_lead(5.0, 20, 15.0),
+        lambda: worm_of_lead(5.0, 20, 15.0),
     ],
 )
 def test_wrong_calls(call: object) -> None:

@@ -11,25 +11,21 @@ from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
 from kinematics.gear.teeth import (
-    INCH,
     Gear,
     Mesh,
-    fine_pitch_dedendum,
     inverse_involute,
     involute,
-    largest_addendum,
     largest_gear,
-    least_pinion,
     least_teeth_with_rack,
     rack_interferes,
-    rack_path,
     saving_shift,
 )
 from tests.cases import Case, cases
+from tests.oracles.gear_formulas import INCH, fine_pitch_dedendum, largest_addendum, least_pinion, rack_path, trims
 
 
 def mesh_of(first: int, second: int, pitch: float, degrees: float) -> Mesh:
-    return Mesh(*(Gear.from_diametral_pitch(n, pitch, math.radians(degrees)) for n in (first, second)))
+    return Mesh(*(Gear(n, 1.0 / pitch, math.radians(degrees)) for n in (first, second)))
 
 
 def gear_by_radii(radius: float, tip: float, pitch: float, degrees: float, internal: bool = False) -> Gear:
@@ -406,12 +402,12 @@ Metric Gear Technology, Table 5-3a). The cutter's addendum is 1.25 modules."""
 
 @pytest.mark.parametrize(("cutter", "ring"), TRIMMING.items())
 def test_trimming(cutter: int, ring: int) -> None:
-    def trims(teeth: int) -> bool:
-        return Mesh(Gear(cutter, 1.0, addendum=1.25), Gear(teeth, 1.0, internal=True)).trims
+    def trimmed(teeth: int) -> bool:
+        return trims(Mesh(Gear(cutter, 1.0, addendum=1.25), Gear(teeth, 1.0, internal=True)))
 
-    assert not any(trims(teeth) for teeth in (ring, ring + 1, ring + 10, 3 * ring))
+    assert not any(trimmed(teeth) for teeth in (ring, ring + 1, ring + 10, 3 * ring))
     # With so few teeth of difference that the cutter is larger than the hole there is no other answer.
-    assert all(trims(teeth) for teeth in range(cutter + 1, ring))
+    assert all(trimmed(teeth) for teeth in range(cutter + 1, ring))
 
 
 @pytest.mark.parametrize("pinion", [20, 30, 40, 60, 100])

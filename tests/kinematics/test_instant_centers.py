@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar.closed_form import Fourbar
-from kinematics.linkage.fourbar.curvature import PAIRS
-from kinematics.linkage.fourbar.curvature import instant_centers as fourbar_centers
 from kinematics.linkage.planar.catalogue import fourbar, sixbar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.instant_centers import instant_centers
+from tests.oracles.fourbar_instants import PAIRS
+from tests.oracles.fourbar_instants import instant_centers as fourbar_centers
 
 SIXBAR = sixbar(
     "stephenson_2",

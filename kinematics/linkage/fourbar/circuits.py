@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from kinematics.linkage.batch import over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
 from kinematics.linkage.fourbar.circuit_kernels import FULL_TURN
-from kinematics.linkage.fourbar.classification import can_assemble, grashof_class
+from kinematics.linkage.fourbar.classification import can_assemble
 from kinematics.linkage.fourbar.closed_form import (
     Fourbar,
     Mask,
@@ -71,21 +71,6 @@ def full_rotation(linkage: Fourbar) -> Mask:
     """Whether the input link turns through (is a crank) without a toggle or change point."""
     limits = input_limits(linkage)
     return can_assemble(linkage) & ~limits.folded_toggle & ~limits.extended_toggle
-
-
-class Circuits(NamedTuple):
-    """Number of circuits and of branches on each circuit, input driving (Norton, Table 4-1)."""
-
-    circuits: int
-    branches: int
-
-
-def count_circuits(linkage: Fourbar) -> Circuits:
-    """Circuits of one design and branches per circuit; a special-case linkage is one circuit of two branches."""
-    if not can_assemble(linkage):
-        return Circuits(0, 0)
-    kind = int(grashof_class(linkage.lengths))
-    return Circuits(2 if kind == 1 else 1, 1 if full_rotation(linkage) else 2)
 
 
 def stays_on_branch(linkage: Fourbar, start: ArrayLike, end: ArrayLike) -> Mask:

@@ -1,6 +1,6 @@
-"""Instantaneous kinematics of the fourbar: instant centres, the coupler's pole, centrodes, path curvature, ratios.
+"""Instantaneous kinematics of the fourbar: the coupler's pole, the centrodes, the curvature of its path.
 
-With the link vectors u = A − O2, v = B − A, w = B − O4 and g = O4 − O2 the loop u + v = g + w gives the angular
+With the link vectors u = A − O2, v = B − A and w = B − O4 the derivative of the closed loop gives the angular
 rates ω2 u + ω3 v = ω4 w up to a common factor by cross products, without a division:
 
     ω2 : ω3 : ω4 = v×w : w×u : v×u.
@@ -12,14 +12,7 @@ which the coupler does not turn (ω3 = 0); only a change point (all zero) stops 
 
 from u' = iω2 u and so on. What depends on geometry alone is taken from this motion.
 
-Instant centres (Kennedy; Norton, Sec. 6.3–6.4 and 6.8): I12 = O2, I23 = A, I34 = B, I14 = O4, and
-
-    I13 = A + u (v×w)/(u×w)        the coupler's *pole*, where the lines O2 A and O4 B meet,
-    I24 = O2 + g (v×u)/(v×g)       where the lines A B and O2 O4 meet.
-
-Where such lines are parallel the centre is at infinity in their direction.
-
-Pole (Norton, Sec. 6.5; J. J. Uicker, G. R. Pennock, J. E. Shigley, *Theory of Machines and Mechanisms*, 3rd ed.,
+Pole (Norton, Sec. 6.4, 6.5; J. J. Uicker, G. R. Pennock, J. E. Shigley, *Theory of Machines and Mechanisms*, 3rd ed.,
 ch. 4). With the coupler angle φ = θ3 as the parameter, h = (v×w)/(u×w) and k = dθ4/dφ = (u×v)/(u×w), the pole
 I = A + h u moves at
 
@@ -31,11 +24,6 @@ along the common tangent of the centrodes. A point X = I + r of the coupler has 
     centre of curvature  I − r Im(r̄ I') / (|r|² − Im(r̄ I'))          (Euler and Savary).
 
 The path's curvature itself is Im(X̄' X'') / |X'|³ of the smooth motion above, which needs no finite pole.
-
-Bresse circles, for an input of constant speed (α3/ω3² from the same motion): where the coupler's acceleration is
-tangential only (the inflection circle) and where it is normal only, |r|² = Re(r̄ I') ω3²/α3.
-
-Ratios (Norton, Sec. 6.4, eqs. 6.10–6.13): m_V = ω4/ω2, torque ratio ω2/ω4, mechanical advantage (ω2/ω4)(r_in/r_out).
 """
 
 from __future__ import annotations
@@ -45,7 +33,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinematics.errors import DimensionError
 from kinematics.linkage.fourbar.closed_form import (
     OPEN,
     TOGGLE_SINE,
@@ -55,14 +42,9 @@ from kinematics.linkage.fourbar.closed_form import (
     Mask,
     Positions,
     Real,
-    one_shape,
     positions,
-    require,
     with_angle_axis,
 )
-
-PAIRS = ((1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4))
-"""Links (1 ground, 2 input, 3 coupler, 4 output) of the six instant centres, in the order of their axis."""
 
 PARALLEL = 1e-12
 """Sine below which two lines are parallel: their intersection, at 1e12 lengths, has no digit left."""
@@ -75,27 +57,14 @@ STATIONARY = 1e-9
 near which rounding of the position decides the direction."""
 
 
-class InstantCenters(NamedTuple):
-    """The six instant centres over designs × input angles × :data:`PAIRS`.
-
-    ``valid`` is False at change points and where the linkage does not close; there, all is NaN. Elsewhere ``finite``
-    marks the centres at a point, and ``direction`` (unit, up to sign) is where the others lie: the NaN of ``point`` and
-    that of ``direction`` exclude each other.
-    """
-
-    valid: Mask
-    finite: Mask
-    point: Complex
-    direction: Complex
-
-
 class Pole(NamedTuple):
     """The coupler's pole over designs × input angles.
 
-    ``valid`` as for :class:`InstantCenters`; ``finite`` is False where the coupler only translates; all points are NaN
-    there. ``point`` is the pole, ``rate`` its velocity dI/dθ3 (complex length per radian of the coupler's turn)
-    along the tangent of the centrodes, ``moving`` the pole in the coupler's frame (as ``Fourbar.coupler_point`` is),
-    ``inflection_pole`` the point opposite to the pole on the inflection circle of diameter ``inflection_diameter``.
+    ``valid`` is False at change points and where the linkage does not close; ``finite`` is False where the coupler only
+    translates; all points are NaN there. ``point`` is the pole, ``rate`` its velocity dI/dθ3 (complex length per radian
+    of the coupler's turn) along the tangent of the centrodes, ``moving`` the pole in the coupler's frame (as
+    ``Fourbar.coupler_point`` is), ``inflection_pole`` the point opposite to the pole on the inflection circle of
+    diameter ``inflection_diameter``.
     """
 
     valid: Mask
@@ -105,20 +74,6 @@ class Pole(NamedTuple):
     rate: Complex
     inflection_pole: Complex
     inflection_diameter: Real
-
-
-class BresseCircles(NamedTuple):
-    """Centres of the circles through the pole on which the coupler's acceleration has one component only.
-
-    ``inflection`` where ``finite`` of the pole holds: points without normal acceleration. ``tangential`` where
-    ``circle`` holds (else it is the line through the pole across its tangent): points without tangential
-    acceleration, while the input turns at constant speed.
-    """
-
-    finite: Mask
-    inflection: Complex
-    circle: Mask
-    tangential: Complex
 
 
 class PathCurvature(NamedTuple):
@@ -134,13 +89,6 @@ class PathCurvature(NamedTuple):
     center: Complex
 
 
-class Ratio(NamedTuple):
-    """A ratio over designs × input angles; NaN where ``finite`` is False."""
-
-    finite: Mask
-    value: Real
-
-
 class _Vectors(NamedTuple):
     """Link vectors in units of the linkage's size, and ω2 : ω3 : ω4 = ``scale`` × the cross products, the
     largest 1 in absolute value."""
@@ -152,61 +100,8 @@ class _Vectors(NamedTuple):
     u: Complex
     v: Complex
     w: Complex
-    ground: Complex
     rates: tuple[Real, Real, Real]
     scale: Real
-
-
-def instant_center_count(links: int) -> int:
-    """Number of instant centres of n links, n (n − 1) / 2 (Norton 6.8b).
-
-    Raises
-    ------
-    DimensionError
-        For fewer than one link.
-
-    Examples
-    --------
-    >>> instant_center_count(6)
-    15
-    """
-    if links < 1:
-        raise DimensionError("links", "a count of at least 1", links)
-    return links * (links - 1) // 2
-
-
-def instant_centers(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> InstantCenters:
-    """All instant centres of the fourbar (Norton, Sec. 6.4).
-
-    Parameters and errors as for :func:`kinematics.linkage.positions`, here and in all functions of this module; the
-    results have shape S + (N, 6).
-    """
-    x = _vectors(linkage, input_angle, assembly)
-    o2 = np.broadcast_to(linkage.input_pivot[x.axis], x.valid.shape)
-    o4 = np.broadcast_to(linkage.output_pivot[x.axis], x.valid.shape)
-    coupler_finite = _crossing(x.u, x.w) & x.valid
-    input_finite = _crossing(x.v, x.ground) & x.valid
-    nowhere = np.full_like(o2, np.nan)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        i13 = x.at.a + x.unit * x.u * (_cross(x.v, x.w) / _cross(x.u, x.w))
-        i24 = o2 + x.unit * x.ground * (_cross(x.v, x.u) / _cross(x.v, x.ground))
-        along_input, along_ground = x.u / np.abs(x.u), x.ground / np.abs(x.ground)
-    points = (o2, np.where(coupler_finite, i13, np.nan), o4, x.at.a, np.where(input_finite, i24, np.nan), x.at.b)
-    directions = (
-        nowhere,
-        np.where(coupler_finite, np.nan, along_input),
-        nowhere,
-        nowhere,
-        np.where(input_finite, np.nan, along_ground),
-        nowhere,
-    )
-    finite = (x.valid, coupler_finite, x.valid, x.valid, input_finite, x.valid)
-    return InstantCenters(
-        x.valid,
-        np.stack(finite, axis=-1),
-        np.where(x.valid[..., None], np.stack(points, axis=-1), np.nan),
-        np.where(x.valid[..., None], np.stack(directions, axis=-1), np.nan),
-    )
 
 
 def pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Pole:
@@ -225,23 +120,6 @@ def pole(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -
         point = x.at.a + x.unit * h * u
         moving = h * u / v * linkage.coupler[x.axis]
     return Pole(x.valid, finite, point, moving, rate, point - 1j * rate, np.abs(rate))
-
-
-def bresse_circles(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> BresseCircles:
-    """Centres of the inflection circle and of the circle of no tangential acceleration, at constant input speed.
-
-    At a toggle the input cannot turn at constant speed; ``circle`` is False there too.
-    """
-    x = _vectors(linkage, input_angle, assembly)
-    at = pole(linkage, input_angle, assembly)
-    two, three, _ = x.rates
-    first, second, _ = _accelerations(x)
-    # α3/ω3² at constant ω2, from rates ω = ω(s) along the smooth motion: d(ω3/ω2)/dθ2 · (ω2/ω3)².
-    turning = second * two - first * three
-    circle = at.finite & (np.abs(two) > TOGGLE_SINE) & (np.abs(turning) > PARALLEL)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        diameter = np.where(circle, at.rate * three**2 * two / turning, np.nan)
-    return BresseCircles(at.finite, 0.5 * (at.point + at.inflection_pole), circle, at.point + 0.5 * diameter)
 
 
 def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> PathCurvature:
@@ -263,57 +141,19 @@ def path_curvature(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike
         return PathCurvature(valid, bend * sign / x.unit, curved, center)
 
 
-def velocity_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Ratio:
-    """Angular velocity ratio m_V = ω4/ω2 (Norton 6.10); not finite at toggles of the input."""
-    x = _vectors(linkage, input_angle, assembly)
-    two, _, four = x.rates
-    return _ratio(four, two, x.valid & _crossing(x.v, x.w, TOGGLE_SINE))
-
-
-def torque_ratio(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> Ratio:
-    """Torque ratio T4/T2 = ω2/ω4 of a linkage without losses (Norton 6.12); not finite at dead points of the output."""
-    x = _vectors(linkage, input_angle, assembly)
-    two, _, four = x.rates
-    return _ratio(two, four, x.valid & _crossing(x.u, x.v, TOGGLE_SINE))
-
-
-def mechanical_advantage(
-    linkage: Fourbar,
-    input_angle: ArrayLike,
-    assembly: ArrayLike = OPEN,
-    *,
-    input_radius: ArrayLike,
-    output_radius: ArrayLike,
-) -> Ratio:
-    """Ratio of output to input force at given distances from the fixed pivots, (ω2/ω4)(r_in/r_out) (Norton 6.13).
-
-    Raises
-    ------
-    DimensionError
-        Also for a radius that is not positive and finite.
-    """
-    inner, outer = np.asarray(input_radius, np.float64), np.asarray(output_radius, np.float64)
-    for name, radius in (("input_radius", inner), ("output_radius", outer)):
-        require(name, "positive and finite", radius, np.isfinite(radius) & (radius > 0.0))
-    found = torque_ratio(linkage, input_angle, assembly)
-    shape = one_shape(positions=found.value.shape, input_radius=inner.shape, output_radius=outer.shape)
-    return Ratio(np.broadcast_to(found.finite, shape), found.value * (inner / outer))
-
-
 def _vectors(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike) -> _Vectors:
     at = positions(linkage, input_angle, assembly)
     theta, axis = with_angle_axis(linkage, input_angle, np.shape(assembly))
     unit = linkage.lengths.sum(axis=-1)[axis]
     u = np.broadcast_to(linkage.input[axis] * np.exp(1j * theta) / unit, at.b.shape)
     v, w = (at.b - at.a) / unit, (at.b - linkage.output_pivot[axis]) / unit
-    ground = np.broadcast_to((linkage.output_pivot - linkage.input_pivot)[axis] / unit, at.b.shape)
     moves = _crossing(v, w, TOGGLE_SINE) | _crossing(w, u, TOGGLE_SINE) | _crossing(v, u, TOGGLE_SINE)
     rates = np.stack((_cross(v, w), _cross(w, u), _cross(v, u)))
     valid = at.valid & moves
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = np.where(valid, 1.0 / np.abs(rates).max(axis=0), np.nan)
         two, three, four = rates * scale
-    return _Vectors(at, axis, valid, np.broadcast_to(unit, at.b.shape), u, v, w, ground, (two, three, four), scale)
+    return _Vectors(at, axis, valid, np.broadcast_to(unit, at.b.shape), u, v, w, (two, three, four), scale)
 
 
 def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
@@ -324,11 +164,6 @@ def _accelerations(x: _Vectors) -> tuple[Real, Real, Real]:
         (two - four) * _dot(x.u, x.w) * x.scale,
         (two - three) * _dot(x.u, x.v) * x.scale,
     )
-
-
-def _ratio(numerator: Real, denominator: Real, finite: Mask) -> Ratio:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return Ratio(finite, np.where(finite, numerator / denominator, np.nan))
 
 
 def _crossing(one: Complex, other: Complex, least_sine: float = PARALLEL) -> Mask:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.pieces import polynomial_pieces
 from kinematics.cam.program import Program
-from kinematics.cam.segments import Segment, coefficient_segment, dwell, law_segment
+from kinematics.cam.segments import Segment, dwell, law_segment
 
 NAMES = {
     "const_velocity": "constant_velocity",
@@ -30,6 +33,11 @@ NAMES = {
     "half_cycloid_2": "half_cycloidal_end",
 }
 """The rows' names of laws, and ours."""
+
+
+def coefficient_segment(angle: float, coefficients: list[float]) -> Segment:
+    """Σ c_k (θ/β)^k with Norton's coefficients, constant first."""
+    return Segment("polynomial", polynomial_pieces([0.0, 1.0], np.atleast_2d(coefficients)).scaled(angle, 1.0))
 
 
 def segment_of(row: dict[str, Any]) -> Segment:

@@ -9,7 +9,7 @@ import pytest
 
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.profile import Cam, chordal_angles, even_angles
+from kinematics.cam.profile import Cam, even_angles
 from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from kinematics.errors import DimensionError
@@ -171,21 +171,6 @@ def test_largest_cutter_just_fits_the_hollow() -> None:
         assert bool((np.abs(near - centre) >= scale * radius * (1.0 - 1e-9)).all()) is clear
 
 
-def test_chords_stay_within_their_tolerance() -> None:
-    cam = sound_cam(np.random.default_rng(7), "translating_roller")
-    tolerance = 1e-4 * cam.size
-    angles = chordal_angles(cam, tolerance, -cam.roller_radius)
-    fine = cam.profile(even_angles(40_000))
-    points = cam.profile(np.append(angles, 0.0))
-    start, chord = points[:-1], np.diff(points)
-    index = np.searchsorted(angles, even_angles(40_000), side="right") - 1
-    off = np.abs(((fine - start[index]) * np.conj(chord[index])).imag) / np.abs(chord[index])
-    assert off.max() <= 1.1 * tolerance
-    assert off.max() >= 0.3 * tolerance
-    assert len(angles) < 400
-    assert set(np.round(cam.program.breaks[:-1], 12)) <= set(np.round(angles, 12))
-
-
 def test_undercut_begins_where_the_pitch_curve_is_as_sharp_as_the_roller() -> None:
     program = double_dwell(1.0)
     radius = Cam(program, TranslatingRoller(1.5, 0.0)).least_convex_radius
@@ -204,7 +189,6 @@ def test_dwell_alone_is_a_circle() -> None:
     assert cam.largest_cutter == math.inf
     flat = Cam(Program([dwell(TURN, 0.0)]), TranslatingFlat(2.0))
     assert flat.reach_extremes.largest == 0.0
-    assert len(chordal_angles(flat, 1e-3)) > 24
 
 
 def test_dimensions_without_a_follower_are_refused() -> None:
@@ -235,8 +219,6 @@ def test_programs_that_a_follower_cannot_make_are_refused() -> None:
         Cam(double_dwell(0.9), OscillatingFlat(0.5, 2.0))
     with pytest.raises(DimensionError, match="rotation"):
         Cam(double_dwell(), TranslatingFlat(1.5), "both")  # type: ignore[arg-type]
-    with pytest.raises(DimensionError, match="tolerance"):
-        chordal_angles(Cam(double_dwell(), TranslatingFlat(9.0)), 0.0)
     with pytest.raises(DimensionError, match="flat-faced"):
         _ = Cam(double_dwell(), TranslatingRoller(2.0, 0.1)).reach_extremes
     with pytest.raises(DimensionError, match="roller"):

@@ -12,17 +12,9 @@ from hypothesis import strategies as st
 from kinematics.cam.extremes import extremes, roots, stationary_points
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.program import Program
-from kinematics.cam.segments import (
-    Condition,
-    coefficient_segment,
-    dwell,
-    jerk_segment,
-    knot_segment,
-    law_segment,
-    polynomial_segment,
-    spline_segment,
-)
+from kinematics.cam.segments import Condition, dwell, knot_segment, law_segment, polynomial_segment
 from kinematics.errors import DimensionError
+from tests.kinematics.cam.stating import coefficient_segment
 
 TURN = 2.0 * math.pi
 SMOOTH = ["cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567"]
@@ -130,49 +122,6 @@ def test_polynomial_meets_interior_conditions() -> None:
         assert segment.pieces.motion(at)[order] == pytest.approx(value, abs=1e-9)
 
 
-def test_spline_meets_its_conditions_with_smooth_knots() -> None:
-    ends = [Condition(at, order, 0.0) for at in (0.0, 3.0) for order in (0, 1, 2)]
-    inner = [Condition(0.7, 0, 1.0), Condition(1.5, 0, 2.0), Condition(1.5, 1, 0.0), Condition(2.2, 0, 1.4)]
-    segment = spline_segment(3.0, ends + inner, 5)
-    for at, order, value in ends + inner:
-        assert segment.pieces.motion(at, before=at == 3.0)[order] == pytest.approx(value, abs=1e-10)
-    knots = segment.pieces.start[1:-1]
-    assert len(knots) == 4
-    before, after = segment.pieces.motion(knots, before=True), segment.pieces.motion(knots)
-    for order in range(4):
-        assert after[order] == pytest.approx(before[order], abs=1e-9)
-
-
-def test_a_spline_through_one_polynomial_is_that_polynomial() -> None:
-    law = LAWS["polynomial_345"]
-    at = np.linspace(0.0, 1.0, 9)
-    conditions = [Condition(float(u), 0, float(law.motion(u).s)) for u in at]
-    segment = spline_segment(1.0, conditions, 5)
-    u = np.linspace(0.0, 1.0, 50)
-    assert segment.pieces.motion(u).s == pytest.approx(law.motion(u).s, abs=1e-12)
-
-
-def test_given_knots_are_used() -> None:
-    conditions = [Condition(0.0, 0, 0.0), Condition(0.4, 0, 1.0), Condition(0.8, 0, 3.0), Condition(1.0, 0, 0.0)]
-    segment = spline_segment(1.0, conditions, 2, knots=[0.5])
-    assert list(segment.pieces.start) == [0.0, 0.5, 1.0]
-
-
-def test_jerk_between_knots_integrates_without_gaps() -> None:
-    knots = np.linspace(0.0, 1.0, 201)
-    law = LAWS["polynomial_345"]
-    # The jerk of 3-4-5 is a parabola; linear pieces of it differ by h²/8 of its curvature.
-    jerk = law.motion(knots).j
-    segment = jerk_segment(knots, (0.0, 0.0, 0.0), np.stack([jerk[:-1], jerk[1:]], axis=1))
-    s, v, a, j = segment.pieces.motion(knots[1:-1])
-    assert j == pytest.approx(jerk[1:-1])
-    assert np.array(segment.pieces.motion(knots[1:-1], before=True).a) == pytest.approx(a, abs=1e-13)
-    assert s == pytest.approx(law.motion(knots[1:-1]).s, abs=1e-3)
-    constant = jerk_segment([0.0, 1.0, 3.0], (1.0, 0.0, 0.0), [6.0, 0.0])
-    assert constant.pieces.motion([1.0, 3.0]).s == pytest.approx([2.0, 20.0])
-    assert v[0] == pytest.approx(law.motion(knots[1]).v, abs=1e-3)
-
-
 def test_norton_coefficients_are_of_the_share_of_the_angle() -> None:
     segment = coefficient_segment(math.pi, [0, 0, 0, 64, -192, 192, -64])
     assert segment.pieces.motion(0.5 * math.pi).s == pytest.approx(1.0)
@@ -207,8 +156,6 @@ def test_values_that_are_no_numbers_are_refused() -> None:
         knot_segment([0.5, 1.0], [[1.0]])
     with pytest.raises(DimensionError, match="breaks"):
         knot_segment([0.0, 1.0, 2.0], [[1.0]])
-    with pytest.raises(DimensionError, match="jerk"):
-        jerk_segment([0.0, 1.0], (0.0, 0.0, 0.0), [1.0, 2.0])
 
 
 @pytest.mark.parametrize(
@@ -225,16 +172,6 @@ def test_values_that_are_no_numbers_are_refused() -> None:
 def test_conditions_without_one_answer_are_refused(conditions: list[Condition]) -> None:
     with pytest.raises(DimensionError, match="condition"):
         polynomial_segment(1.0, conditions)
-
-
-def test_splines_without_one_answer_are_refused() -> None:
-    conditions = [Condition(0.1 * k, 0, 0.0) for k in range(6)]
-    with pytest.raises(DimensionError, match="degree"):
-        spline_segment(1.0, conditions, 6)
-    with pytest.raises(DimensionError, match="knots"):
-        spline_segment(1.0, conditions, 3, knots=[0.5])
-    with pytest.raises(DimensionError, match="conditions"):
-        spline_segment(1.0, conditions, 3, knots=[0.6, 0.7])
 
 
 def test_extremes_of_a_jump_are_its_two_sides() -> None:

