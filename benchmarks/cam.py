@@ -19,6 +19,7 @@ import numpy as np
 
 from kinematics.cam.motion_laws import LAWS
 from synthesis.dispatch import solve
+from synthesis.kinds.cam.motion_program import Condition, Limit
 from synthesis.kinds.cam.optimal import (
     Best,
     NoMotion,
@@ -32,11 +33,7 @@ from synthesis.kinds.cam.sizing import (
     oscillating_roller,
     translating_roller,
 )
-from synthesis.numerics.convex import (
-    Condition,
-    Limit,
-    modeling,
-)
+from synthesis.numerics.convex import modeling
 from synthesis.registry import KINDS, parse_problem
 from tests.synthesis.cam_sampling import first_sound, oscillating, random_program, translating
 

@@ -14,17 +14,13 @@ import pytest
 from scipy.optimize import linprog
 from scipy.sparse import lil_matrix
 
+from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (
     Best,
     NoMotion,
     Run,
     best_derivative,
     best_flat_size,
-)
-from synthesis.numerics.convex import (
-    Condition,
-    Demand,
-    Limit,
 )
 
 HONEST = 0.02

@@ -9,6 +9,7 @@ import pytest
 
 from kinematics.cam.motion_laws import LAWS
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (
     Best,
     NoMotion,
@@ -21,11 +22,6 @@ from synthesis.kinds.cam.optimal import (
 )
 from synthesis.kinds.cam.piecewise import Piecewise
 from synthesis.kinds.cam.torque import torque
-from synthesis.numerics.convex import (
-    Condition,
-    Demand,
-    Limit,
-)
 
 MODIFIED_SINE = tuple(factor.largest for factor in LAWS["modified_sine"].factors)
 CLOSE = 2e-3

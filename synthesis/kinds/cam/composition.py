@@ -28,6 +28,7 @@ from synthesis.kinds.cam.joints import (
     law_ends,
 )
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (
     STEPS,
     Best,
@@ -51,11 +52,6 @@ from synthesis.kinds.cam.problem import (
     TranslatingRoller,
 )
 from synthesis.model.kind import Progress
-from synthesis.numerics.convex import (
-    Condition,
-    Demand,
-    Limit,
-)
 
 ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 """Derivatives that criteria and limits are named after."""

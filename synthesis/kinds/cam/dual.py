@@ -26,14 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.motion_program import Block, ConvexProgram, Multipliers, Solution, Weights
 from synthesis.kinds.cam.piecewise import Piecewise
-from synthesis.numerics.convex import (
-    Block,
-    ConvexProgram,
-    Multipliers,
-    Solution,
-    Weights,
-)
 
 Real = NDArray[np.float64]
 

@@ -68,18 +68,6 @@ class KnotMotion:
         return Piecewise(self.times, total)
 
 
-def transition(step: Real, size: int) -> tuple[Real, Real]:
-    """Matrices of Taylor's formula for each step: state to state, shape (n, m, m), and control to state, (n, m)."""
-    n = len(step)
-    state = np.zeros((n, size, size))
-    control = np.empty((n, size))
-    for i in range(size):
-        for j in range(i, size):
-            state[:, i, j] = step ** (j - i) / math.factorial(j - i)
-        control[:, i] = step ** (size - i) / math.factorial(size - i)
-    return state, control
-
-
 def integrated(times: Real, start: Real, control: Real) -> KnotMotion:
     """The motion that a start state and a control lead to.
 

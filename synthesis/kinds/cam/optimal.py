@@ -28,16 +28,8 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.cam.dual import LowerBound, lower_bound
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.motion_program import Block, Condition, ConvexProgram, Demand, Limit, Solution, solve
 from synthesis.kinds.cam.torque import least_torque
-from synthesis.numerics.convex import (
-    Block,
-    Condition,
-    ConvexProgram,
-    Demand,
-    Limit,
-    Solution,
-    solve,
-)
 
 Real = NDArray[np.float64]
 

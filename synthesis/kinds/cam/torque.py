@@ -26,13 +26,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.motion_program import Block, BlockModel
 from synthesis.kinds.cam.piecewise import Piecewise
-from synthesis.numerics.convex import (
-    Block,
-    BlockModel,
-    minimized,
-    modeling,
-)
+from synthesis.numerics.convex import minimized, modeling
 
 Real = NDArray[np.float64]
 
