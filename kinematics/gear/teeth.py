@@ -181,6 +181,12 @@ class Mesh:
     gear: Gear
     given_distance: float | None = None
 
+    @classmethod
+    def standard(cls, pair: tuple[int, int], module: float, pressure_angle: float) -> Mesh:
+        """Two external full-depth gears by their teeth, the pinion first, at the distance of their pitch circles."""
+        pinion, gear = (Gear(teeth, module, pressure_angle) for teeth in pair)
+        return cls(pinion, gear)
+
     def __post_init__(self) -> None:
         one, two = self.pinion, self.gear
         if one.internal:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import PRESSURE_ANGLE, Gear, Mesh
+from kinematics.gear.teeth import PRESSURE_ANGLE, Mesh
 
 
 @dataclass(frozen=True)
@@ -54,12 +54,12 @@ class OrdinaryTrain:
     def meshes(self) -> tuple[tuple[Mesh, ...], ...]:
         """The meshes of each stage at standard distance, the smaller gear as the pinion."""
         return tuple(
-            tuple(self._mesh(stage.module, *pair) for pair in itertools.pairwise(stage.gears)) for stage in self.stages
+            tuple(
+                Mesh.standard((min(pair), max(pair)), stage.module, self.pressure_angle)
+                for pair in itertools.pairwise(stage.gears)
+            )
+            for stage in self.stages
         )
-
-    def _mesh(self, module: float, driver: int, driven: int) -> Mesh:
-        small, large = sorted((driver, driven))
-        return Mesh(Gear(small, module, self.pressure_angle), Gear(large, module, self.pressure_angle))
 
     @cached_property
     def speeds(self) -> tuple[tuple[Fraction, ...], ...]:

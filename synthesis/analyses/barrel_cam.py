@@ -106,11 +106,6 @@ class BarrelCamAnalysisRequest(AnalysisRequest):
         except DimensionError:
             raise MechanismError(f"/{name}", "neighbouring points must be different") from None
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same over a full turn."""
-        return cls(mechanism=GivenBarrelCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
-
 
 class BarrelCamAnalysis(Answer):
     """Everything that the analysis core measures on a barrel cam over the motion; null where nothing is touched."""

@@ -27,9 +27,9 @@ class AnalysisRequest(Statement, ABC):
         """
 
     @classmethod
-    @abstractmethod
     def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The answer for a design's mechanism (as JSON has it) over its cycle, with the input at speed 1."""
+        """The answer for a design's mechanism (as JSON has it) over its cycle, a full turn of the input at speed 1."""
+        return cls.model_validate({"mechanism": mechanism, "motion": {"steps": steps}}).answer()
 
     @classmethod
     def example(cls) -> Self:

@@ -230,11 +230,6 @@ class CamAnalysisRequest(AnalysisRequest):
             "gouges": hollow is not None and cutter.radius >= hollow,
         }
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same over a full turn."""
-        return cls(mechanism=GivenCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
-
 
 def force_series(
     load: Load, s: Real, v: Real, pressure_angle: Real, velocity: Real, acceleration: Real

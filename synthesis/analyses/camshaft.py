@@ -107,11 +107,6 @@ class CamshaftAnalysisRequest(AnalysisRequest):
             "flywheel_inertia": None if fluctuation is None else shaft.flywheel_inertia(fluctuation),
         }
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same over a full turn."""
-        return cls(mechanism=GivenCamshaft.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
-
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None

@@ -78,11 +78,6 @@ class ContourCamAnalysisRequest(AnalysisRequest):
             "peaks": dict(zip(("s", "v", "a"), peaks, strict=True)),
         }
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same over a full turn."""
-        return cls(mechanism=GivenContourCam.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
-
 
 class ContourFollower(Answer):
     """The follower over the positions."""

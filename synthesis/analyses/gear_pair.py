@@ -16,9 +16,9 @@ from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.kinds.gear_train.problem import ToothNumber
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer
+from synthesis.model.gear_statement import PressureAngle, ToothNumber
 from synthesis.model.statement import (
     Number,
     PositiveNumber,
@@ -31,8 +31,6 @@ MILLIMETRE = {"mm": 1.0, "cm": 0.1, "m": 0.001, "in": 1.0 / 25.4}
 """One millimetre in each unit."""
 
 BEVEL_TEETH = {"rao": RAO_TEETH, "gleason": GLEASON_TEETH}
-
-PressureAngle = Annotated[float, Field(strict=True, ge=10.0, le=30.0)]
 
 
 class GivenHelicalPair(Statement):

@@ -18,10 +18,9 @@ from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
-from synthesis.kinds.gear_train.design import MeshGeometry, Ratio
-from synthesis.kinds.gear_train.problem import ToothNumber
-from synthesis.kinds.gear_train.verification import mesh_geometries
 from synthesis.model.answer import Answer
+from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries
+from synthesis.model.gear_statement import PressureAngle, ToothNumber
 from synthesis.model.statement import (
     Number,
     PositiveNumber,
@@ -64,7 +63,7 @@ class GivenGearTrain(Statement):
     stages: list[GivenStage] = Field(min_length=1, max_length=16)
     idlers: list[GivenIdler] = Field(default=[], max_length=64)
     ratio: GivenRatio | None = None
-    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = 20.0
+    pressure_angle: PressureAngle = 20.0
 
     def train(self) -> OrdinaryTrain:
         """The train for the analysis core."""
@@ -121,14 +120,7 @@ class GearTrainAnalysisRequest(AnalysisRequest):
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
-        at, speed, time = self.motion.inputs()
-        return _analysis(self, at, speed, time)
-
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """One turn of the input at 1 rad/s."""
-        request = cls(mechanism=GivenGearTrain.model_validate(mechanism))
-        return _analysis(request, np.linspace(0.0, 360.0, steps + 1), np.ones(steps + 1), None)
+        return _analysis(self)
 
 
 class TurningGear(Answer):
@@ -184,24 +176,19 @@ class GearTrainAnalysis(Answer):
     centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
 
 
-def _analysis(
-    request: GearTrainAnalysisRequest,
-    at: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    time: NDArray[np.float64] | None,
-) -> dict[str, Any]:
+def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
+    at, speed, time = request.motion.inputs()
     train = request.mechanism.train()
     shares = tuple(tuple(_share(request, mesh) for mesh in stage) for stage in train.meshes)
     passed = tuple(tuple(1.0 if share is None else share for share in stage) for stage in shares)
     known = all(share is not None for stage in shares for share in stage)
     torques = train.torques(request.input_torque, passed)
-    ratio = train.ratio
     speeds = [1.0, *(float(stage[-1]) for stage in train.speeds)]
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
         "valid": [True] * len(at),
-        "ratio": {"numerator": ratio.numerator, "denominator": ratio.denominator, "value": float(ratio)},
+        "ratio": Ratio.of(train.ratio).model_dump(),
         "efficiency": math.prod(share for stage in passed for share in stage) if known else None,
         "shafts": [{"speed_ratio": w, "torque": t} for w, t in zip(speeds, torques, strict=True)],
         "gears": _gears(request, train, at, speed),
@@ -240,9 +227,7 @@ def _gears(
                     "tooth_thickness": gear.tooth_thickness,
                     "undercut": gear.is_undercut,
                     "speed_ratio": turns,
-                    "angle": (turns * at).tolist(),
-                    "omega": (turns * speed).tolist(),
-                    "alpha": [turns * request.motion.acceleration] * len(at),
+                    **request.motion.geared(turns, at, speed),
                 }
             )
     return found

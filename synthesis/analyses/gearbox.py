@@ -160,12 +160,6 @@ class GearboxAnalysisRequest(AnalysisRequest):
         speeds = [(list(found.engaged), sign * found.speed) for found in spindle_speeds(1, stages)]
         return _shape(self, at, speed, time, engaged, ratios, speeds)
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """One turn of the input at 1 rad/s with the first pair of each stage engaged."""
-        motion = Sweep(steps=steps, speed=1.0)
-        return cls(mechanism=GivenGearbox.model_validate(mechanism), motion=motion).answer()
-
 
 class LayshaftAnalysisRequest(AnalysisRequest):
     """A layshaft gearbox, the gear that is engaged, and how the input turns."""
@@ -224,12 +218,6 @@ class LayshaftAnalysisRequest(AnalysisRequest):
         speeds = sorted((([k], 1 / ratio) for k, ratio in enumerate(every)), key=lambda row: abs(row[1]))
         return _shape(self, at, speed, time, [engaged], ratios, speeds)
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """One turn of the input at 1 rad/s in first gear."""
-        motion = Sweep(steps=steps, speed=1.0)
-        return cls(mechanism=GivenLayshaftGearbox.model_validate(mechanism), motion=motion).answer()
-
 
 def _shape(
     request: GearboxAnalysisRequest | LayshaftAnalysisRequest,
@@ -249,9 +237,7 @@ def _shape(
             {
                 "name": name,
                 "speed_ratio": float(ratio),
-                "angle": (float(ratio) * at).tolist(),
-                "omega": (float(ratio) * speed).tolist(),
-                "alpha": [float(ratio) * request.motion.acceleration] * len(at),
+                **request.motion.geared(float(ratio), at, speed),
             }
             for name, ratio in ratios
         ],

@@ -37,6 +37,14 @@ class _Motion(Statement):
             return self.speed
         return 1.0 if self.speed_rpm is None else self.speed_rpm * RAD_PER_S
 
+    def geared(self, ratio: float, angle: Real, speed: Real) -> dict[str, list[float]]:
+        """Angles (degrees), speeds and accelerations of what turns at ``ratio`` times the input's."""
+        return {
+            "angle": (ratio * angle).tolist(),
+            "omega": (ratio * speed).tolist(),
+            "alpha": [ratio * self.acceleration] * len(angle),
+        }
+
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (JSON pointer in the request, detail)."""
         if self.speed is not None and self.speed_rpm is not None:

@@ -9,8 +9,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS
@@ -175,14 +173,7 @@ class PlanetaryAnalysisRequest(AnalysisRequest):
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
-        at, speed, time = self.motion.inputs()
-        return _analysis(self, at, speed, time)
-
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """One turn of the input at 1 rad/s."""
-        request = cls(mechanism=GivenPlanetaryTrain.model_validate(mechanism))
-        return _analysis(request, np.linspace(0.0, 360.0, steps + 1), np.ones(steps + 1), None)
+        return _analysis(self)
 
 
 class TurningBody(Answer):
@@ -231,12 +222,8 @@ class PlanetaryAnalysis(Answer):
     meshes: list[LoadedPlanetaryMesh]
 
 
-def _analysis(
-    request: PlanetaryAnalysisRequest,
-    at: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    time: NDArray[np.float64] | None,
-) -> dict[str, Any]:
+def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
+    at, speed, time = request.motion.inputs()
     mechanism, train = request.mechanism, request.mechanism.train()
     turning = request.speeds is None
     known = {body: Fraction(repr(value)) for body, value in (request.speeds or {}).items()}
@@ -261,9 +248,11 @@ def _analysis(
                 "power": None
                 if flow is None or body in train.planets
                 else float(flow.powers[body]) * (float(speed[0]) if turning else 1.0),
-                "angle": (share * at).tolist() if turning and share is not None else None,
-                "omega": (share * speed).tolist() if turning and share is not None else None,
-                "alpha": [share * request.motion.acceleration] * len(at) if turning and share is not None else None,
+                **(
+                    request.motion.geared(share, at, speed)
+                    if turning and share is not None
+                    else dict.fromkeys(("angle", "omega", "alpha"))
+                ),
             }
         )
     unit = float(speed[0]) if turning else 1.0

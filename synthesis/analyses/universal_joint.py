@@ -146,11 +146,6 @@ class UniversalJointRequest(AnalysisRequest):
             found = min(found, angle_of_fluctuation(limits.fluctuation))
         return math.degrees(found)
 
-    @classmethod
-    def over_the_cycle(cls, mechanism: dict[str, Any], steps: int) -> dict[str, Any]:
-        """The same over a full turn of the input."""
-        return cls(mechanism=GivenUniversalJoint.model_validate(mechanism), motion=Sweep(steps=steps)).answer()
-
 
 class JointExtremes(Answer):
     """Extremes over a turn of an input at the stated speed, without acceleration."""

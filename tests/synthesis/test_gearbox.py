@@ -13,8 +13,8 @@ import pytest
 from kinematics.gear.gearbox import spindle_speeds
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.dispatch import solve
-from synthesis.kinds.gearbox.design import GearboxResult, LayshaftResult
-from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.design import GearboxResult
+from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.gearbox.stages import worth_having
 from synthesis.kinds.gearbox.structures import (
     Group,
@@ -22,6 +22,8 @@ from synthesis.kinds.gearbox.structures import (
     structures,
 )
 from synthesis.kinds.gearbox.verification import verify
+from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.kinds.layshaft_gearbox.verification import verify as verify_layshaft
 from synthesis.registry import parse_problem
 

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from synthesis.dispatch import solve
-from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.registry import parse_problem
 
 EVEN = 1e-12

@@ -17,19 +17,11 @@ from kinematics.gear.assembly import fits_at, gaps, is_coaxial
 from kinematics.gear.planetary import speed_ratio
 from kinematics.gear.teeth import Gear, Mesh
 from synthesis.dispatch import solve
-from synthesis.kinds.gear_train.design import Ratio
-from synthesis.kinds.planetary_train.design import (
-    PlanetaryMechanism,
-    PlanetaryResult,
-    PlanetPlaces,
-)
+from synthesis.kinds.planetary_train.design import PlanetaryMechanism, PlanetaryResult, PlanetPlaces
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.kinds.planetary_train.ratio_form import arrangement_form, exact
-from synthesis.kinds.planetary_train.verification import (
-    exact_ratio_of,
-    size_of,
-    verify,
-)
+from synthesis.kinds.planetary_train.verification import exact_ratio_of, size_of, verify
+from synthesis.model.gear_answer import Ratio
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
 

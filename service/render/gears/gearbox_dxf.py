@@ -26,8 +26,10 @@ from service.render.gears.gearbox_layout import (
 )
 from service.render.page import dxf
 from service.render.page.svg import clean
-from synthesis.kinds.gearbox.design import GearboxDesign, LayshaftDesign
-from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 
 COLOURS = (5, 3, 30, 6, 4, 1, 2)
 """Colour indices, taken in turn."""

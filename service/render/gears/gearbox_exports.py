@@ -34,8 +34,10 @@ from service.render.page.symbols import (
     OUTPUT,
     PALE,
 )
-from synthesis.kinds.gearbox.design import GearboxDesign, LayshaftDesign
-from synthesis.kinds.gearbox.problem import GearboxProblem, LayshaftProblem
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.model.answer import Check, Verification
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER, HEIGHT = 1100.0, 22.0, 74.0, 400.0, 26.0, 620.0

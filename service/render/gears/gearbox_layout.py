@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from kinematics.gear.teeth import Gear
 from service.render.gears.meshing import facing
-from synthesis.kinds.gearbox.design import GearboxMechanism, LayshaftMechanism
+from synthesis.kinds.gearbox.design import GearboxMechanism
+from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism
 
 
 @dataclass(frozen=True)

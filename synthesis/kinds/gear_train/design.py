@@ -6,12 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Result,
-    Search,
-    Verification,
-)
+from synthesis.model.answer import Answer, Result, Search, Verification
+from synthesis.model.gear_answer import MeshGeometry, Ratio
 
 
 class Stage(Answer):
@@ -29,14 +25,6 @@ class Idler(Answer):
     teeth: int
 
 
-class Ratio(Answer):
-    """Input speed over output speed as a reduced fraction; negative where they turn in opposite directions."""
-
-    numerator: int
-    denominator: int
-    value: float
-
-
 class GearTrainMechanism(Answer):
     """An ordinary train of external spur gears on fixed shafts."""
 
@@ -45,30 +33,6 @@ class GearTrainMechanism(Answer):
     idlers: list[Idler] = Field(default=[])
     ratio: Ratio
     pressure_angle: float = Field(default=20.0, description="Degrees.")
-
-
-class SuggestedShift(Answer):
-    """Profile shift, in modules, that would make a mesh sound; nothing of it is in the mechanism."""
-
-    driver: float
-    driven: float
-    centre_distance: float
-    contact_ratio: float
-
-
-class MeshGeometry(Answer):
-    """One mesh of full-depth teeth at the distance of the pitch circles."""
-
-    stage: int
-    driver: int = Field(description="Teeth; of an idler where one lies between.")
-    driven: int
-    centre_distance: float
-    contact_ratio: float
-    interferes: bool = Field(description="Whether a tip digs into the flank of this very mate.")
-    undercut: bool = Field(description="Whether a rack that cuts the smaller gear takes away from its flanks.")
-    suggested_shift: SuggestedShift | None = Field(
-        default=None, description="Where the mesh interferes or is undercut and a profile shift would save it."
-    )
 
 
 class GearTrainMetrics(Answer):

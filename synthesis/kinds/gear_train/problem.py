@@ -6,25 +6,17 @@ import math
 from fractions import Fraction
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.model.ratio_target import (
-    LONGEST,
-    Target,
-    decimal,
-    parse_target,
-)
+from synthesis.model.gear_statement import MOST_TEETH, ExactRatio, Pitch, PressureAngle, ToothNumber
+from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import (
     Contradiction,
     Count,
     Flag,
-    Number,
     StatedProblem,
     Statement,
 )
-
-MOST_TEETH = 2000
-"""More teeth are a typing error; the fourth power of it is exact in every number that the search uses."""
 
 MOST_HALVES = 10_000_000
 """Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""
@@ -40,26 +32,6 @@ NEAR = Fraction(1, 100)
 among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
 
 DEFAULT_MOST_TEETH = 100
-
-FEWEST_TEETH = 3
-"""Full-depth gears with fewer have no root circle."""
-
-
-def _parsed(stated: float | str) -> float | str:
-    parse_target(stated)
-    return stated
-
-
-ExactRatio = Annotated[
-    Annotated[Number, Field(strict=True)] | Annotated[str, Field(strict=True, min_length=1, max_length=LONGEST)],
-    AfterValidator(_parsed),
-]
-"""A number or a text of the grammar of :mod:`synthesis.model.ratio_target`."""
-
-Pitch = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
-"""A module or diametral pitch; beyond, lengths of trains would leave the numbers there are. Finer is a typing error."""
-
-ToothNumber = Annotated[Count, Field(ge=FEWEST_TEETH, le=MOST_TEETH)]
 
 
 class TeethRange(Statement):
@@ -158,7 +130,7 @@ class GearTrainProblem(StatedProblem):
     diametral_pitch: Pitch | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
     )
-    pressure_angle: Annotated[float, Field(strict=True, ge=10.0, le=30.0)] = Field(default=20.0, description="Degrees.")
+    pressure_angle: PressureAngle = Field(default=20.0, description="Degrees.")
     interference: Literal["report", "refuse"] = Field(
         default="report",
         description="Whether meshes in which one gear would dig into the other are only told (with the profile shift "

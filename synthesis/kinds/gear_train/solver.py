@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from fractions import Fraction
 
 from synthesis.kinds.gear_train.design import (
     GearTrainDesign,
@@ -14,7 +13,6 @@ from synthesis.kinds.gear_train.design import (
     GearTrainSearch,
     Idler,
     ParetoTrain,
-    Ratio,
     Stage,
 )
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -30,6 +28,7 @@ from synthesis.kinds.gear_train.task import (
     needs_idler,
 )
 from synthesis.kinds.gear_train.verification import verify
+from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
 
 
@@ -79,7 +78,7 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
                 size=train.size(task.largest),
                 relative_error=task.target.relative_error(train.ratio),
                 stages=_stages(problem, task, train),
-                ratio=_ratio(train.ratio * (-1) ** len(train.drivers)),
+                ratio=Ratio.of(train.ratio * (-1) ** len(train.drivers)),
             )
             for train in outcome.pareto
         ],
@@ -96,10 +95,6 @@ def _gears(task: Task, train: Train) -> tuple[object, ...]:
 def _least_error(task: Task, outcome: Outcome) -> float | None:
     found = [*outcome.trains, *outcome.pareto, *([outcome.nearest] if outcome.nearest else [])]
     return min((abs(task.target.relative_error(train.ratio)) for train in found), default=None)
-
-
-def _ratio(ratio: Fraction) -> Ratio:
-    return Ratio(numerator=ratio.numerator, denominator=ratio.denominator, value=float(ratio))
 
 
 def _stages(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
@@ -121,7 +116,10 @@ def _mechanism(problem: GearTrainProblem, task: Task, train: Train) -> GearTrain
             return None
         ratio, idlers = -ratio, [idler]
     return GearTrainMechanism(
-        stages=_stages(problem, task, train), idlers=idlers, ratio=_ratio(ratio), pressure_angle=problem.pressure_angle
+        stages=_stages(problem, task, train),
+        idlers=idlers,
+        ratio=Ratio.of(ratio),
+        pressure_angle=problem.pressure_angle,
     )
 
 

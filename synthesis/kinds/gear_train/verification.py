@@ -11,18 +11,12 @@ from collections import Counter
 from fractions import Fraction
 
 from kinematics.errors import DimensionError
-from kinematics.gear.teeth import Mesh, saving_shift
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from synthesis.kinds.gear_train.design import (
-    GearTrainDesign,
-    GearTrainMechanism,
-    GearTrainMetrics,
-    MeshGeometry,
-    SuggestedShift,
-)
+from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainMechanism, GearTrainMetrics
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.model.gear_answer import mesh_geometries
 
 SAME_DISTANCE = 1e-12
 """Share of a centre distance by which equal ones may differ in rounding."""
@@ -74,37 +68,6 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
         mechanism=mechanism,
         verification=Verification(passed=all(check.passed for check in checks), checks=checks),
         metrics=metrics,
-    )
-
-
-def mesh_geometries(train: OrdinaryTrain) -> list[MeshGeometry]:
-    """Geometry of every mesh, with a shift that would save it where it is not sound."""
-    found = []
-    for number, (stage, meshes) in enumerate(zip(train.stages, train.meshes, strict=True), 1):
-        for (driver, driven), mesh in zip(zip(stage.gears[:-1], stage.gears[1:], strict=True), meshes, strict=True):
-            found.append(
-                MeshGeometry(
-                    stage=number,
-                    driver=driver,
-                    driven=driven,
-                    centre_distance=mesh.centre_distance,
-                    contact_ratio=mesh.contact_ratio,
-                    interferes=mesh.interferes,
-                    undercut=mesh.pinion.is_undercut,
-                    suggested_shift=_suggested(mesh, driver),
-                )
-            )
-    return found
-
-
-def _suggested(mesh: Mesh, driver: int) -> SuggestedShift | None:
-    saved = saving_shift(mesh)
-    if saved is None:
-        return None
-    shifts = saved.pinion.shift, saved.gear.shift
-    first, second = shifts if driver == mesh.pinion.teeth else shifts[::-1]
-    return SuggestedShift(
-        driver=first, driven=second, centre_distance=saved.centre_distance, contact_ratio=saved.contact_ratio
     )
 
 

@@ -1,4 +1,4 @@
-"""Gearboxes of several speeds as answers."""
+"""Gearboxes of machine tools as answers."""
 
 from __future__ import annotations
 
@@ -6,19 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.kinds.gear_train.design import Ratio
-from synthesis.model.answer import (
-    Answer,
-    Result,
-    Verification,
-)
-
-
-class GearPairTeeth(Answer):
-    """Teeth of a pair of gears."""
-
-    driver: int
-    driven: int
+from synthesis.model.answer import Answer, Result, Verification
+from synthesis.model.gear_answer import GearPairTeeth
 
 
 class GearboxStage(Answer):
@@ -93,66 +82,3 @@ class GearboxResult(Result[GearboxDesign]):
 
     progression_ratio: float
     structures: list[StructureVerdict]
-
-
-class LayshaftGear(Answer):
-    """A forward gear; without teeth it is direct drive."""
-
-    layshaft: int | None
-    mainshaft: int | None
-    ratio: Ratio
-
-
-class ReverseGear(Answer):
-    """The reverse gear with its idler."""
-
-    layshaft: int
-    idler: int
-    mainshaft: int
-    ratio: Ratio
-
-
-class LayshaftMechanism(Answer):
-    """A layshaft gearbox of a vehicle."""
-
-    type: Literal["layshaft_gearbox"] = "layshaft_gearbox"
-    head: GearPairTeeth = Field(description="From the input shaft to the layshaft.")
-    gears: list[LayshaftGear]
-    reverse: ReverseGear | None
-    module: float
-    pressure_angle: float = Field(description="Degrees.")
-    centre_distance: float
-
-
-class LayshaftMetrics(Answer):
-    """Measured properties of a layshaft gearbox."""
-
-    max_error: float = Field(description="Largest relative error of a gear.")
-    errors: list[float] = Field(description="Relative error of each forward gear, with its sign; reverse comes last.")
-    tooth_sum: int
-    interfering: list[GearPairTeeth] = Field(description="Pairs whose standard teeth interfere; they need a shift.")
-    contact_ratios: list[float] = Field(
-        description="Of the head pair, the forward gears with teeth, and reverse's two."
-    )
-
-
-class LayshaftDesign(Answer):
-    """A layshaft gearbox with the proof of its ratios."""
-
-    mechanism: LayshaftMechanism
-    verification: Verification
-    metrics: LayshaftMetrics
-
-
-class ParetoLayshaft(Answer):
-    """The least error that a tooth sum allows, where no smaller sum allows it."""
-
-    tooth_sum: int
-    max_error: float
-    head: GearPairTeeth
-
-
-class LayshaftResult(Result[LayshaftDesign]):
-    """Layshaft gearboxes, best first."""
-
-    pareto: list[ParetoLayshaft] = Field(description="The Pareto set of error against tooth sum, smallest first.")

@@ -13,7 +13,6 @@ from synthesis.kinds.gearbox.design import (
     GearboxMechanism,
     GearboxResult,
     GearboxStage,
-    GearPairTeeth,
     StructureVerdict,
 )
 from synthesis.kinds.gearbox.front import Choice, best_choices
@@ -31,6 +30,7 @@ from synthesis.kinds.gearbox.structures import (
     structures,
 )
 from synthesis.kinds.gearbox.verification import measure, verify
+from synthesis.model.gear_answer import GearPairTeeth
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import sifted
 

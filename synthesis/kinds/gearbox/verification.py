@@ -6,13 +6,8 @@ import math
 from fractions import Fraction
 
 from kinematics.gear.gearbox import spindle_speeds
-from kinematics.gear.teeth import Gear, Mesh
-from synthesis.kinds.gearbox.design import (
-    GearboxMechanism,
-    GearboxMetrics,
-    ShaftSpeeds,
-    SpindleSpeed,
-)
+from kinematics.gear.teeth import Mesh
+from synthesis.kinds.gearbox.design import GearboxMechanism, GearboxMetrics, ShaftSpeeds, SpindleSpeed
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.model.answer import Check, Verification
 
@@ -108,5 +103,4 @@ def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]
 
 
 def _mesh(mechanism: GearboxMechanism, pair: tuple[int, int]) -> Mesh:
-    one, other = (Gear(z, mechanism.module, math.radians(mechanism.pressure_angle)) for z in pair)
-    return Mesh(one, other)
+    return Mesh.standard(pair, mechanism.module, math.radians(mechanism.pressure_angle))

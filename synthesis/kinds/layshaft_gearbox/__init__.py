@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from synthesis.kinds.gearbox.design import LayshaftResult
-from synthesis.kinds.gearbox.problem import LayshaftProblem
+from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]

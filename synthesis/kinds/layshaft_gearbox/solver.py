@@ -15,9 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.gearbox import layshaft_ratios
-from synthesis.kinds.gear_train.design import Ratio
-from synthesis.kinds.gearbox.design import (
-    GearPairTeeth,
+from synthesis.kinds.layshaft_gearbox.design import (
     LayshaftDesign,
     LayshaftGear,
     LayshaftMechanism,
@@ -25,12 +23,13 @@ from synthesis.kinds.gearbox.design import (
     ParetoLayshaft,
     ReverseGear,
 )
-from synthesis.kinds.gearbox.problem import LayshaftProblem
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.kinds.layshaft_gearbox.verification import (
     PASSING,
     measure,
     verify,
 )
+from synthesis.model.gear_answer import GearPairTeeth, Ratio
 from synthesis.model.kind import Progress
 from synthesis.model.mesh_limits import external_sound
 from synthesis.outcome.sifting import sifted
@@ -194,23 +193,19 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
     return sorted(found, key=lambda box: box[:3])[:count]
 
 
-def _ratio(value: Fraction) -> Ratio:
-    return Ratio(numerator=value.numerator, denominator=value.denominator, value=float(value))
-
-
 def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
     ratios = layshaft_ratios(box.head, box.gears, box.reverse)
     reverse = None
     if box.reverse is not None and ratios.reverse is not None:
         e, f, g = box.reverse
-        reverse = ReverseGear(layshaft=e, idler=f, mainshaft=g, ratio=_ratio(ratios.reverse))
+        reverse = ReverseGear(layshaft=e, idler=f, mainshaft=g, ratio=Ratio.of(ratios.reverse))
     mechanism = LayshaftMechanism(
         head=GearPairTeeth(driver=box.head[0], driven=box.head[1]),
         gears=[
             LayshaftGear(
                 layshaft=None if pair is None else pair[0],
                 mainshaft=None if pair is None else pair[1],
-                ratio=_ratio(ratio),
+                ratio=Ratio.of(ratio),
             )
             for pair, ratio in zip(box.gears, ratios.forward, strict=True)
         ],

@@ -7,14 +7,11 @@ from fractions import Fraction
 
 from kinematics.gear.planetary import GROUND, Train, speed_ratio
 from kinematics.gear.planetary import Mesh as Rolling
-from kinematics.gear.teeth import Gear, Mesh
-from synthesis.kinds.gearbox.design import (
-    GearPairTeeth,
-    LayshaftMechanism,
-    LayshaftMetrics,
-)
-from synthesis.kinds.gearbox.problem import LayshaftProblem
+from kinematics.gear.teeth import Mesh
+from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism, LayshaftMetrics
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.model.answer import Check, Verification
+from synthesis.model.gear_answer import GearPairTeeth
 
 PASSING = 1e-9
 """Room between the tips of reverse gears on layshaft and main shaft, in modules, that is no touch."""
@@ -113,8 +110,7 @@ def _reverse_fits(mechanism: LayshaftMechanism) -> bool:
 
 
 def _mesh(mechanism: LayshaftMechanism, pair: tuple[int, int]) -> Mesh:
-    one, other = (Gear(z, mechanism.module, math.radians(mechanism.pressure_angle)) for z in pair)
-    return Mesh(one, other)
+    return Mesh.standard(pair, mechanism.module, math.radians(mechanism.pressure_angle))
 
 
 def _interfering(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:

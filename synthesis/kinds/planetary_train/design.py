@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.kinds.gear_train.design import Ratio
 from synthesis.model.answer import (
     Answer,
     Result,
     Verification,
 )
+from synthesis.model.gear_answer import Ratio
 
 
 class PlanetPlaces(Answer):

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from synthesis.kinds.gear_train.problem import ExactRatio, Pitch
+from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Pitch, RangedTeeth, ToothRange
 from synthesis.model.ratio_target import parse_target
 from synthesis.model.statement import (
     Contradiction,
@@ -17,8 +17,6 @@ from synthesis.model.statement import (
     StatedProblem,
     Statement,
 )
-
-Teeth = Annotated[Count, Field(ge=4, le=1000)]
 
 MOST_COMBINATIONS = 2 * 10**8
 """Combinations of independent tooth numbers in one planet set at most: what a search of minutes covers."""
@@ -31,19 +29,12 @@ TOUCH = 1e-9
 """Room between gears, in modules, that is rounding: less is a touch, and a demanded room short of it by less is met."""
 
 
-class ToothRange(Statement):
-    """Fewest and most teeth of one gear; equal to fix it."""
-
-    min: Teeth
-    max: Teeth
-
-
 class PlanetaryTeeth(Statement):
     """Tooth numbers to choose from."""
 
-    min: Teeth = Field(default=17, description="Fewest teeth of any gear.")
-    max: Teeth = Field(default=100, description="Most teeth of a gear with external teeth.")
-    ring_max: Teeth = Field(default=200, description="Most teeth of a ring.")
+    min: RangedTeeth = Field(default=17, description="Fewest teeth of any gear.")
+    max: RangedTeeth = Field(default=100, description="Most teeth of a gear with external teeth.")
+    ring_max: RangedTeeth = Field(default=200, description="Most teeth of a ring.")
     gears: dict[str, ToothRange] = Field(
         default={}, description="Other limits for single gears by name, e.g. sun, planet, ring; see the arrangement."
     )
@@ -115,7 +106,7 @@ class PlanetaryProblem(StatedProblem):
     fixed: str | None = Field(default=None, description="The member held; null tries all.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
     module: Pitch = Field(default=1.0, description="Module of all gears, in the length unit.")
-    pressure_angle: Annotated[float, Field(strict=True, ge=14.0, le=30.0)] = Field(default=20.0, description="Degrees.")
+    pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of the ratio; null takes the best there is."
     )

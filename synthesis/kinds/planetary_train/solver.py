@@ -13,7 +13,6 @@ from fractions import Fraction
 import numpy as np
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from synthesis.kinds.gear_train.design import Ratio
 from synthesis.kinds.planetary_train.design import (
     ParetoPlanetaryTrain,
     PlanetaryDesign,
@@ -36,6 +35,7 @@ from synthesis.kinds.planetary_train.tooth_numbers import (
 )
 from synthesis.kinds.planetary_train.verification import measure, verify
 from synthesis.model import mesh_limits
+from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import sifted
 
@@ -176,10 +176,6 @@ class _Found:
         )
 
 
-def _ratio(ratio: Fraction) -> Ratio:
-    return Ratio(numerator=ratio.numerator, denominator=ratio.denominator, value=float(ratio))
-
-
 def _design(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryDesign:
     mechanism = _mechanism(problem, candidate)
     return PlanetaryDesign(
@@ -201,7 +197,7 @@ def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryT
         output=two,
         fixed=three,
         teeth=dict(candidate.teeth),
-        ratio=_ratio(candidate.ratio),
+        ratio=Ratio.of(candidate.ratio),
         error=float(candidate.ratio / problem.target - 1),
         size=candidate.size * problem.module,
     )
@@ -223,7 +219,7 @@ def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMech
         input=one,
         output=two,
         fixed=three,
-        ratio=_ratio(candidate.ratio),
+        ratio=Ratio.of(candidate.ratio),
     )
 
 

@@ -17,11 +17,7 @@ from kinematics.gear.assembly import Gap, fits_at, gaps, is_coaxial, pin_distanc
 from kinematics.gear.planetary import speed_ratio, speeds
 from kinematics.gear.power import power_flow
 from kinematics.gear.teeth import Gear, Mesh
-from synthesis.kinds.planetary_train.design import (
-    MeshContact,
-    PlanetaryMechanism,
-    PlanetaryMetrics,
-)
+from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechanism, PlanetaryMetrics
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
