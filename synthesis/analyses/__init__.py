@@ -21,20 +21,25 @@ from synthesis.analyses import (
     universal_joint,
 )
 from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.model.mechanism_types import mechanism_types
 
 FAMILIES: dict[str, Family] = {
-    "barrel_cam": barrel_cam.FAMILY,
-    "cam": cam.FAMILY,
-    "camshaft": camshaft.FAMILY,
-    "contour_cam": contour_cam.FAMILY,
-    "bevel_pair": gear_pair.BEVEL_FAMILY,
-    "gear_train": gear_train.FAMILY,
-    "helical_pair": gear_pair.HELICAL_FAMILY,
-    "worm_set": gear_pair.WORM_FAMILY,
-    "gearbox": gearbox.FAMILY,
-    "layshaft_gearbox": gearbox.LAYSHAFT_FAMILY,
-    "planetary_train": planetary_train.FAMILY,
-    "universal_joint": universal_joint.FAMILY,
+    name: family
+    for family in (
+        barrel_cam.FAMILY,
+        cam.FAMILY,
+        camshaft.FAMILY,
+        contour_cam.FAMILY,
+        gear_pair.BEVEL_FAMILY,
+        gear_train.FAMILY,
+        gear_pair.HELICAL_FAMILY,
+        gear_pair.WORM_FAMILY,
+        gearbox.FAMILY,
+        gearbox.LAYSHAFT_FAMILY,
+        planetary_train.FAMILY,
+        universal_joint.FAMILY,
+    )
+    for name in mechanism_types(family.request)
 }
 """By the mechanism types that are no linkages; every other mechanism is one."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from synthesis.model.answer import Result
+from synthesis.model.mechanism_types import mechanism_types, models_within
 from synthesis.model.statement import StatedProblem
 
 Progress = Callable[[float, str], None]
@@ -39,6 +40,12 @@ class Kind(Generic[P, R]):
     result: type[R]
     solve: Callable[[P, Progress], R]
     warm_up: Callable[[], None] | None = None
+
+    @property
+    def mechanisms(self) -> list[str]:
+        """The types of mechanisms that its designs can have, in the order of the models of its answer."""
+        designs = models_within(self.result.model_fields["designs"].annotation)
+        return [name for design in designs for name in mechanism_types(design)]
 
     @property
     def examples(self) -> list[dict[str, Any]]:
