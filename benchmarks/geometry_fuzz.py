@@ -153,8 +153,8 @@ def _drawn(design: Any, problem: Any, animated: bool) -> str:
 
 
 def _moved(stored: str) -> str:
+    from service.api.designs import motion
     from service.api.errors import Refusal
-    from service.api.jobs import motion
 
     try:
         answer = json.loads(motion(stored, "0", 36))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Annotated, Any, ParamSpec
 
-from fastapi import APIRouter, Body, Depends, Request, Response
+from fastapi import APIRouter, Body, Response
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ValidationError
 from pydantic_core import to_json
@@ -14,6 +14,7 @@ from service.analyst import LONGEST_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
 from service.api.errors import busy, invalid_mechanism, invalid_request, sentence
+from service.api.state import Core
 from service.telemetry import span
 
 TAG = {"name": "analyses", "description": "Drive a given mechanism."}
@@ -27,15 +28,15 @@ ANALYSIS = {"$ref": "#/components/schemas/Analysis"}
 P = ParamSpec("P")
 
 
-async def _analyst(request: Request) -> Analyst:
-    analyst = request.app.state.analyst
-    assert isinstance(analyst, Analyst)
-    return analyst
-
-
-Core = Annotated[Analyst, Depends(_analyst)]
-
 router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRoute)
+
+
+def analysis_responses(description: str, **described: str) -> dict[int | str, dict[str, Any]]:
+    """The responses of an operation that answers with an analysis; errors as for :func:`errors.responses`."""
+    return {
+        200: {"description": description, "content": {"application/json": {"schema": ANALYSIS}}},
+        **errors.responses(**described, e503="Other analyses have kept this one from being begun."),
+    }
 
 
 @router.post(
@@ -43,16 +44,13 @@ router = APIRouter(prefix="/v1/analyses", tags=["analyses"], route_class=JsonRou
     operation_id="analyse",
     summary="Analyse a mechanism",
     response_class=Response,
-    responses={
-        200: {"description": "The analysis.", "content": {"application/json": {"schema": ANALYSIS}}},
-        **errors.responses(
-            e400="The body is not JSON.",
-            e413="The body is too large.",
-            e415="The body is not `application/json`.",
-            e422="The body does not state a mechanism and its motion; `errors` says where.",
-            e503="Other analyses have kept this one from being begun.",
-        ),
-    },
+    responses=analysis_responses(
+        "The analysis.",
+        e400="The body is not JSON.",
+        e413="The body is too large.",
+        e415="The body is not `application/json`.",
+        e422="The body does not state a mechanism and its motion; `errors` says where.",
+    ),
 )
 async def analyse_mechanism(analyst: Core, body: Annotated[Any, Body()]) -> Response:
     """Positions, velocities, accelerations and jerks over the motion, toggles, circuits and limits.
@@ -88,12 +86,12 @@ def _analysed(body: Any) -> bytes:
     try:
         request = parse_request(body)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)
-        located = [{**fault, "loc": ("body", *fault["loc"])} for fault in found]
+        faults = error.errors(include_url=False, include_context=False, include_input=False)
+        located = [{**fault, "loc": ("body", *fault["loc"])} for fault in faults]
         raise RequestValidationError(located, body=body) from None
-    faults = request.faults()
-    if faults:
-        raise invalid_request([(path, sentence(detail)) for path, detail in faults])
+    contradictions = request.faults()
+    if contradictions:
+        raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
     try:
         answer = request.answer()
     except MechanismError as error:

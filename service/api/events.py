@@ -10,7 +10,7 @@ import re
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Header, Request, Response
 from fastapi.sse import EventSourceResponse, format_sse_event
 from pydantic_core import to_json
 
@@ -19,6 +19,7 @@ from service.api.errors import Refusal, not_found, store_unavailable
 from service.api.guard import GuardedRoute, Tenant
 from service.api.jobs import NO_JOB, TAG, ULID
 from service.api.schemas import list_item, progress
+from service.api.state import Poller
 from service.head import asked_for_head
 from service.jobs.poller import Follower, JobPoller
 from service.jobs.schema import JobSummary
@@ -59,14 +60,6 @@ _EVENT = {
     },
 }
 
-
-async def _poller(request: Request) -> JobPoller:
-    poller = request.app.state.poller
-    assert isinstance(poller, JobPoller)
-    return poller
-
-
-Poller = Annotated[JobPoller, Depends(_poller)]
 
 router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
 

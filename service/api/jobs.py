@@ -1,33 +1,27 @@
-"""``/v1/jobs``: state a problem, follow the job, read and draw the answer."""
+"""``/v1/jobs``: state a problem, list, read, cancel and remove jobs."""
 
 from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Callable
-from importlib.metadata import version
-from typing import Annotated, Any, Literal, ParamSpec, TypeVar
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Body, Depends, Header, Query, Request, Response
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import from_json, to_json
+from fastapi import APIRouter, Body, Header, Query, Request, Response
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic_core import to_json
 
 from service.api import errors, etag
-from service.api.analyses import ANALYSIS, Core, answered
 from service.api.body import JsonRoute
-from service.api.errors import Refusal, busy, invalid_problem, invalid_request, not_found, sentence
+from service.api.errors import Refusal, invalid_problem, invalid_request, not_found, sentence
 from service.api.guard import Tenant
 from service.api.idempotency import KEY, key_reused, repeatable
 from service.api.prefer import wait_seconds
 from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
-from service.drawings import Busy, Drawings
+from service.api.state import Desk
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused, QueueFull
-from service.loading import IMPORTS
-from service.render import Form
-from service.telemetry import span
 from synthesis.registry import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
@@ -42,31 +36,6 @@ ULID = re.compile("[0-7][0-9A-HJKMNP-TV-Z]{25}")
 """What can be the id of a job. Only that reaches the database, which need not stand every string."""
 
 NO_JOB = "There is no job with this id."
-
-OTHER_DRAWINGS = "Other drawings have kept this one from being begun."
-
-P = ParamSpec("P")
-T = TypeVar("T")
-
-_DESIGN_NUMBER = re.compile("[0-9]{1,4}")
-
-
-async def _desk(request: Request) -> JobDesk:
-    desk = request.app.state.desk
-    assert isinstance(desk, JobDesk)
-    return desk
-
-
-Desk = Annotated[JobDesk, Depends(_desk)]
-
-
-async def _drawings(request: Request) -> Drawings:
-    drawings = request.app.state.drawings
-    assert isinstance(drawings, Drawings)
-    return drawings
-
-
-Board = Annotated[Drawings, Depends(_drawings)]
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"], route_class=JsonRoute)
 
@@ -226,7 +195,7 @@ async def get_job(
     ] = None,
 ) -> Response:
     """The job as it stands."""
-    job = await _job(desk, tenant, job_id)
+    job = await job_of(desk, tenant, job_id)
     current = etag.tag(job.revision)
     if etag.matches(request.headers.getlist("if-none-match"), current):
         return Response(status_code=304, headers={"ETag": current})
@@ -256,237 +225,14 @@ async def delete_job(desk: Desk, tenant: Tenant, job_id: str) -> Response:
     return Response(status_code=204) if job == "deleted" else _json(whole_job(job), 202)
 
 
-_TEXT = {"type": "string"}
-_FILE_SCHEMAS = {"gif": {"type": "string", "format": "binary"}}
-_MEDIA_TYPES = {"svg": "image/svg+xml", "gif": "image/gif", "dxf": "image/vnd.dxf", "csv": "text/csv; charset=utf-8"}
-
-
-def _exported(form: Form) -> dict[int | str, dict[str, Any]]:
-    return {
-        200: {"description": "The file.", "content": {_MEDIA_TYPES[form]: {"schema": _FILE_SCHEMAS.get(form, _TEXT)}}},
-        **errors.responses(
-            e404="There is no such job or design, or no such file of its type of mechanism.",
-            e409="The job has no result (yet), or the design is of a size that is not drawn.",
-            e503=OTHER_DRAWINGS,
-        ),
-    }
-
-
-@router.get(
-    "/{job_id}/designs/{number}.svg",
-    operation_id="draw_design",
-    summary="Draw a design",
-    response_class=Response,
-    responses=_exported("svg"),
-)
-async def draw_design(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-    """A labelled drawing of design ``number`` of the job's result, counted from 0."""
-    return await _file(desk, board, tenant, job_id, number, "svg")
-
-
-@router.get(
-    "/{job_id}/designs/{number}.gif",
-    operation_id="animate_design",
-    summary="Animate a design",
-    response_class=Response,
-    responses=_exported("gif"),
-)
-async def animate_design(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-    """Design ``number`` of the job's result going through its cycle, counted from 0: 60 frames, over and over."""
-    return await _file(desk, board, tenant, job_id, number, "gif")
-
-
-@router.get(
-    "/{job_id}/designs/{number}.dxf",
-    operation_id="export_design_dxf",
-    summary="Export a design to CAD",
-    response_class=Response,
-    responses=_exported("dxf"),
-)
-async def export_design_dxf(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-    """A DXF file of design ``number`` of the job's result, in true dimensions and with units."""
-    return await _file(desk, board, tenant, job_id, number, "dxf")
-
-
-@router.get(
-    "/{job_id}/designs/{number}.csv",
-    operation_id="export_design_csv",
-    summary="Export a design as a table",
-    response_class=Response,
-    responses=_exported("csv"),
-)
-async def export_design_csv(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-    """A table of design ``number`` of the job's result, with units in its header."""
-    return await _file(desk, board, tenant, job_id, number, "csv")
-
-
-async def _file(desk: JobDesk, board: Drawings, tenant: str, job_id: str, number: str, form: Form) -> Response:
-    job, result = await _solved(desk, tenant, job_id)
-    with span("drawing"):
-        drawn = await _made(board, _rendered, job, result, number, form)
-    return Response(drawn, media_type=_MEDIA_TYPES[form])
-
-
-async def _made(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    try:
-        return await board.made(draw, *args, **kwargs)
-    except Busy:
-        raise busy("drawings") from None
-
-
-def _rendered(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
-    # Drawing is for those who ask for it; the other requests do not wait for its import.
-    from service import render
-
-    kind = KINDS[job.kind]
-    designs = kind.result.model_validate_json(result).designs
-    n = _design_index(number, len(designs))
-    problem = kind.problem.model_validate_json(job.problem)
-    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
-    try:
-        return render.exported(designs[n], problem, title, form)
-    except render.NoSuchExport:
-        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
-    except render.NotBuilt:
-        raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
-
-
-class ReportScope(BaseModel):
-    """How much of a job is reported."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    designs: int = Field(
-        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
-    )
-
-
-@router.get(
-    "/{job_id}/report.html",
-    operation_id="report_job",
-    summary="Report a job",
-    response_class=Response,
-    responses={
-        200: {
-            "description": "The page.",
-            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
-            "headers": {
-                "Content-Security-Policy": {
-                    "description": "Nothing but the page's own style sheet, by its hash.",
-                    "schema": _TEXT,
-                }
-            },
-        },
-        **errors.responses(
-            e404=NO_JOB,
-            e409="The job has no result (yet).",
-            e422="A parameter is not valid; `errors` says which.",
-            e503=OTHER_DRAWINGS,
-        ),
-    },
-)
-async def report_job(
-    desk: Desk, board: Board, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]
-) -> Response:
-    """The job as one self-contained page for paper.
-
-    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
-    """
-    job, result = await _solved(desk, tenant, job_id)
-    with span("report"):
-        page, policy = await _made(board, _reported, job, result, query.designs)
-    headers = {
-        "Content-Security-Policy": policy,
-        "X-Content-Type-Options": "nosniff",
-        "Referrer-Policy": "no-referrer",
-        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
-    }
-    return Response(page, media_type="text/html", headers=headers)
-
-
-def _reported(job: JobRow, result: str, most: int) -> tuple[str, str]:
-    with IMPORTS:
-        from service.render.report import POLICY, Occasion, report
-
-    kind = KINDS[job.kind]
-    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
-    problem = kind.problem.model_validate_json(job.problem)
-    return report(problem, kind.result.model_validate_json(result), occasion, most), POLICY
-
-
-class MotionSteps(BaseModel):
-    """How finely a cycle is divided."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    steps: int = Field(default=360, ge=1, le=3600, description="Equal steps of the input, both ends included.")
-
-
-@router.get(
-    "/{job_id}/designs/{number}/motion",
-    operation_id="move_design",
-    summary="Move a design",
-    response_class=Response,
-    responses={
-        200: {"description": "The motion.", "content": {"application/json": {"schema": ANALYSIS}}},
-        **errors.responses(
-            e404="There is no such job or design.",
-            e409="The job has no result (yet), or the design is of a size that is not analysed.",
-            e422="A parameter is not valid; `errors` says which.",
-            e503="Other analyses have kept this one from being begun.",
-        ),
-    },
-)
-async def move_design(
-    desk: Desk, tenant: Tenant, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
-) -> Response:
-    """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
-
-    A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
-    back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
-    `POST /v1/analyses`.
-    """
-    _, result = await _solved(desk, tenant, job_id)
-    return await answered(analyst, motion, result, number, query.steps)
-
-
-def motion(result: str, number: str, steps: int) -> bytes:
-    """The motion of design ``number`` of a stored result, in JSON.
+async def job_of(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
+    """The job of a tenant.
 
     Raises
     ------
     Refusal
-        404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
+        404 where the tenant has none such.
     """
-    from kinematics import errors as kinematics
-    from synthesis.analyses import family
-    from synthesis.mechanisms import MechanismError
-
-    designs = from_json(result)["designs"]
-    mechanism = designs[_design_index(number, len(designs))]["mechanism"]
-    try:
-        answer = family(mechanism).request.over_the_cycle(mechanism, steps)
-    except (ValidationError, MechanismError, kinematics.MechanismError):
-        # A design for lengths at the end of what can be stated may itself lie beyond that.
-        raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None
-    return to_json(answer, inf_nan_mode="null")
-
-
-async def _solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
-    job = await _job(desk, tenant, job_id)
-    if job.result is None:
-        what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
-        raise Refusal(409, "no-result", "No result", f"The job {what}.")
-    return job, job.result
-
-
-def _design_index(number: str, designs: int) -> int:
-    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
-        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
-    return int(number)
-
-
-async def _job(desk: JobDesk, tenant: str, job_id: str) -> JobRow:
     job = await desk.get(tenant, job_id) if ULID.fullmatch(job_id) else None
     if job is None:
         raise not_found(NO_JOB)

@@ -10,7 +10,7 @@ import pytest
 from starlette.concurrency import run_in_threadpool
 
 from service import drawings
-from service.api import jobs
+from service.api import designs
 from service.api.errors import Refusal
 from service.drawings import AT_ONCE, Busy, Drawings
 from synthesis.registry import example
@@ -71,7 +71,7 @@ def test_a_drawing_that_finds_no_turn_is_refused():
         raise Busy
 
     with pytest.raises(Refusal) as refused:
-        asyncio.run(jobs._made(SimpleNamespace(made=never), divmod, 7, 2))
+        asyncio.run(designs._drawn(SimpleNamespace(made=never), divmod, 7, 2))
     assert (refused.value.status, refused.value.type) == (503, "/problems/busy")
 
 
@@ -89,5 +89,5 @@ def test_a_design_beyond_what_can_be_stated_is_not_drawn_but_said_to_be_so(serve
     joints[next(iter(joints))] = [2e9, 0.0]
     row = SimpleNamespace(kind=kind, label=None, problem=json.dumps(found["problem"]))
     with pytest.raises(Refusal) as refused:
-        jobs._rendered(row, json.dumps(result), "0", form)
+        designs._file(row, json.dumps(result), "0", form)
     assert (refused.value.status, refused.value.type) == (409, "/problems/no-drawing")

@@ -1,0 +1,262 @@
+"""``/v1/jobs/{id}/designs/{n}``: the files and the motion of a design; and the report on the whole job."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import Annotated, NamedTuple, ParamSpec, TypeVar
+
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import from_json, to_json
+
+from service.api import errors
+from service.api.analyses import analysis_responses, answered
+from service.api.errors import Refusal, busy, not_found
+from service.api.guard import GuardedRoute, Tenant
+from service.api.jobs import NO_JOB, TAG, job_of
+from service.api.state import Board, Core, Desk
+from service.drawings import Busy, Drawings
+from service.jobs.desk import JobDesk
+from service.jobs.schema import JobRow
+from service.loading import IMPORTS
+from service.render import Form
+from service.telemetry import span
+from synthesis.registry import KINDS
+
+OTHER_DRAWINGS = "Other drawings have kept this one from being begun."
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_DESIGN_NUMBER = re.compile("[0-9]{1,4}")
+_TEXT = {"type": "string"}
+
+router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRoute)
+
+
+class Export(NamedTuple):
+    """A form of file that a design can be had in, as the API describes it."""
+
+    media_type: str
+    operation_id: str
+    summary: str
+    description: str
+    schema: dict[str, str] = _TEXT
+
+
+EXPORTS: dict[Form, Export] = {
+    "svg": Export(
+        "image/svg+xml",
+        "draw_design",
+        "Draw a design",
+        "A labelled drawing of design ``number`` of the job's result, counted from 0.",
+    ),
+    "gif": Export(
+        "image/gif",
+        "animate_design",
+        "Animate a design",
+        "Design ``number`` of the job's result going through its cycle, counted from 0: 60 frames, over and over.",
+        {"type": "string", "format": "binary"},
+    ),
+    "dxf": Export(
+        "image/vnd.dxf",
+        "export_design_dxf",
+        "Export a design to CAD",
+        "A DXF file of design ``number`` of the job's result, in true dimensions and with units.",
+    ),
+    "csv": Export(
+        "text/csv; charset=utf-8",
+        "export_design_csv",
+        "Export a design as a table",
+        "A table of design ``number`` of the job's result, with units in its header.",
+    ),
+}
+
+
+def _offer(form: Form, export: Export) -> None:
+    """Add the operation that gives the files of one form."""
+
+    async def file(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
+        job, result = await _solved(desk, tenant, job_id)
+        with span("drawing"):
+            content = await _drawn(board, _file, job, result, number, form)
+        return Response(content, media_type=export.media_type)
+
+    router.add_api_route(
+        f"/{{job_id}}/designs/{{number}}.{form}",
+        file,
+        operation_id=export.operation_id,
+        summary=export.summary,
+        description=export.description,
+        response_class=Response,
+        responses={
+            200: {"description": "The file.", "content": {export.media_type: {"schema": export.schema}}},
+            **errors.responses(
+                e404="There is no such job or design, or no such file of its type of mechanism.",
+                e409="The job has no result (yet), or the design is of a size that is not drawn.",
+                e503=OTHER_DRAWINGS,
+            ),
+        },
+    )
+
+
+for _form, _export in EXPORTS.items():
+    _offer(_form, _export)
+
+
+async def _drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    try:
+        return await board.made(draw, *args, **kwargs)
+    except Busy:
+        raise busy("drawings") from None
+
+
+def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
+    # Drawing is for those who ask for it; the other requests do not wait for its import.
+    from service import render
+
+    kind = KINDS[job.kind]
+    designs = kind.result.model_validate_json(result).designs
+    n = _design_index(number, len(designs))
+    problem = kind.problem.model_validate_json(job.problem)
+    title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
+    try:
+        return render.exported(designs[n], problem, title, form)
+    except render.NoSuchExport:
+        raise not_found(f"There is no .{form} file of this type of mechanism.") from None
+    except render.NotBuilt:
+        raise Refusal(409, "no-drawing", "No drawing", "This design is of a size that is not drawn.") from None
+
+
+class ReportScope(BaseModel):
+    """How much of a job is reported."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    designs: int = Field(
+        default=5, ge=0, le=20, description="Designs shown in full, the best first; all of them are listed."
+    )
+
+
+@router.get(
+    "/{job_id}/report.html",
+    operation_id="report_job",
+    summary="Report a job",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The page.",
+            "content": {"text/html; charset=utf-8": {"schema": _TEXT}},
+            "headers": {
+                "Content-Security-Policy": {
+                    "description": "Nothing but the page's own style sheet, by its hash.",
+                    "schema": _TEXT,
+                }
+            },
+        },
+        **errors.responses(
+            e404=NO_JOB,
+            e409="The job has no result (yet).",
+            e422="A parameter is not valid; `errors` says which.",
+            e503=OTHER_DRAWINGS,
+        ),
+    },
+)
+async def report_job(
+    desk: Desk, board: Board, tenant: Tenant, job_id: str, query: Annotated[ReportScope, Query()]
+) -> Response:
+    """The job as one self-contained page for paper.
+
+    The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
+    """
+    job, result = await _solved(desk, tenant, job_id)
+    with span("report"):
+        page, policy = await _drawn(board, _report, job, result, query.designs)
+    headers = {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        "Content-Disposition": f'inline; filename="{job.kind}-{job.id}.html"',
+    }
+    return Response(page, media_type="text/html", headers=headers)
+
+
+def _report(job: JobRow, result: str, most: int) -> tuple[str, str]:
+    with IMPORTS:
+        from service.render.report import POLICY, Occasion, report
+
+    kind = KINDS[job.kind]
+    occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
+    problem = kind.problem.model_validate_json(job.problem)
+    return report(problem, kind.result.model_validate_json(result), occasion, most), POLICY
+
+
+class MotionSteps(BaseModel):
+    """How finely a cycle is divided."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    steps: int = Field(default=360, ge=1, le=3600, description="Equal steps of the input, both ends included.")
+
+
+@router.get(
+    "/{job_id}/designs/{number}/motion",
+    operation_id="move_design",
+    summary="Move a design",
+    response_class=Response,
+    responses=analysis_responses(
+        "The motion.",
+        e404="There is no such job or design.",
+        e409="The job has no result (yet), or the design is of a size that is not analysed.",
+        e422="A parameter is not valid; `errors` says which.",
+    ),
+)
+async def move_design(
+    desk: Desk, tenant: Tenant, analyst: Core, job_id: str, number: str, query: Annotated[MotionSteps, Query()]
+) -> Response:
+    """Design ``number`` of the job's result over its cycle, with the input at 1 rad/s (or 1 length unit/s).
+
+    A crank turns from the input angle of the first target through a full turn, or as many as its gears need to come
+    back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
+    `POST /v1/analyses`.
+    """
+    _, result = await _solved(desk, tenant, job_id)
+    return await answered(analyst, motion, result, number, query.steps)
+
+
+def motion(result: str, number: str, steps: int) -> bytes:
+    """The motion of design ``number`` of a stored result, in JSON.
+
+    Raises
+    ------
+    Refusal
+        404 where there is no such design, 409 where it is no mechanism that the analysis core would be given.
+    """
+    from kinematics import errors as kinematics
+    from synthesis.analyses import family
+    from synthesis.mechanisms import MechanismError
+
+    designs = from_json(result)["designs"]
+    mechanism = designs[_design_index(number, len(designs))]["mechanism"]
+    try:
+        answer = family(mechanism).request.over_the_cycle(mechanism, steps)
+    except (ValidationError, MechanismError, kinematics.MechanismError):
+        # A design for lengths at the end of what can be stated may itself lie beyond that.
+        raise Refusal(409, "no-motion", "No motion", "This design is of a size that is not analysed.") from None
+    return to_json(answer, inf_nan_mode="null")
+
+
+async def _solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
+    job = await job_of(desk, tenant, job_id)
+    if job.result is None:
+        what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
+        raise Refusal(409, "no-result", "No result", f"The job {what}.")
+    return job, job.result
+
+
+def _design_index(number: str, designs: int) -> int:
+    if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
+        raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
+    return int(number)

@@ -1,0 +1,32 @@
+"""The parts of the application that endpoints work with, as dependencies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Annotated, Any, TypeVar
+
+from fastapi import Depends, Request
+
+from service.analyst import Analyst
+from service.drawings import Drawings
+from service.jobs.desk import JobDesk
+from service.jobs.poller import JobPoller
+
+T = TypeVar("T")
+
+
+def _part(name: str, of_type: type[T]) -> Callable[[Request], Coroutine[Any, Any, T]]:
+    """The dependency on the part that the start of the application has put under this name."""
+
+    async def part(request: Request) -> T:
+        value = getattr(request.app.state, name)
+        assert isinstance(value, of_type)
+        return value
+
+    return part
+
+
+Desk = Annotated[JobDesk, Depends(_part("desk", JobDesk))]
+Poller = Annotated[JobPoller, Depends(_part("poller", JobPoller))]
+Board = Annotated[Drawings, Depends(_part("drawings", Drawings))]
+Core = Annotated[Analyst, Depends(_part("analyst", Analyst))]
