@@ -8,13 +8,9 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
-from synthesis.kinds.path.five_point_start import (
-    random_problem,
-    solve_by_monodromy,
-    start,
-)
 from synthesis.kinds.path.five_point_system import SOLUTIONS, residuals
 from synthesis.kinds.path.five_points import five_points
+from synthesis.kinds.path.starts import five_point_start
 from synthesis.registry import parse_problem
 from tests.cases import HERE
 
@@ -84,23 +80,11 @@ def real_solutions_by_newton(points, o2, o4, rng, starts):
 
 
 def test_the_stored_start_is_whole():
-    begun = start()
+    begun = five_point_start()
     assert begun.y.shape == (SOLUTIONS, 8)
     assert residuals(begun.y, begun.p).max() < 1e-10
     gaps = np.abs(begun.y[:, None] - begun.y[None]).max(axis=-1) + 10.0 * np.eye(SOLUTIONS)
     assert gaps.min() > 1e-6
-
-
-@pytest.mark.slow
-def test_monodromy_makes_a_start_of_as_many_again():
-    made = solve_by_monodromy(np.random.default_rng(77))
-    assert len(made.y) == SOLUTIONS
-    assert not np.allclose(made.p, start().p)
-
-
-def test_random_problems_are_solutions_of_themselves():
-    y, p = random_problem(np.random.default_rng(3))
-    assert residuals(y, p) < 1e-10
 
 
 def test_planted_linkages_are_among_all_36():

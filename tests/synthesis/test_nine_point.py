@@ -7,20 +7,21 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.kinds.path.nine_point import all_triples, conjugate
-from synthesis.kinds.path.nine_point_start import is_linkage, start
 from synthesis.kinds.path.nine_point_system import (
     ORBITS,
     SCRATCH,
     cognate,
     cognates,
     exchanged,
+    is_linkage,
     nine_point_system,
     nine_point_system_extended,
     orbit_keys,
-    random_problem,
     residuals,
 )
+from synthesis.kinds.path.starts import nine_point_start
 from tests.cases import HERE
+from tools.path_starts import nine_point_problem
 
 PUBLISHED = json.loads((HERE / "nine_point.json").read_text(encoding="utf-8"))
 
@@ -48,7 +49,7 @@ def crank_rocker(rng):
 
 
 def test_the_start_has_1442_orbits():
-    begun = start()
+    begun = nine_point_start()
     assert begun.y.shape == (ORBITS, 16)
     assert residuals(begun.y, begun.p).max() < 1e-9
     assert is_linkage(begun.y).all()
@@ -60,7 +61,7 @@ def test_the_start_has_1442_orbits():
 def test_cognates_and_exchanged_dyads_solve_the_same_problem():
     rng = np.random.default_rng(7)
     for _ in range(20):
-        y, p = random_problem(rng)
+        y, p = nine_point_problem(rng)
         members = np.stack([y, cognate(y, p), cognate(exchanged(y), p), exchanged(y)])
         assert residuals(members, p).max() < 1e-9
         keys = orbit_keys(members, p)
@@ -85,7 +86,7 @@ def test_the_compiled_system_is_newtons_step_of_the_equations(system):
         return np.concatenate(found)
 
     for _ in range(10):
-        y, p = random_problem(rng)
+        y, p = nine_point_problem(rng)
         y = y * (1.0 + 0.01 * rng.normal(size=16))
         dp = rng.normal(size=16) + 1j * rng.normal(size=16)
         newton, tangent = np.empty((2, 16), np.complex128)
@@ -99,7 +100,7 @@ def test_the_compiled_system_is_newtons_step_of_the_equations(system):
 
 def test_dyads_that_agree_in_one_coordinate_are_no_linkage():
     """β = 0 at all points but one, from both dyads: a whole curve of solutions, with residuals of 0."""
-    y, p = random_problem(np.random.default_rng(9))
+    y, p = nine_point_problem(np.random.default_rng(9))
     assert is_linkage(y)
     y[[1, 5]] = 2.0 - 1.0j
     y[[3, 7]] = 0.0
@@ -151,7 +152,7 @@ def test_a_planted_linkage_and_both_cognates_are_found():
 
 
 def test_the_members_of_an_orbit_are_three():
-    y, p = random_problem(np.random.default_rng(5))
+    y, p = nine_point_problem(np.random.default_rng(5))
     assert cognates(y[None], p).shape == (1, 3, 16)
 
 

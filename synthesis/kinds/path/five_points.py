@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.path.five_point_start import start
 from synthesis.kinds.path.five_point_system import (
     GROUPS,
     PARAMETERS,
@@ -23,6 +22,7 @@ from synthesis.kinds.path.five_point_system import (
     five_point_system,
     residuals,
 )
+from synthesis.kinds.path.starts import five_point_start
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
 
@@ -82,7 +82,7 @@ def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Genera
     size = float(np.sqrt(np.mean(np.abs(np.concatenate([moved, pivots])) ** 2)))
     moved, pivots = moved / size, pivots / size
     p = np.concatenate([moved, moved.conj(), np.stack([pivots, pivots.conj()], axis=1).ravel()])
-    begun = start()
+    begun = five_point_start()
     y = np.empty((0, UNKNOWNS), np.complex128)
     for way in range(WAYS):
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))

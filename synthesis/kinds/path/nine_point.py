@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from synthesis.kinds.path.nine_point_start import is_linkage, start
 from synthesis.kinds.path.nine_point_system import (
     GROUPS,
     ORBITS,
@@ -25,11 +24,13 @@ from synthesis.kinds.path.nine_point_system import (
     SCRATCH,
     cognates,
     conditions,
+    is_linkage,
     nine_point_system,
     nine_point_system_extended,
     orbit_keys,
     residuals,
 )
+from synthesis.kinds.path.starts import nine_point_start
 from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
 
 Complex = NDArray[np.complex128]
@@ -223,7 +224,7 @@ def _same(keys: Complex) -> Mask:
 
 def _run(found: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
     """Follow all orbits along one way and add what they reach; returns how many had to be followed again."""
-    begun = start()
+    begun = nine_point_start()
     lost: list[int] = []
     for first in range(0, ORBITS, PORTION):
         some = np.arange(first, min(first + PORTION, ORBITS))

@@ -66,6 +66,9 @@ MATRIX = (29 * PAIR + LANES) // 2
 
 SCRATCH = MATRIX + 80
 
+APART = 1e-9
+"""Dyads closer than this share of their size are one and the same: no linkage, and not counted among the 1442."""
+
 _WEIGHTS = np.exp(1j * np.arange(1, 9) ** 2)
 """Some directions of no meaning, by which eight rotations are summed up to one number."""
 
@@ -237,6 +240,20 @@ def nine_point_system_extended(
     return int(_solve(y, newton, tangent, work, points))
 
 
+def is_linkage(y: Complex) -> NDArray[np.bool_]:
+    """Whether the two dyads of a solution differ: shape (...), for y of shape (..., 16).
+
+    They must differ in both isotropic coordinates. Where they agree in one the system has whole curves of solutions, to
+    which paths come that have lost their way.
+    """
+    differ = np.ones(y.shape[:-1], np.bool_)
+    for half in ([0, 2], [1, 3]):
+        first, second = y[..., half], y[..., [k + 4 for k in half]]
+        size = np.maximum(np.abs(first), np.abs(second)).max(axis=-1)
+        differ &= np.abs(first - second).max(axis=-1) > APART * size
+    return differ
+
+
 def residuals(y: Complex, p: Complex, low: Complex | None = None) -> NDArray[np.float64]:
     """Largest |αβ + rβ + r̄α| of each solution y (+ low), shape (...), for y of shape (..., 16)."""
     exact = y if low is None else y.astype(np.clongdouble) + low
@@ -304,30 +321,3 @@ def cognate(y: Complex, p: Complex) -> Complex:
 def cognates(y: Complex, p: Complex) -> Complex:
     """The three members of each orbit that differ by more than the order of their dyads: shape (..., 3, 16)."""
     return np.stack([y, cognate(y, p), cognate(exchanged(y), p)], axis=-2)
-
-
-def random_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
-    """A solution that was drawn, and the parameters that it solves: y and p, shape (16,) each.
-
-    For given dyads and rotation both equations of a point are bilinear in (δ, δ̄), with the same quadratic term.
-    """
-
-    def drawn() -> Complex:
-        return np.asarray((rng.normal(size=8) + 1j * rng.normal(size=8)) * np.sqrt(0.5))
-
-    vectors, turned = drawn(), drawn() * np.sqrt(2.0) - 1.0
-    p = np.empty(PARAMETERS, np.complex128)
-    for j, s in enumerate(turned):
-        s_back = -s / (1.0 + s)
-        by_delta, by_conj, rest = [], [], []
-        for dyad in (0, 4):
-            x, x_conj, r, r_conj = vectors[dyad : dyad + 4]
-            by_delta.append(x_conj * s_back + r_conj)
-            by_conj.append(x * s + r)
-            rest.append(x * s * x_conj * s_back + r * x_conj * s_back + r_conj * x * s)
-        slope = -(by_delta[0] - by_delta[1]) / (by_conj[0] - by_conj[1])
-        offset = -(rest[0] - rest[1]) / (by_conj[0] - by_conj[1])
-        quadratic = [slope, offset + by_delta[0] + by_conj[0] * slope, by_conj[0] * offset + rest[0]]
-        p[j] = np.roots(quadratic)[rng.integers(2)]
-        p[8 + j] = slope * p[j] + offset
-    return np.concatenate([vectors, turned]), p

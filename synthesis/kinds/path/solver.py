@@ -18,7 +18,6 @@ from synthesis.kinds.path.family_search import solve_family
 from synthesis.kinds.path.given_pivots import all_are_found, solve_given_pivots
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.nine_point import Triples, all_triples
-from synthesis.kinds.path.nine_point_start import start
 from synthesis.kinds.path.nine_point_system import (
     GROUPS,
     ORBITS,
@@ -31,6 +30,7 @@ from synthesis.kinds.path.other_linkages import solve_other
 from synthesis.kinds.path.point_fit import fit_points
 from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
 from synthesis.kinds.path.verification import verify_path
 from synthesis.kinds.path.verify_cognates import with_cognates
@@ -116,7 +116,7 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
 def warm_up() -> None:
     """Load the kernels by refining a few solutions of the start; the paths of a whole problem would take a second."""
     curve_match.warm_up()
-    begun = start()
+    begun = nine_point_start()
     y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, begun.y[:2], np.zeros_like(begun.y[:2]), begun.p)
     follow(nine_point_system, GROUPS, SCRATCH, y, begun.p, begun.p, np.zeros_like(begun.p))
     orbit_keys(y, begun.p, low)

@@ -1,4 +1,4 @@
-"""All solutions of a system for one set of general parameters, found from a single one, and kept in a file.
+"""All solutions of a system for one set of general parameters, found from a single one.
 
 While the parameters go around a closed loop, the solutions change places: one that is known comes back as another one
 of the same parameters. All that are known are followed around random triangles, and what is new at their ends joins
@@ -9,31 +9,15 @@ same sort begins (:mod:`synthesis.numerics.continuation`).
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Callable
-from importlib.resources.abc import Traversable
 from itertools import pairwise
-from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.path.starts import Start
+
 Complex = NDArray[np.complex128]
-
-
-class Start(NamedTuple):
-    """Solutions, shape (solutions, unknowns), for the parameters, shape (parameters,)."""
-
-    y: Complex
-    p: Complex
-
-
-def stored(file: Traversable) -> Start:
-    """What :func:`remake` has written."""
-    with file.open("rb") as opened, np.load(opened) as arrays:
-        return Start(arrays["y"], arrays["p"])
 
 
 def all_solutions(
@@ -76,24 +60,8 @@ def all_solutions(
             moved = followed(moved, here, there)
         before = len(found)
         found = distinct(np.concatenate([found, moved]))
-        sys.stdout.write(f"loop {loop + 1}: {len(found)} solutions\n")
+        print(f"loop {loop + 1}: {len(found)} solutions")
         quiet = quiet + 1 if len(found) == before else 0
         if len(found) == count and quiet == quiet_loops:
             return Start(found, p)
     raise RuntimeError(f"{len(found)} solutions after {most_loops} loops; {count} are expected")
-
-
-def remake(
-    solve: Callable[[np.random.Generator], Start],
-    residuals: Callable[[Complex, Complex], NDArray[np.float64]],
-    file: Path,
-    seed: int,
-) -> None:
-    """A program that makes a start anew and stores it."""
-    parser = argparse.ArgumentParser(description=remake.__doc__)
-    parser.add_argument("--seed", type=int, default=seed)
-    parser.add_argument("--output", type=Path, default=file)
-    arguments = parser.parse_args()
-    made = solve(np.random.default_rng(arguments.seed))
-    sys.stdout.write(f"largest residual: {residuals(made.y, made.p).max():.1e}\n")
-    np.savez(arguments.output, y=made.y, p=made.p)

@@ -1,0 +1,39 @@
+"""Where continuation begins: all solutions of a path problem for one set of general complex parameters, as stored.
+
+``tools/path_starts.py`` makes the files anew.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import resources
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+
+
+class Start(NamedTuple):
+    """Solutions, shape (solutions, unknowns), for the parameters, shape (parameters,)."""
+
+    y: Complex
+    p: Complex
+
+
+@cache
+def nine_point_start() -> Start:
+    """Nine points: one solution of each orbit, shape (1442, 16), for parameters of shape (16,)."""
+    return _stored("nine_point_start.npz")
+
+
+@cache
+def five_point_start() -> Start:
+    """Five points on given pivots: the solutions, shape (36, 8), for parameters of shape (12,)."""
+    return _stored("five_point_start.npz")
+
+
+def _stored(name: str) -> Start:
+    with resources.files(__package__).joinpath(name).open("rb") as opened, np.load(opened) as arrays:
+        return Start(arrays["y"], arrays["p"])

@@ -1,0 +1,214 @@
+"""Makes the starts of path problems anew: all solutions for one set of general complex parameters, by monodromy.
+
+``python -m tools.path_starts nine`` draws a fourbar with complex dimensions and nine points that it goes through, and
+finds one solution of each of the other 1441 orbits (a minute). ``python -m tools.path_starts five`` does the same for
+five points on given pivots, which have 36 solutions (seconds). :mod:`synthesis.kinds.path.starts` reads the files.
+"""
+
+from __future__ import annotations
+
+import argparse
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.path import five_point_system as five
+from synthesis.kinds.path import nine_point_system as nine
+from synthesis.kinds.path.nine_point_system import is_linkage
+from synthesis.kinds.path.starts import Start
+from synthesis.numerics.continuation import REACHED, follow
+from tools.monodromy import all_solutions
+
+Complex = NDArray[np.complex128]
+
+NINE_SEED, FIVE_SEED = 9, 5
+"""Of the stored files."""
+
+SAME_ORBIT = 1e-7
+"""Orbits whose keys agree to this share are the same: at the start all solutions are well conditioned."""
+
+SAME_SOLUTION = 1e-8
+"""Solutions that agree to this share are one: at the start all are well conditioned."""
+
+FOLLOWING_TOLERANCE = 1e-3
+"""Of the prediction on the way around a loop, which may be rough: the corners are refined."""
+
+NINE_QUIET_LOOPS, NINE_MOST_LOOPS = 2, 60
+FIVE_QUIET_LOOPS, FIVE_MOST_LOOPS = 12, 80
+"""Loops without a new solution before the search ends, and loops at most."""
+
+THREADS = 2
+
+NEWTON_STEPS = 60
+"""Many more than Newton's method takes from a random point to a solution of two equations."""
+
+
+def solve_nine_points(rng: np.random.Generator) -> Start:
+    """One solution of each orbit of a random problem of nine points.
+
+    Raises
+    ------
+    RuntimeError
+        When the loops do not come to 1442 orbits; another seed will do.
+    """
+    y, p = nine_point_problem(rng)
+    straight = np.zeros(nine.PARAMETERS, np.complex128)
+
+    def followed(y: Complex, here: Complex, there: Complex) -> Complex:
+        ends = follow(
+            nine.nine_point_system,
+            nine.GROUPS,
+            nine.SCRATCH,
+            y,
+            here,
+            there,
+            straight,
+            tolerance=FOLLOWING_TOLERANCE,
+            threads=THREADS,
+        )
+        return np.asarray(ends.y[ends.status == REACHED])
+
+    def distinct(ends: Complex) -> Complex:
+        return _distinct_orbits(ends[is_linkage(ends) & (nine.residuals(ends, p) < SAME_ORBIT)], p)
+
+    y, p = all_solutions(
+        y,
+        p,
+        followed,
+        distinct,
+        rng,
+        count=nine.ORBITS,
+        quiet_loops=NINE_QUIET_LOOPS,
+        most_loops=NINE_MOST_LOOPS,
+        spread=float(np.abs(p).mean()),
+    )
+    return Start(_smallest_member(y, p), p)
+
+
+def solve_five_points(rng: np.random.Generator) -> Start:
+    """All solutions of a random problem of five points on given pivots.
+
+    Raises
+    ------
+    RuntimeError
+        When the loops do not come to 36 solutions; another seed will do.
+    """
+    y, p = five_point_problem(rng)
+    straight = np.zeros(five.PARAMETERS, np.complex128)
+
+    def followed(y: Complex, here: Complex, there: Complex) -> Complex:
+        ends = follow(
+            five.five_point_system, five.GROUPS, five.SCRATCH, y, here, there, straight, tolerance=FOLLOWING_TOLERANCE
+        )
+        return np.asarray(ends.y[ends.status == REACHED])
+
+    return all_solutions(
+        y,
+        p,
+        followed,
+        lambda ends: _distinct(ends[five.residuals(ends, p) < SAME_SOLUTION]),
+        rng,
+        count=five.SOLUTIONS,
+        quiet_loops=FIVE_QUIET_LOOPS,
+        most_loops=FIVE_MOST_LOOPS,
+    )
+
+
+def nine_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
+    """A solution that was drawn, and the parameters that it solves: y and p, shape (16,) each.
+
+    For given dyads and rotation both equations of a point are bilinear in (δ, δ̄), with the same quadratic term.
+    """
+
+    def drawn() -> Complex:
+        return np.asarray((rng.normal(size=8) + 1j * rng.normal(size=8)) * np.sqrt(0.5))
+
+    vectors, turned = drawn(), drawn() * np.sqrt(2.0) - 1.0
+    p = np.empty(nine.PARAMETERS, np.complex128)
+    for j, s in enumerate(turned):
+        s_back = -s / (1.0 + s)
+        by_delta, by_conj, rest = [], [], []
+        for dyad in (0, 4):
+            x, x_conj, r, r_conj = vectors[dyad : dyad + 4]
+            by_delta.append(x_conj * s_back + r_conj)
+            by_conj.append(x * s + r)
+            rest.append(x * s * x_conj * s_back + r * x_conj * s_back + r_conj * x * s)
+        slope = -(by_delta[0] - by_delta[1]) / (by_conj[0] - by_conj[1])
+        offset = -(rest[0] - rest[1]) / (by_conj[0] - by_conj[1])
+        quadratic = [slope, offset + by_delta[0] + by_conj[0] * slope, by_conj[0] * offset + rest[0]]
+        p[j] = np.roots(quadratic)[rng.integers(2)]
+        p[8 + j] = slope * p[j] + offset
+    return np.concatenate([vectors, turned]), p
+
+
+def five_point_problem(rng: np.random.Generator) -> tuple[Complex, Complex]:
+    """Random unknowns and pivots, and the points for which they are a solution, by Newton's method point by point."""
+
+    def drawn(count: int) -> Complex:
+        return np.asarray(rng.normal(size=(count, 2)) @ np.array([1.0, 1.0j]))
+
+    y, p = drawn(five.UNKNOWNS), drawn(five.PARAMETERS)
+    for j in range(4):
+        s = y[4 + j]
+        s_back = -s / (1.0 + s)
+        for _ in range(NEWTON_STEPS):
+            gaps, slopes = np.empty(2, np.complex128), np.empty((2, 2), np.complex128)
+            for dyad in range(2):
+                x, x_bar, a, a_bar = y[2 * dyad], y[2 * dyad + 1], p[8 + 2 * dyad], p[9 + 2 * dyad]
+                alpha, beta = p[j] + x * s, p[4 + j] + x_bar * s_back
+                gaps[dyad] = alpha * beta + (x - a) * beta + (x_bar - a_bar) * alpha
+                slopes[dyad] = beta + x_bar - a_bar, alpha + x - a
+            p[[j, 4 + j]] -= np.linalg.solve(slopes, gaps)
+    return y, p
+
+
+def _smallest_member(y: Complex, p: Complex) -> Complex:
+    """Of each orbit the solution with the shortest vectors, which rounding treats best: shape (orbits, 16)."""
+    members = nine.cognates(y, p)
+    size = np.abs(members[..., :8]).max(axis=-1)
+    members = members[np.arange(len(y)), np.where(np.isfinite(size), size, np.inf).argmin(axis=-1)]
+    return np.asarray(members)
+
+
+def _distinct_orbits(y: Complex, p: Complex) -> Complex:
+    """The solutions without those whose orbit has been met before in the list."""
+    keys = nine.orbit_keys(y, p)
+    size = np.abs(keys).max(axis=-1)
+    kept: list[int] = []
+    for n in range(len(y)):
+        if not kept or (np.abs(keys[kept] - keys[n]).max(axis=-1) > SAME_ORBIT * size[n]).all():
+            kept.append(n)
+    return y[kept]
+
+
+def _distinct(y: Complex) -> Complex:
+    """The solutions without those that have been met before in the list."""
+    kept: list[int] = []
+    for n in range(len(y)):
+        if not kept or (np.abs(y[kept] - y[n]).max(axis=1) > SAME_SOLUTION * np.abs(y[n]).max()).all():
+            kept.append(n)
+    return y[kept]
+
+
+def main() -> None:
+    """Make one start anew and store it."""
+    made_by = {
+        "nine": (solve_nine_points, nine.residuals, NINE_SEED),
+        "five": (solve_five_points, five.residuals, FIVE_SEED),
+    }
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("points", choices=list(made_by))
+    parser.add_argument("--seed", type=int, help="another one than that of the stored file")
+    parser.add_argument("--output", type=Path, help="left out: in place of the stored file")
+    arguments = parser.parse_args()
+    solve, residuals, seed = made_by[arguments.points]
+    stored = Path(str(resources.files("synthesis.kinds.path"))) / f"{arguments.points}_point_start.npz"
+    start = solve(np.random.default_rng(seed if arguments.seed is None else arguments.seed))
+    print(f"{len(start.y)} solutions, largest residual: {residuals(start.y, start.p).max():.1e}")
+    np.savez(arguments.output or stored, y=start.y, p=start.p)
+
+
+if __name__ == "__main__":
+    main()
