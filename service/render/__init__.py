@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any, Literal, get_args
 
 from service.loading import IMPORTS
+from service.render.page.svg import clean
 
 __all__ = ["Form", "NoSuchExport", "NotBuilt", "exported", "forms"]
 
@@ -56,22 +57,22 @@ EXPORTS: dict[str, dict[Form, str]] = {
         "svg": "service.render.gears.train_sheet:gear_train_sheet",
         "gif": "service.render.gears.train_animation:gear_train_animation",
         "dxf": "service.render.gears.train_dxf:gear_train_drawing",
-        "csv": "service.render.gears.train_csv:gear_train_table",
+        "csv": "service.render.gears.csv:gear_train_table",
     },
     "planetary_train": {
         "svg": "service.render.gears.planetary_sheet:planetary_sheet",
         "dxf": "service.render.gears.planetary_dxf:planetary_drawing",
-        "csv": "service.render.gears.planetary_csv:planetary_table",
+        "csv": "service.render.gears.csv:planetary_table",
     },
     "gearbox": {
-        "svg": "service.render.gears.gearbox_exports:gearbox_sheet",
+        "svg": "service.render.gears.gearbox_sheet:gearbox_sheet",
         "dxf": "service.render.gears.gearbox_dxf:gearbox_drawing",
-        "csv": "service.render.gears.gearbox_exports:gearbox_table",
+        "csv": "service.render.gears.csv:gearbox_table",
     },
     "layshaft_gearbox": {
-        "svg": "service.render.gears.gearbox_exports:layshaft_sheet",
+        "svg": "service.render.gears.gearbox_sheet:layshaft_sheet",
         "dxf": "service.render.gears.gearbox_dxf:layshaft_drawing",
-        "csv": "service.render.gears.gearbox_exports:layshaft_table",
+        "csv": "service.render.gears.csv:layshaft_table",
     },
 }
 """For each type of mechanism what makes a file of each form of a design, its problem and a title: ``module:function``,
@@ -143,5 +144,5 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     module, function = makers[form].split(":")
     with IMPORTS:
         make = getattr(import_module(module), function)
-    file: str | bytes = make(design, problem, title)
+    file: str | bytes = make(design, problem, clean(title))
     return file

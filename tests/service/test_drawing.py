@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar, positions
+from service.render import exported
 from service.render.linkage.fourbar import MARKED, OTHERS
-from service.render.linkage.fourbar_sheet import fourbar_sheet as drawing
 from service.render.page.svg import (
     Box,
     clipped,
@@ -34,6 +34,12 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 PIXEL = 0.011
 """Coordinates are written to a hundredth of a pixel."""
+
+
+def drawing(design: LinkageDesign, problem: MotionProblem, title: str) -> str:
+    text = exported(design, problem, title, "svg")
+    assert isinstance(text, str)
+    return text
 
 
 def _polar(length: float, degrees: float) -> complex:

@@ -15,11 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from kinematics.cam.unrolled import UnrolledWall
-from service.render.cam.csv import table_text
-from service.render.page import dxf
-from service.render.page.svg import clean
+from service.render.page import dxf, table
 from synthesis.kinds.cam.design import BarrelCamDesign
 from synthesis.kinds.cam.mechanism import points_of
 from synthesis.kinds.cam.problem import CamProblem
@@ -36,9 +35,7 @@ LAYERS = {
 def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a barrel cam design as a DXF document (R2010)."""
     mechanism = design.mechanism
-    document = dxf.new_drawing(clean(title) or "Barrel cam", problem.length_unit)
-    for name, (colour, linetype) in LAYERS.items():
-        document.layers.add(name, color=colour, linetype=linetype)
+    document = dxf.new_drawing(title or "Barrel cam", problem.length_unit, LAYERS)
     space, turn = document.modelspace(), math.tau * mechanism.cylinder_radius
     for curve, layer in (
         (mechanism.lower_wall, "WALLS"),
@@ -48,25 +45,23 @@ def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> 
         wall = UnrolledWall(points_of(curve), turn)
         over = np.append(wall.points, wall.points[0] + turn), np.append(wall.tangents, wall.tangents[0])
         dxf.add_spline(space, *over, layer)
-    start = points_of(mechanism.pitch_curve)[0]
-    space.add_circle((start.real, start.imag), mechanism.follower.roller_radius, dxfattribs={"layer": "FOLLOWER"})
+    dxf.add_circle(space, points_of(mechanism.pitch_curve)[0], mechanism.follower.roller_radius, "FOLLOWER")
     low, high = min(mechanism.lower_wall.y), max(mechanism.upper_wall.y)
-    corners = [(0.0, low), (turn, low), (turn, high), (0.0, high)]
-    space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "BLANK"})
+    dxf.add_outline(space, [1j * low, turn + 1j * low, turn + 1j * high, 1j * high], "BLANK")
     return dxf.written(document)
 
 
 def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
     """The table of a barrel cam design; numbers in full precision."""
     mechanism, unit = design.mechanism, problem.length_unit
-    table, radius = mechanism.program, mechanism.cylinder_radius
-    columns: dict[str, object] = {
-        "cam_angle [deg]": table.angle,
-        f"s [{unit}]": table.s,
-        f"v [{unit}/rad]": table.v,
-        f"a [{unit}/rad^2]": table.a,
-        f"j [{unit}/rad^3]": table.j,
-        "pressure_angle [deg]": np.degrees(np.arctan(np.abs(table.v) / radius)),
+    program, radius = mechanism.program, mechanism.cylinder_radius
+    columns: dict[str, ArrayLike] = {
+        "cam_angle [deg]": program.angle,
+        f"s [{unit}]": program.s,
+        f"v [{unit}/rad]": program.v,
+        f"a [{unit}/rad^2]": program.a,
+        f"j [{unit}/rad^3]": program.j,
+        "pressure_angle [deg]": np.degrees(np.arctan(np.abs(program.v) / radius)),
     }
     for name, curve in (
         ("centre", mechanism.pitch_curve),
@@ -79,4 +74,4 @@ def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> st
         f"turns {mechanism.rotation}",
         "x along the circumference of the cylinder on which the roller's middle runs, y along the axis",
     ]
-    return table_text(clean(title) or "Barrel cam", remarks, columns)
+    return table.numbers([title or "Barrel cam", *remarks], columns, table.short)

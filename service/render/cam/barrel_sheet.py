@@ -16,37 +16,26 @@ from service.render.cam.sheet import (
     written_check,
 )
 from service.render.cam.view import STYLES
-from service.render.linkage.fourbar_sheet import (
-    COLUMN,
-    EDGE,
-    GUTTER,
-    TOP,
-    UNITS,
-    WIDTH,
-)
+from service.render.checks import checks, verdict
 from service.render.page import blocks
 from service.render.page.blocks import Block
 from service.render.page.diagrams import Diagram
 from service.render.page.labels import Labels
 from service.render.page.numbers import angle, length
+from service.render.page.sheet import COLUMN, EDGE, FULL, GUTTER, TOP, UNITS, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
     Viewport,
     circle,
-    clean,
-    document,
     element,
     line,
     path,
-    shortened,
-    text,
 )
 from service.render.page.symbols import (
     CURVE,
     DEMANDED,
     GREY,
-    INK,
     PALE,
     scale_bar,
 )
@@ -67,27 +56,23 @@ STATIONS = 30
 def barrel_sheet(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a barrel cam design as a complete SVG document."""
     mechanism, unit = design.mechanism, problem.length_unit
-    heading = clean(title) or "Barrel cam"
-    width = WIDTH - 2.0 * EDGE
     turn = math.tau * mechanism.cylinder_radius
     low, high = min(mechanism.lower_wall.y), max(mechanism.upper_wall.y)
     roller = mechanism.follower.roller_radius
-    scale = (width - 2.0 * MARGIN) / (turn + 2.0 * roller)
+    scale = (FULL - 2.0 * MARGIN) / (turn + 2.0 * roller)
     height = min(max(scale * (high - low) + 2.0 * MARGIN + FOOT, LEAST_HEIGHT), 620.0)
-    parts = [_panel(mechanism, Box(EDGE, TOP, EDGE + width, TOP + height), unit)]
+    parts = [_panel(mechanism, Box(EDGE, TOP, EDGE + FULL, TOP + height), unit)]
     bottom, left = TOP + height + 12.0, EDGE
     ends = [bottom]
     columns: list[list[Block]] = [
         [_dimensions(design, unit), segments_block(design)],
-        [blocks.checks(design.verification, written_check)],
+        [checks(design.verification, written_check)],
         [_metrics(design), *([forces_block(design)] if design.metrics.forces else [])],
     ]
-    room = (width - 2.0 * GUTTER) / 3.0
+    room = (FULL - 2.0 * GUTTER) / 3.0
     for column in columns:
-        y = bottom
-        for block in column:
-            drawn, y = block(left, y, min(room, COLUMN))
-            parts.append(drawn)
+        drawn, y = stacked(column, left, bottom, min(room, COLUMN))
+        parts += drawn
         ends.append(y)
         left += room + GUTTER
     table = mechanism.program
@@ -96,19 +81,11 @@ def barrel_sheet(design: BarrelCamDesign, problem: CamProblem, title: str) -> st
     degrees, limit = np.append(np.asarray(table.angle), 360.0), problem.limits.pressure_angle
     shown.append(Diagram("pressure angle (degrees)", "pressure_angle", degrees, closed(pressure), DEMANDED, (limit,)))
     diagrams, end = in_two_columns(shown, max(ends) + 4.0, [segment.start for segment in design.segments])
-    failed = [check for check in design.verification.checks if not check.passed]
-    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
-    words = f"Barrel cam, unrolled, turns {ROTATIONS[mechanism.rotation]}; lengths in {UNITS[unit]}; {verdict}"
-    described = f"Unrolled groove of a barrel cam, cylinder radius {mechanism.cylinder_radius:.6g} {unit}; {verdict}."
-    return document(
-        heading,
-        described,
-        (WIDTH, float(end)),
-        text(EDGE, 34.0, shortened(heading, 20.0, width), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, words, 12.5, fill=GREY),
-        *parts,
-        *diagrams,
-    )
+    words = f"Barrel cam, unrolled, turns {ROTATIONS[mechanism.rotation]}; lengths in {UNITS[unit]}"
+    described = f"Unrolled groove of a barrel cam, cylinder radius {mechanism.cylinder_radius:.6g} {unit}"
+    outcome = verdict(design.verification)
+    parts += diagrams
+    return sheet(title or "Barrel cam", f"{words}; {outcome}", f"{described}; {outcome}.", parts, end)
 
 
 def _panel(mechanism: BarrelCamMechanism, box: Box, unit: str) -> Element:

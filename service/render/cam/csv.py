@@ -7,16 +7,11 @@ lines that begin with ``#`` say what the table is of.
 
 from __future__ import annotations
 
-import csv
-import io
-import math
-from collections.abc import Mapping, Sequence
-
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from service.render.cam.scene import CamScene
-from service.render.page.svg import clean
+from service.render.page import table
 from synthesis.kinds.cam.design import CamDesign
 from synthesis.kinds.cam.problem import CamProblem
 
@@ -24,15 +19,15 @@ from synthesis.kinds.cam.problem import CamProblem
 def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The inspection table of a cam design; numbers in full precision, nothing where there is none."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
-    table, contact = design.mechanism.program, scene.contact
+    program, contact = design.mechanism.program, scene.contact
     pitch, profile = scene.pitch_curve, contact.point
     s_unit, rate = ("deg", "rad") if scene.oscillating else (unit, unit)
-    columns: dict[str, object] = {
-        "cam_angle [deg]": table.angle,
-        f"s [{s_unit}]": table.s,
-        f"v [{rate}/rad]": table.v,
-        f"a [{rate}/rad^2]": table.a,
-        f"j [{rate}/rad^3]": table.j,
+    columns: dict[str, ArrayLike] = {
+        "cam_angle [deg]": program.angle,
+        f"s [{s_unit}]": program.s,
+        f"v [{rate}/rad]": program.v,
+        f"a [{rate}/rad^2]": program.a,
+        f"j [{rate}/rad^3]": program.j,
         "pressure_angle [deg]": np.degrees(contact.pressure_angle),
         f"radius_of_curvature [{unit}]": contact.radius,
         f"profile_x [{unit}]": profile.real,
@@ -55,19 +50,7 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     remarks = [f"{follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}"]
     remarks += [", ".join(f"{name} {value:.12g}" for name, value in given.items())] if given else []
     remarks.append("x and y in the cam's own frame, the follower on +x at cam angle 0")
-    return table_text(clean(title) or "Cam", remarks, columns)
-
-
-def table_text(title: str, remarks: Sequence[str], columns: Mapping[str, object]) -> str:
-    """Columns of numbers below lines that begin with ``#``."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    for line in (title, *remarks):
-        text.write(f"# {line}\n")
-    writer.writerow(columns)
-    for row in zip(*(np.asarray(values, dtype=np.float64).tolist() for values in columns.values()), strict=True):
-        writer.writerow([_number(value) for value in row])
-    return text.getvalue()
+    return table.numbers([title or "Cam", *remarks], columns, table.short)
 
 
 def _radius(design: CamDesign) -> str:
@@ -80,7 +63,3 @@ def _radius(design: CamDesign) -> str:
 def _polar(points: NDArray[np.complex128]) -> NDArray[np.float64]:
     """Degrees from 0 to 360; what is 0 but for rounding is 0."""
     return np.asarray(np.mod(np.round(np.degrees(np.angle(points)), 9), 360.0))
-
-
-def _number(value: float) -> str:
-    return f"{value:.12g}" if math.isfinite(value) else ""

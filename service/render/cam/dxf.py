@@ -28,7 +28,6 @@ from kinematics.cam.contact import Contour
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
 from service.render.cam.scene import CamScene
 from service.render.page import dxf
-from service.render.page.svg import clean
 from synthesis.kinds.cam.design import CamDesign
 from synthesis.kinds.cam.problem import CamProblem
 
@@ -60,10 +59,7 @@ STRAIGHT = 1e-12
 def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a DXF document (R2010)."""
     scene = CamScene(design.mechanism)
-    document = dxf.new_drawing(clean(title) or "Cam", problem.length_unit)
-    for name, (colour, linetype) in LAYERS.items():
-        document.layers.add(name, color=colour, linetype=linetype)
-    document.layers.get("PROFILE_ARCS").freeze()
+    document = dxf.new_drawing(title or "Cam", problem.length_unit, LAYERS, frozen="PROFILE_ARCS")
     space = document.modelspace()
     _closed(space, scene.contour, "PROFILE")
     space.add_lwpolyline(
@@ -72,16 +68,15 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
         close=True,
         dxfattribs={"layer": "PROFILE_ARCS"},
     )
-    space.add_circle((0.0, 0.0), scene.base_radius, dxfattribs={"layer": "BASE_CIRCLE"})
+    dxf.add_circle(space, 0j, scene.base_radius, "BASE_CIRCLE")
     if scene.outer_wall is not None:
         _closed(space, Contour(scene.outer_wall), "OUTER_WALL")
     if scene.roller:
         _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
-        space.add_circle((0.0, 0.0), scene.roller.prime_radius, dxfattribs={"layer": "PRIME_CIRCLE"})
+        dxf.add_circle(space, 0j, scene.roller.prime_radius, "PRIME_CIRCLE")
     _follower(space, scene)
     arm = 0.08 * scene.base_radius
-    for end in (arm, 1j * arm):
-        dxf.add_line(space, -end, end, "CENTRE")
+    dxf.add_cross(space, 0j, arm, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
     return dxf.written(document)
 
@@ -152,12 +147,11 @@ def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
 
 def _follower(space: Modelspace, scene: CamScene) -> None:
     """Roller or face at cam angle 0, with the arm and its pivot."""
-    layer = {"layer": "FOLLOWER"}
     follower = scene.follower
     if isinstance(follower, TranslatingRoller | OscillatingRoller):
         centre = complex(scene.pitch_curve[0])
         if follower.roller_radius > 0.0:
-            space.add_circle((centre.real, centre.imag), follower.roller_radius, dxfattribs=layer)
+            dxf.add_circle(space, centre, follower.roller_radius, "FOLLOWER")
         end = scene.pivot if scene.pivot is not None else centre + scene.base_radius
         dxf.add_line(space, centre, end, "FOLLOWER")
     else:
@@ -169,5 +163,4 @@ def _follower(space: Modelspace, scene: CamScene) -> None:
             dxf.add_line(space, start, pivot, "FOLLOWER")
         dxf.add_line(space, start, end, "FOLLOWER")
     if scene.pivot is not None:
-        pin = 0.04 * scene.base_radius
-        space.add_circle((scene.pivot.real, scene.pivot.imag), pin, dxfattribs=layer)
+        dxf.add_circle(space, scene.pivot, 0.04 * scene.base_radius, "FOLLOWER")

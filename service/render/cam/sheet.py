@@ -8,14 +8,7 @@ import numpy as np
 
 from service.render.cam.scene import CamScene
 from service.render.cam.view import STYLES, panel
-from service.render.linkage.fourbar_sheet import (
-    COLUMN,
-    EDGE,
-    GUTTER,
-    TOP,
-    UNITS,
-    WIDTH,
-)
+from service.render.checks import checks, outcome, verdict
 from service.render.page import blocks
 from service.render.page.blocks import (
     GAP,
@@ -31,12 +24,12 @@ from service.render.page.numbers import (
     length,
     small,
 )
+from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
     circle,
     clean,
-    document,
     element,
     line,
     shortened,
@@ -80,50 +73,36 @@ DEGREES = frozenset({"pressure_angle", "pressure_angle_rise", "pressure_angle_fa
 def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a complete SVG document."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
-    heading = clean(title) or "Cam"
-    left = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
-    parts: list[Element] = []
-    y = TOP - 6.0
-    for block in (
-        _dimensions(design, scene, unit),
-        segments_block(design),
-        blocks.checks(design.verification, written_check),
-        _metrics(design, unit),
-        *([forces_block(design)] if design.metrics.forces else []),
-    ):
-        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
-        parts.append(drawn)
+    tables, y = stacked(
+        [
+            _dimensions(design, scene, unit),
+            segments_block(design),
+            checks(design.verification, written_check),
+            _metrics(design, unit),
+            *([forces_block(design)] if design.metrics.forces else []),
+        ]
+    )
     height = max(DRAWING_HEIGHT, y - TOP - KEY_HEIGHT)
-    parts.append(panel(scene, Box(EDGE, TOP, EDGE + left, TOP + height), unit))
-    parts.append(_key(scene, TOP + height + 18.0))
+    drawn = panel(scene, Box(EDGE, TOP, EDGE + beside(), TOP + height), unit)
     top = max(TOP + height + KEY_HEIGHT, y)
     joints = [segment.start for segment in design.segments]
-    drawn_diagrams, bottom = in_two_columns(_diagrams(design, problem, scene), top, joints)
-    parts += drawn_diagrams
-    return document(heading, _description(design, unit), (WIDTH, float(bottom)), *_title(design, heading, unit), *parts)
+    diagrams, bottom = in_two_columns(_diagrams(design, problem, scene), top, joints)
+    parts = [*tables, drawn, _key(scene, TOP + height + 18.0), *diagrams]
+    return sheet(title or "Cam", _words(design, unit), _description(design, unit), parts, bottom)
 
 
-def _title(design: CamDesign, heading: str, unit: str) -> list[Element]:
-    room = WIDTH - 2.0 * EDGE
-    failed = [check for check in design.verification.checks if not check.passed]
-    verdict = f"fails {len(failed)} of {len(design.verification.checks)} checks" if failed else "passes all checks"
-    follower = FOLLOWERS[design.mechanism.follower.type]
+def _words(design: CamDesign, unit: str) -> str:
     turns = f"turns {ROTATIONS[design.mechanism.rotation]}"
-    words = f"Cam with {follower}, {turns}; lengths in {UNITS[unit]}; {verdict}"
-    return [
-        text(EDGE, 34.0, shortened(heading, 20.0, room), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, words, 12.5, fill=GREY),
-    ]
+    follower = FOLLOWERS[design.mechanism.follower.type]
+    return f"Cam with {follower}, {turns}; lengths in {UNITS[unit]}; {verdict(design.verification)}"
 
 
 def _description(design: CamDesign, unit: str) -> str:
     mechanism = design.mechanism
     name, radius = _radius(design)
-    failed = [clean(c.name.replace("_", " ")) for c in design.verification.checks if not c.passed]
-    verdict = f"Failed checks: {', '.join(failed)}." if failed else "All checks passed."
     return (
         f"Drawing of a cam with a {FOLLOWERS[mechanism.follower.type]}, {name} {radius:.6g} {unit}, "
-        f"turning {ROTATIONS[mechanism.rotation]}; {len(design.segments)} segments. {verdict}"
+        f"turning {ROTATIONS[mechanism.rotation]}; {len(design.segments)} segments. {outcome(design.verification)}"
     )
 
 
@@ -234,14 +213,14 @@ def written_check(check: Check, value: float) -> str:
     return small(value) if abs(value) < 1e-3 else length(value, digits=5)
 
 
-def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tuple[list[Element], int]:
-    """Diagrams side by side below each other; also the lower end of the sheet."""
-    wide = 0.5 * (WIDTH - 2.0 * EDGE - GUTTER)
+def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tuple[list[Element], float]:
+    """Diagrams side by side below each other, and the y below them."""
+    wide, step = 0.5 * (FULL - GUTTER), DIAGRAM_HEIGHT + 8.0
     parts = []
     for k, diagram in enumerate(shown):
-        x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * (DIAGRAM_HEIGHT + 8.0)
+        x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * step
         parts.append(diagram.draw(Box(x, low, x + wide, low + DIAGRAM_HEIGHT), joints))
-    return parts, math.ceil(top + math.ceil(len(shown) / 2) * (DIAGRAM_HEIGHT + 8.0) + EDGE - 8.0)
+    return parts, top + math.ceil(len(shown) / 2) * step
 
 
 def closed(values: object) -> np.ndarray:

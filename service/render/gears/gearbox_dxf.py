@@ -25,7 +25,6 @@ from service.render.gears.gearbox_layout import (
     layshaft_layout,
 )
 from service.render.page import dxf
-from service.render.page.svg import clean
 from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
@@ -40,25 +39,22 @@ FACE, ROOM, LETTERS = 8.0, 4.0, 2.0
 
 def gearbox_drawing(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
     """The drawing of a machine-tool gearbox as a DXF document (R2010)."""
-    mechanism = design.mechanism
-    document = dxf.new_drawing(clean(title) or "Gearbox", problem.length_unit)
-    return _drawn(document, gearbox_layout(mechanism), mechanism.module)
+    layout = gearbox_layout(design.mechanism)
+    return _drawn(title or "Gearbox", problem.length_unit, layout, design.mechanism.module)
 
 
 def layshaft_drawing(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
     """The drawing of a layshaft gearbox as a DXF document (R2010)."""
-    mechanism = design.mechanism
-    document = dxf.new_drawing(clean(title) or "Layshaft gearbox", problem.length_unit)
-    return _drawn(document, layshaft_layout(mechanism), mechanism.module)
+    layout = layshaft_layout(design.mechanism)
+    return _drawn(title or "Layshaft gearbox", problem.length_unit, layout, design.mechanism.module)
 
 
-def _drawn(document: Drawing, layout: BoxLayout, module: float) -> str:
+def _drawn(title: str, unit: str, layout: BoxLayout, module: float) -> str:
+    layers = {"SHAFTS": (7, "CENTER"), "TEXT": (7, "CONTINUOUS")}
     for pair, stage in {placed.pair: placed.stage for placed in layout.gears}.items():
         colour = COLOURS[stage % len(COLOURS)]
-        dxf.add_gear_layers(document, pair, colour)
-        document.layers.add(f"{pair}_DEVELOPED", color=colour)
-    document.layers.add("SHAFTS", color=7, linetype="CENTER")
-    document.layers.add("TEXT", color=7)
+        layers |= dxf.gear_layers(pair, colour) | {f"{pair}_DEVELOPED": (colour, "CONTINUOUS")}
+    document = dxf.new_drawing(title, unit, layers)
     _from_the_end(document, layout, module)
     _developed(document, layout, module)
     return dxf.written(document)
@@ -88,8 +84,7 @@ def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
         low = complex(left + placed.slot * step, axis - layout.shafts[placed.shaft].below)
         radius = placed.gear.tip_radius
         corners = [low - 1j * radius, low + face - 1j * radius, low + face + 1j * radius, low + 1j * radius]
-        layer = {"layer": f"{placed.pair}_DEVELOPED"}
-        space.add_lwpolyline([(z.real, z.imag) for z in corners], close=True, dxfattribs=layer)
+        dxf.add_outline(space, corners, f"{placed.pair}_DEVELOPED")
         for side in (1j, -1j):
             pitch = low + side * placed.gear.pitch_radius
             dxf.add_line(space, pitch, pitch + face, f"{placed.pair}_PITCH")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render.gears.planetary_layout import placed_planetary_gears
 from service.render.page import dxf
-from service.render.page.svg import clean
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 
@@ -17,10 +16,10 @@ def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title:
     """
     mechanism = design.mechanism
     gears = placed_planetary_gears(mechanism)
-    document = dxf.new_drawing(clean(title) or "Planetary train", problem.length_unit)
+    layers = {"CENTRES": (7, "CONTINUOUS")}
     for plane in sorted({plane for placed in gears for plane in placed.planes}):
-        dxf.add_gear_layers(document, f"PLANE_{plane}", 1 + plane)
-    document.layers.add("CENTRES", color=7)
+        layers |= dxf.gear_layers(f"PLANE_{plane}", 1 + plane)
+    document = dxf.new_drawing(title or "Planetary train", problem.length_unit, layers)
     space = document.modelspace()
     bevel = ARRANGEMENTS[mechanism.arrangement].bevel
     for placed in gears:

@@ -23,7 +23,6 @@ from service.render.gears.train_layout import (
     placed_gears,
 )
 from service.render.page import dxf
-from service.render.page.svg import clean
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 
@@ -34,11 +33,10 @@ COLOURS = (5, 3, 30, 6)
 def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a DXF document (R2010)."""
     gears = placed_gears(design, problem.reverted)
-    document = dxf.new_drawing(clean(title) or "Gear train", problem.length_unit)
+    layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     for number in range(1, len(design.mechanism.stages) + 1):
-        dxf.add_gear_layers(document, f"STAGE_{number}", COLOURS[number - 1])
-    document.layers.add("CENTRES", color=7)
-    document.layers.add("TEXT", color=7)
+        layers |= dxf.gear_layers(f"STAGE_{number}", COLOURS[number - 1])
+    document = dxf.new_drawing(title or "Gear train", problem.length_unit, layers)
     height = 0.02 * box_around(gears).diagonal
     for gear in gears:
         _add(document.modelspace(), gear, height)

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from service.render.checks import checks, verdict
+from service.render.gears.marks import COLOURS, circles, label, label_box, panel_of
 from service.render.gears.train_layout import (
     PlacedGear,
     box_around,
@@ -13,29 +15,19 @@ from service.render.gears.train_layout import (
 )
 from service.render.page import blocks
 from service.render.page.numbers import length, small
+from service.render.page.sheet import beside, fitted, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
     Viewport,
     circle,
-    clean,
-    document,
-    element,
     line,
     path,
-    shortened,
     text,
-    text_width,
 )
 from service.render.page.symbols import (
-    COUPLER,
-    CURVE,
     GREY,
     GROUND,
-    INK,
-    INPUT,
-    OUTPUT,
-    PALE,
     arrow,
     scale_bar,
 )
@@ -43,44 +35,22 @@ from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check
 
-WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
-"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
-
 HEIGHTS = (420.0, 860.0)
 """Least and greatest height of the drawing, pixels."""
 
-COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
-"""Of the stages."""
-
 PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.0, 165.0)
 """Angles on the pitch circle, degrees, at which a gear's label is tried, the first that is free."""
-
-LABEL = 11.5
 
 
 def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a complete SVG document."""
     gears = placed_gears(design, problem.reverted)
-    unit = problem.length_unit
-    heading = clean(title) or "Gear train"
-    width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
-    box = box_around(gears)
-    height = min(max((width - 40.0) / box.width * box.height + 70.0, HEIGHTS[0]), HEIGHTS[1])
-    view = Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + math.floor(height)), 20.0, 26.0)
-    parts = [_drawing(gears, view, unit)]
-    y = TOP - 6.0
-    for block in _tables(design, problem, gears):
-        drawn, y = block(WIDTH - EDGE - COLUMN, y, COLUMN)
-        parts.append(drawn)
-    bottom = math.ceil(max(view.panel.high, y) + EDGE - 8.0)
-    return document(
-        heading,
-        _description(design, problem),
-        (WIDTH, float(bottom)),
-        text(EDGE, 34.0, shortened(heading, 20.0, WIDTH - 2.0 * EDGE), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, _words(design, problem), 12.5, fill=GREY),
-        *parts,
-    )
+    view = fitted(box_around(gears), beside(), HEIGHTS, 20.0, 26.0)
+    tables, y = stacked(_tables(design, problem, gears))
+    drawn = _drawing(gears, view, problem.length_unit)
+    bottom = max(view.panel.high, y)
+    words = _words(design, problem)
+    return sheet(title or "Gear train", words, _description(design, problem), [drawn, *tables], bottom)
 
 
 def _words(design: GearTrainDesign, problem: GearTrainProblem) -> str:
@@ -88,10 +58,9 @@ def _words(design: GearTrainDesign, problem: GearTrainProblem) -> str:
     ratio = design.mechanism.ratio
     kind = "reverted gear train" if problem.reverted else "gear train"
     stages = "1 stage" if count == 1 else f"{count} stages"
-    failed = sum(not check.passed for check in design.verification.checks)
-    verdict = f"fails {failed} checks" if failed else "passes all checks"
     fraction = f"{ratio.numerator}/{ratio.denominator}".replace("-", "−")
-    return f"{kind.capitalize()} of {stages}, ratio {fraction} = {length(ratio.value, digits=9)}; {verdict}"
+    words = f"{kind.capitalize()} of {stages}, ratio {fraction} = {length(ratio.value, digits=9)}"
+    return f"{words}; {verdict(design.verification)}"
 
 
 def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
@@ -104,14 +73,10 @@ def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
 
 
 def _drawing(gears: list[PlacedGear], view: Viewport, unit: str) -> Element:
-    panel = view.panel
-    group = element(
-        "g",
-        element("rect", x=panel.left, y=panel.low, width=panel.width, height=panel.height, fill="#fbfcfd", stroke=PALE),
-        data_panel="main",
-    )
+    group = panel_of(view.panel, "main")
     for placed in gears:
-        group.add(_gear(placed, view))
+        marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
+        group.add(circles(placed.gear, placed.centre, view, COLOURS[placed.stage - 1], "tip", 0.06, **marks))
     shafts: list[complex] = []
     for placed in gears:
         at = view.point(placed.centre)
@@ -130,21 +95,6 @@ def _drawing(gears: list[PlacedGear], view: Viewport, unit: str) -> Element:
         group.add(_label(placed, view, taken))
     group.add(scale_bar(view, unit)[0])
     return group
-
-
-def _gear(placed: PlacedGear, view: Viewport) -> Element:
-    colour, at = COLOURS[placed.stage - 1], view.point(placed.centre)
-    gear = placed.gear
-    return element(
-        "g",
-        circle(at, view.scale * gear.tip_radius, fill=colour, fill_opacity=0.06, stroke=colour, stroke_width=0.6),
-        circle(
-            at, view.scale * gear.pitch_radius, fill="none", stroke=colour, stroke_width=1.6, stroke_dasharray="9 3 2 3"
-        ),
-        data_stage=str(placed.stage),
-        data_gear=placed.role,
-        data_teeth=str(gear.teeth),
-    )
 
 
 def _shaft(at: complex) -> list[Element]:
@@ -173,26 +123,19 @@ def _unit(vector: complex) -> complex:
 def _label(placed: PlacedGear, view: Viewport, taken: list[Box]) -> Element:
     """Tooth number at the pitch circle, at the first place where it covers no other label."""
     words = f"{placed.gear.teeth}"
-    half = 0.5 * text_width(words, LABEL) + 3.0
     panel = view.panel.grown(-3.0)
     boxes = []
     for degrees in PLACES:
         radius = view.scale * placed.pitch_radius
         at = view.point(placed.centre) + radius * np.exp(-1j * math.radians(degrees))
-        boxes.append(Box(at.real - half, at.imag - 8.0, at.real + half, at.imag + 8.0))
+        boxes.append(label_box(complex(at), words))
     inside = [
         box for box in boxes if panel.holds(complex(box.left, box.low)) and panel.holds(complex(box.right, box.high))
     ]
     free = [box for box in inside if not any(box.overlaps(other) for other in taken)]
     box = (free or inside or boxes)[0]
     taken.append(box)
-    colour = COLOURS[placed.stage - 1]
-    frame = element(
-        "rect", x=box.left, y=box.low, width=box.width, height=box.height, rx=3.0, fill="#fff", stroke=colour
-    )
-    middle = box.centre
-    words_at = text(middle.real, middle.imag + 4.2, words, LABEL, text_anchor="middle", fill=colour, font_weight="bold")
-    return element("g", frame, words_at, data_label=words)
+    return label(box, words, COLOURS[placed.stage - 1], words)
 
 
 def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[PlacedGear]) -> list[blocks.Block]:
@@ -213,7 +156,7 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Plac
         if any(mesh.interferes for mesh in meshes):
             entries.append(("interference", "yes; see suggested shift"))
         found.append(blocks.rows(f"Stage {number}", entries))
-    found.append(blocks.checks(design.verification, _written))
+    found.append(checks(design.verification, _written))
     found.append(
         blocks.rows(
             "Metrics",

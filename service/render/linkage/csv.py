@@ -7,15 +7,12 @@ linkage cannot be assembled. Lines that begin with ``#`` say what the table is o
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from typing import Any
 
 import numpy as np
 
 from service.render.linkage.scene import scene_of
-from service.render.page.svg import clean
+from service.render.page import table
 from synthesis.model.linkage_statement import LinkageProblem
 
 STEPS = 360
@@ -40,11 +37,5 @@ def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
             columns[f"{name}_{letter}y [{unit}{per}]"] = point[order].imag
     for name, sine in motion.sines.items():
         columns[f"{name}_transmission_angle [deg]"] = np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0)))
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    text.write(f"# {clean(title) or 'Linkage'}\n")
-    text.write(f"# {design.mechanism.type}; rates are derivatives by the input, in {by}\n")
-    writer.writerow(columns)
-    for row in zip(*(values.tolist() for values in columns.values()), strict=True):
-        writer.writerow([repr(value) if math.isfinite(value) else "" for value in row])
-    return text.getvalue()
+    remark = f"{design.mechanism.type}; rates are derivatives by the input, in {by}"
+    return table.numbers([title or "Linkage", remark], columns)

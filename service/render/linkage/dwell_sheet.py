@@ -8,6 +8,7 @@ import numpy as np
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from service.render.checks import checks
 from service.render.linkage.drawing import Scene
 from service.render.linkage.driven_sheet import driven_sheet, verdict
 from service.render.linkage.rebuilt import rebuilt
@@ -18,7 +19,7 @@ from service.render.page.numbers import (
     length,
     small,
 )
-from service.render.page.svg import clean, path
+from service.render.page.svg import path
 from service.render.page.symbols import (
     CURVE,
     DEMANDED,
@@ -52,7 +53,7 @@ def dwell_sheet(design: DwellDesign, problem: DwellProblem, title: str) -> str:
     resting = [drive(mechanism, at + rotation * np.linspace(0.0, 1.0, SAMPLES), order=0).joints["P"][0] for at in begun]
     words = f"{name}, crank turns counter-clockwise; lengths in {unit}; {verdict(design.verification)}"
     return driven_sheet(
-        clean(title) or name,
+        title or name,
         words,
         shown,
         shown.box(),
@@ -128,7 +129,7 @@ def _tables(design: DwellDesign, problem: DwellProblem, size: float) -> list[blo
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Dwells", rests),
-        blocks.checks(design.verification, _written),
+        checks(design.verification, _written),
         blocks.rows("Metrics", measured),
     ]
 

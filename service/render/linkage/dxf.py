@@ -38,7 +38,7 @@ from service.render.linkage.scene import (
     scene_of,
 )
 from service.render.page import dxf
-from service.render.page.svg import Box, clean
+from service.render.page.svg import Box
 from synthesis.model.linkage_statement import LinkageProblem
 
 Complex = NDArray[np.complex128]
@@ -75,13 +75,11 @@ CLOSED = 1e-9
 def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
     """The drawing of a linkage design as a DXF document (R2010)."""
     scene, demanded = scene_of(design), demands(problem)
-    document = dxf.new_drawing(clean(title) or "Linkage", problem.length_unit, dimensions=True)
-    for name, (colour, linetype) in LAYERS.items():
-        document.layers.add(name, color=colour, linetype=linetype)
-    document.layers.get("OTHER_POSITIONS").freeze()
     moving = [name for name in scene.mechanism.links if name != GROUND]
-    for n, name in enumerate(moving):
-        document.layers.add(_layer(name), color=LINK_COLOURS[n % len(LINK_COLOURS)])
+    colours = {_layer(name): (LINK_COLOURS[n % len(LINK_COLOURS)], "CONTINUOUS") for n, name in enumerate(moving)}
+    document = dxf.new_drawing(
+        title or "Linkage", problem.length_unit, LAYERS | colours, frozen="OTHER_POSITIONS", dimensions=True
+    )
     size = max(_box(scene, demanded).diagonal, np.finfo(np.float64).tiny)
     space = document.modelspace()
     for k in range(len(scene.inputs) - 1, -1, -1):
@@ -116,12 +114,12 @@ def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
     if k or not joints:
         return
     for name, place in joints.items():
-        space.add_circle((place.real, place.imag), PIN * size, dxfattribs={"layer": "JOINTS"})
+        dxf.add_circle(space, place, PIN * size, "JOINTS")
         dxf.add_words(space, place + 1.6 * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
     for _, place, turned in scene.lines(0):
         along, half = cmath.exp(1j * turned), 0.5 * BLOCK * size
         block = [place + along * complex(x * half, 0.6 * y * half) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        space.add_lwpolyline([(z.real, z.imag) for z in block], close=True, dxfattribs={"layer": "SLIDES"})
+        dxf.add_outline(space, block, "SLIDES")
 
 
 def _outline(space: Modelspace, corners: list[complex], layer: str) -> None:
@@ -133,7 +131,7 @@ def _outline(space: Modelspace, corners: list[complex], layer: str) -> None:
         return
     centre = sum(corners) / len(corners)
     around = sorted(corners, key=lambda z: math.atan2((z - centre).imag, (z - centre).real))
-    space.add_lwpolyline([(z.real, z.imag) for z in around], close=True, dxfattribs={"layer": layer})
+    dxf.add_outline(space, around, layer)
 
 
 def _ground(space: Modelspace, scene: Scene, size: float) -> None:
@@ -175,7 +173,7 @@ def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
     """Demanded points as circles, with the direction of the body."""
     for k, demand in enumerate(demanded):
         at = demand.point
-        space.add_circle((at.real, at.imag), 1.5 * PIN * size, dxfattribs={"layer": "TARGETS"})
+        dxf.add_circle(space, at, 1.5 * PIN * size, "TARGETS")
         if demand.angle is not None:
             dxf.add_line(space, at, at + 3.0 * ARM * size * cmath.exp(1j * demand.angle), "TARGETS")
         dxf.add_words(space, at - 1.6 * WORDS * size * (1.0 + 1.0j), str(k + 1), WORDS * size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from service.render.checks import checks
 from service.render.linkage import fourbar_tables as tables
 from service.render.linkage.fourbar import (
     Scene,
@@ -62,11 +63,11 @@ def fourbar_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, t
     """The drawing of a fourbar design as a complete SVG document."""
     shown = scene(design, problem)
     unit = problem.length_unit
-    heading = clean(title) or "Fourbar linkage"
+    heading = title or "Fourbar linkage"
     blocks = [
         tables.dimensions(design, shown, unit),
         tables.targets(design, shown, unit),
-        tables.checks(design),
+        checks(design.verification, tables.written_check),
         tables.metrics(design, unit),
     ]
     box = shown.box()

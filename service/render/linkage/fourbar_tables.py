@@ -142,11 +142,6 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     return draw
 
 
-def checks(design: LinkageDesign) -> Block:
-    """Every check with a mark, its value and its limit."""
-    return blocks.checks(design.verification, _written)
-
-
 def metrics(design: LinkageDesign, unit: str) -> Block:
     """Measured properties that nothing was demanded of."""
     found = design.metrics
@@ -176,7 +171,8 @@ def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def _written(check: Check, value: float) -> str:
+def written_check(check: Check, value: float) -> str:
+    """A measured value of a check."""
     if check.name in DEGREES:
         return angle(value, 2)
     return length(value, digits=4) if check.name in LENGTHS else small(value)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
-
+from service.render.page import table
 from synthesis.kinds.function.design import FunctionDesign
 from synthesis.kinds.function.problem import FunctionProblem
 
@@ -13,9 +11,5 @@ def function_table(design: FunctionDesign, problem: FunctionProblem, title: str)
     """Value of the input, angle of the input link, and structural error there."""
     curve = design.structural_error.curve
     unit = "deg" if design.structural_error.unit == "degrees" else problem.length_unit
-    text = io.StringIO()
-    table = csv.writer(text, lineterminator="\r\n")
-    table.writerow(["input", "input_angle_deg", f"structural_error_{unit}"])
-    for row in zip(curve.input, curve.input_angle, curve.error, strict=True):
-        table.writerow([repr(value) for value in row])
-    return text.getvalue()
+    rows = zip(curve.input, curve.input_angle, curve.error, strict=True)
+    return table.table(["input", "input_angle_deg", f"structural_error_{unit}"], rows)

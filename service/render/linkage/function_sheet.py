@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from service.render.checks import checks
 from service.render.linkage.drawing import framed
 from service.render.linkage.rebuilt import rebuilt
 from service.render.page import blocks
@@ -81,7 +82,7 @@ ANGLES = frozenset({"transmission_angle"})
 def function_sheet(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
     """The drawing of a function generator as a complete SVG document."""
     joints, valid = _joints(design)
-    heading = clean(title) or NAMES[design.mechanism.type]
+    heading = title or NAMES[design.mechanism.type]
     width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
     box = Box.around(np.concatenate([places[np.isfinite(places)] for places in joints.values()]))
     wanted = (width - 100.0) / max(box.width, 1e-12 * abs(box.centre), 1e-300) * box.height + 130.0
@@ -357,6 +358,6 @@ def _tables(design: FunctionDesign, problem: FunctionProblem) -> list[Block]:
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Dials", dials),
         blocks.rows("Targets", met),
-        blocks.checks(design.verification, written),
+        checks(design.verification, written),
         blocks.rows("Metrics", measured),
     ]

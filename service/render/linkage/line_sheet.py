@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from service.render.checks import checks
 from service.render.linkage.drawing import Scene
 from service.render.linkage.driven_sheet import driven_sheet, verdict
 from service.render.linkage.rebuilt import rebuilt
@@ -23,7 +24,6 @@ from service.render.page.svg import (
     Box,
     Element,
     Viewport,
-    clean,
     line,
 )
 from service.render.page.symbols import (
@@ -72,7 +72,7 @@ def line_sheet(design: StraightLineDesign, problem: StraightLineProblem, title: 
     proportions = {"optimal": "best", "classical": "classical", "exact": "exact"}[design.metrics.proportions]
     words = f"{name}, {proportions} proportions; lengths in {unit}; {verdict(design.verification)}"
     return driven_sheet(
-        clean(title) or name,
+        title or name,
         words,
         shown,
         box,
@@ -130,7 +130,7 @@ def _tables(design: StraightLineDesign, problem: StraightLineProblem, size: floa
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Line", ends),
-        blocks.checks(design.verification, _written),
+        checks(design.verification, _written),
         blocks.rows("Metrics", measured),
     ]
 

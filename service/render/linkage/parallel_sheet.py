@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from kinematics.linkage.planar.drive import drive
+from service.render.checks import checks
 from service.render.linkage.drawing import Scene
 from service.render.linkage.driven_sheet import driven_sheet, verdict
 from service.render.linkage.rebuilt import rebuilt
@@ -17,7 +18,7 @@ from service.render.page.numbers import (
     length,
     small,
 )
-from service.render.page.svg import clean, line
+from service.render.page.svg import line
 from service.render.page.symbols import DEMANDED, OUTPUT
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
@@ -62,7 +63,7 @@ def parallel_sheet(design: ParallelMotionDesign, problem: ParallelMotionProblem,
     ]
     words = f"{NAME}, {BASES[design.metrics.base]}; lengths in {unit}; {verdict(design.verification)}"
     return driven_sheet(
-        clean(title) or NAME,
+        title or NAME,
         words,
         shown,
         shown.box(),
@@ -99,7 +100,7 @@ def _tables(design: ParallelMotionDesign, problem: ParallelMotionProblem, size: 
     ]
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
-        blocks.checks(design.verification, _written),
+        checks(design.verification, _written),
         blocks.rows("Metrics", measured),
     ]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import Mechanism
+from service.render.checks import checks
 from service.render.linkage import fourbar_tables as tables
 from service.render.linkage.drawing import Scene, drawing
 from service.render.linkage.rebuilt import rebuilt
@@ -56,7 +57,7 @@ def linkage_sheet(design: LinkageDesign, problem: MotionProblem | PathProblem, t
     stated = np.array([target.input_angle for target in design.targets])
     inputs = stated if mechanism.driven_by_slide else np.radians(stated)
     shown = _scene(mechanism, inputs, problem)
-    heading = clean(title) or NAMES[design.mechanism.type]
+    heading = title or NAMES[design.mechanism.type]
     width = WIDTH - 2.0 * EDGE - COLUMN - GUTTER
     box = shown.box()
     wanted = (width - 100.0) / max(box.width, 1e-12) * box.height + 130.0
@@ -123,7 +124,7 @@ def _tables(design: LinkageDesign, problem: MotionProblem | PathProblem, size: f
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Targets", met),
-        tables.checks(design),
+        checks(design.verification, tables.written_check),
         blocks.rows("Least angles", least),
         tables.metrics(design, unit),
     ]

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from kinematics.linkage.planar.mechanism import GROUND
+from service.render.checks import checks
 from service.render.linkage.drawing import Scene
 from service.render.linkage.driven_sheet import driven_sheet, verdict
 from service.render.linkage.rebuilt import rebuilt
@@ -17,7 +18,6 @@ from service.render.page.numbers import (
     length,
     small,
 )
-from service.render.page.svg import clean
 from service.render.page.symbols import CURVE, OUTPUT
 from synthesis.kinds.steering.design import SteeringDesign
 from synthesis.kinds.steering.problem import SteeringProblem
@@ -47,7 +47,7 @@ def steering_sheet(design: SteeringDesign, problem: SteeringProblem, title: str)
         f"lengths in {problem.length_unit}; {verdict(design.verification)}"
     )
     return driven_sheet(
-        clean(title) or name,
+        title or name,
         words,
         shown,
         shown.box(),
@@ -96,7 +96,7 @@ def _tables(design: SteeringDesign, problem: SteeringProblem, size: float, movin
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Targets", met),
-        blocks.checks(design.verification, _written),
+        checks(design.verification, _written),
         blocks.rows("Metrics", measured),
     ]
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.render.checks import checks
 from service.render.linkage.drawing import Scene
 from service.render.linkage.driven_sheet import driven_sheet, verdict
 from service.render.linkage.rebuilt import rebuilt
@@ -18,7 +19,6 @@ from service.render.page.numbers import (
     length,
     small,
 )
-from service.render.page.svg import clean
 from service.render.page.symbols import CURVE, OUTPUT
 from synthesis.kinds.quick_return.design import QuickReturnDesign
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
@@ -53,7 +53,7 @@ def stroke_sheet(design: QuickReturnDesign, problem: QuickReturnProblem, title: 
         f"{verdict(design.verification)}"
     )
     return driven_sheet(
-        clean(title) or name,
+        title or name,
         words,
         shown,
         shown.box(),
@@ -118,7 +118,7 @@ def _tables(design: QuickReturnDesign, problem: QuickReturnProblem, size: float)
     return [
         blocks.rows(f"Dimensions ({unit})", rows),
         blocks.rows("Limits", limits),
-        blocks.checks(design.verification, _written),
+        checks(design.verification, _written),
         blocks.rows("Metrics", measured),
     ]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from service.render.page.svg import (
     Element,
@@ -18,7 +19,6 @@ from service.render.page.symbols import (
     OUTPUT,
     PALE,
 )
-from synthesis.model.answer import Check, Verification
 
 ROW, HEADING, GAP = 18.0, 24.0, 16.0
 """Heights of a row and of a block's heading, and the space after a block, pixels."""
@@ -28,6 +28,15 @@ SIZE, SMALL = 11.5, 10.5
 
 Block = Callable[[float, float, float], tuple[Element, float]]
 """Draws itself at left, top and width; returns its element and the y below it."""
+
+
+class CheckRow(NamedTuple):
+    """A check as it is written: value and limit with their units, empty where there is none."""
+
+    name: str
+    passed: bool
+    value: str
+    limit: str
 
 
 def rows(heading: str, entries: Sequence[tuple[str, str]]) -> Block:
@@ -45,15 +54,15 @@ def rows(heading: str, entries: Sequence[tuple[str, str]]) -> Block:
     return draw
 
 
-def checks(verification: Verification, written: Callable[[Check, float], str]) -> Block:
-    """Every check with a mark, its value and its limit; ``written`` says how a check's numbers are."""
+def checks(listed: Sequence[CheckRow]) -> Block:
+    """Every check with a mark, its value and its limit."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        verdict = "all passed" if verification.passed else "not all passed"
+        verdict = "all passed" if all(check.passed for check in listed) else "not all passed"
         block, y = block_start(f"Checks: {verdict}", left, top, width)
-        for check in verification.checks:
+        for check in listed:
             y += ROW
-            measure = _measure(check, written)
+            measure = f"{check.value}  (limit {check.limit})" if check.limit else check.value
             room = width - 22.0 - text_width(measure, SIZE) - 8.0
             words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
             row = element("g", _mark(check.passed, left + 8.0, y - 4.0), data_check=clean(check.name))
@@ -78,15 +87,6 @@ def value_at(right: float, y: float, value: str, after: float) -> Element:
     width = text_width(value, SIZE)
     size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
     return text(right, y, value, size, text_anchor="end", fill=INK)
-
-
-def _measure(check: Check, written: Callable[[Check, float], str]) -> str:
-    """Value and limit of a check; their order tells whether the limit is the least or the most allowed."""
-    if check.value is None:
-        return ""
-    if check.limit is None:
-        return written(check, check.value)
-    return f"{written(check, check.value)}  (limit {written(check, check.limit)})"
 
 
 def _mark(passed: bool, x: float, y: float) -> Element:

@@ -7,6 +7,7 @@ teeth, true involutes with their fillets.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable, Mapping
 
 import ezdxf
 import numpy as np
@@ -27,11 +28,31 @@ ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defi
 UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
 
 
-def new_drawing(title: str, unit: str, *, dimensions: bool = False) -> Drawing:
-    """An empty drawing whose lengths are in ``unit``; with a style for dimensions if some will stand in it."""
+def new_drawing(
+    title: str, unit: str, layers: Mapping[str, tuple[int, str]], *, frozen: str = "", dimensions: bool = False
+) -> Drawing:
+    """An empty drawing.
+
+    Parameters
+    ----------
+    title : str
+        Any text.
+    unit : str
+        Of its lengths.
+    layers : mapping of str to (int, str)
+        Colour index and line type of each layer.
+    frozen : str
+        The layer that is not shown at first.
+    dimensions : bool
+        Whether dimensions will stand in it, which need a style.
+    """
     document = new("R2010", setup=["linetypes", "dimstyles"] if dimensions else ["linetypes"])
     document.units = UNITS[unit]
     document.header.custom_vars.append("Title", title)
+    for name, (colour, linetype) in layers.items():
+        document.layers.add(name, color=colour, linetype=linetype)
+    if frozen:
+        document.layers.get(frozen).freeze()
     return document
 
 
@@ -42,10 +63,9 @@ def written(document: Drawing) -> str:
     return text.getvalue()
 
 
-def add_gear_layers(document: Drawing, name: str, colour: int) -> None:
+def gear_layers(name: str, colour: int) -> dict[str, tuple[int, str]]:
     """The two layers of a gear."""
-    document.layers.add(f"{name}_PITCH", color=colour, linetype="DASHDOT")
-    document.layers.add(f"{name}_TEETH", color=colour)
+    return {f"{name}_PITCH": (colour, "DASHDOT"), f"{name}_TEETH": (colour, "CONTINUOUS")}
 
 
 def teeth_outline(gear: Gear, at: complex, tooth_at: float) -> list[tuple[float, float]] | None:
@@ -58,9 +78,19 @@ def teeth_outline(gear: Gear, at: complex, tooth_at: float) -> list[tuple[float,
 
 def add_gear(space: Modelspace, name: str, gear: Gear, at: complex, teeth: list[tuple[float, float]] | None) -> None:
     """Pitch circle and outline on the layers of ``name``."""
-    space.add_circle((at.real, at.imag), gear.pitch_radius, dxfattribs={"layer": f"{name}_PITCH"})
+    add_circle(space, at, gear.pitch_radius, f"{name}_PITCH")
     if teeth is not None:
         space.add_lwpolyline(teeth, close=True, dxfattribs={"layer": f"{name}_TEETH"})
+
+
+def add_circle(space: Modelspace, at: complex, radius: float, layer: str) -> None:
+    """A circle."""
+    space.add_circle((at.real, at.imag), radius, dxfattribs={"layer": layer})
+
+
+def add_outline(space: Modelspace, corners: Iterable[complex], layer: str) -> None:
+    """A closed polygon."""
+    space.add_lwpolyline([(z.real, z.imag) for z in corners], close=True, dxfattribs={"layer": layer})
 
 
 def add_cross(space: Modelspace, at: complex, arm: float, layer: str) -> None:

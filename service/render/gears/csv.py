@@ -1,0 +1,87 @@
+"""Gear trains and gearboxes as tables: one row a gear or a speed, with the unit in the header."""
+
+from __future__ import annotations
+
+from kinematics.gear.teeth import Gear
+from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.train_layout import placed_gears
+from service.render.page.table import Cell, table
+from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.gearbox.design import GearboxDesign
+from synthesis.kinds.gearbox.problem import GearboxProblem
+from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
+from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
+from synthesis.kinds.planetary_train.design import PlanetaryDesign
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+
+
+def gear_train_table(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
+    """Stage, role, teeth, module, circles, shaft centre and speed of every gear."""
+    return table(
+        ["stage", "role", "teeth", *_lengths("outside", problem.length_unit), "speed_over_input"],
+        (
+            [
+                placed.stage,
+                placed.role,
+                placed.gear.teeth,
+                *_sizes(placed.gear, placed.centre),
+                f"{placed.speed.numerator}/{placed.speed.denominator}",
+            ]
+            for placed in placed_gears(design, problem.reverted)
+        ),
+    )
+
+
+def planetary_table(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
+    """Name, copy, teeth, circles, centre and speed of every gear, one row a gear and copy."""
+    return table(
+        ["gear", "body", "copy", "teeth", *_lengths("tip", problem.length_unit), "speed_over_input"],
+        (
+            [
+                placed.name,
+                placed.body,
+                placed.copy,
+                f"{placed.gear.teeth:g}",
+                *_sizes(placed.gear, placed.centre),
+                design.metrics.speeds[placed.body],
+            ]
+            for placed in placed_planetary_gears(design.mechanism)
+        ),
+    )
+
+
+def _lengths(outer: str, unit: str) -> list[str]:
+    """Heads of the columns of :func:`_sizes`; ``outer`` is what the kind calls the circle of the tips."""
+    names = ("module", "pitch_diameter", f"{outer}_diameter", "root_diameter", "base_diameter", "centre_x", "centre_y")
+    return [f"{name}_{unit}" for name in names]
+
+
+def _sizes(gear: Gear, centre: complex) -> list[float]:
+    radii = gear.pitch_radius, gear.tip_radius, gear.root_radius, gear.base_radius
+    return [gear.module, *(2.0 * radius for radius in radii), centre.real, centre.imag]
+
+
+def gearbox_table(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
+    """Every spindle speed with its nominal value, deviation and the pairs that are engaged."""
+    stages = design.mechanism.stages
+    rows: list[list[Cell]] = []
+    for row in design.metrics.speeds:
+        pairs = [stage.pairs[at] for stage, at in zip(stages, row.engaged, strict=True)]
+        engaged = [f"{pair.driver}/{pair.driven}" for pair in pairs]
+        rows.append([row.speed, row.nominal, row.standard, row.error, *engaged])
+    names = [f"stage_{k}_driver_driven" for k in range(1, len(stages) + 1)]
+    return table(["speed_rpm", "nominal_rpm", "standard_rpm", "error", *names], rows)
+
+
+def layshaft_table(design: LayshaftDesign, problem: LayshaftProblem, title: str) -> str:
+    """Every gear with its teeth, its ratio and the error of it; the head pair comes first."""
+    mechanism, errors = design.mechanism, design.metrics.errors
+    rows: list[list[Cell]] = [["head", mechanism.head.driven, "", mechanism.head.driver, "", ""]]
+    for k, (gear, error) in enumerate(zip(mechanism.gears, errors, strict=False), 1):
+        teeth = (gear.layshaft, gear.mainshaft) if gear.layshaft is not None else ("", "")
+        rows.append([k, teeth[0], "", teeth[1], gear.ratio.value, error])
+    if mechanism.reverse is not None:
+        back = mechanism.reverse
+        rows.append(["reverse", back.layshaft, back.idler, back.mainshaft, back.ratio.value, errors[-1]])
+    return table(["gear", "layshaft", "idler", "mainshaft", "ratio", "error"], rows)

@@ -1,0 +1,53 @@
+"""What the drawings of gears have in common: the panel, the two circles of a gear, framed labels, colours."""
+
+from __future__ import annotations
+
+from kinematics.gear.teeth import Gear
+from service.render.page.svg import Box, Element, Viewport, circle, element, text, text_width
+from service.render.page.symbols import COUPLER, CURVE, INPUT, OUTPUT, PALE
+
+PAPER = "#fbfcfd"
+"""Of a panel."""
+
+COLOURS = (INPUT, OUTPUT, COUPLER, CURVE)
+"""Of the stages."""
+
+LABEL = 11.5
+"""Font size of a label, pixels."""
+
+HALF_HEIGHT = 8.0
+"""Of a label's frame, pixels."""
+
+
+def panel_of(box: Box, name: str) -> Element:
+    """An empty panel."""
+    frame = {"x": box.left, "y": box.low, "width": box.width, "height": box.height}
+    return element("g", element("rect", **frame, fill=PAPER, stroke=PALE), data_panel=name)
+
+
+def circles(
+    gear: Gear, centre: complex, view: Viewport, colour: str, shaded: str, opacity: float, /, **marks: str
+) -> Element:
+    """Tip circle thin and pitch circle dash-dotted; the one that ``shaded`` names, "tip" or "pitch", is filled."""
+    at = view.point(centre)
+    faces: dict[str, dict[str, str | float]] = {"tip": {"fill": "none"}, "pitch": {"fill": "none"}}
+    faces[shaded] = {"fill": colour, "fill_opacity": opacity}
+    tip = circle(at, view.scale * gear.tip_radius, **faces["tip"], stroke=colour, stroke_width=0.6)
+    dashed: dict[str, str | float] = {"stroke": colour, "stroke_width": 1.6, "stroke_dasharray": "9 3 2 3"}
+    return element("g", tip, circle(at, view.scale * gear.pitch_radius, **faces["pitch"], **dashed), **marks)
+
+
+def label_box(at: complex, words: str) -> Box:
+    """What a label about a point covers."""
+    half = 0.5 * text_width(words, LABEL) + 3.0
+    return Box(at.real - half, at.imag - HALF_HEIGHT, at.real + half, at.imag + HALF_HEIGHT)
+
+
+def label(box: Box, words: str, colour: str, name: str) -> Element:
+    """Words in a rounded frame."""
+    frame = element(
+        "rect", x=box.left, y=box.low, width=box.width, height=box.height, rx=3.0, fill="#fff", stroke=colour
+    )
+    middle = box.centre
+    inside = text(middle.real, middle.imag + 4.2, words, LABEL, text_anchor="middle", fill=colour, font_weight="bold")
+    return element("g", frame, inside, data_label=name)

@@ -1,0 +1,77 @@
+"""The frame of a sheet: title and a line of words above, a drawing at the left, blocks of rows beside or below it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from service.render.page.blocks import Block
+from service.render.page.svg import Box, Element, Viewport, document, shortened, text
+from service.render.page.symbols import GREY, INK
+
+WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
+"""Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
+
+FULL = WIDTH - 2.0 * EDGE
+"""Width between the borders, pixels."""
+
+FOOT = 8.0
+"""The border below is narrower by this than the others, pixels: the last row ends with a gap of its own."""
+
+THINNEST = 1e-12
+"""A box narrower than this share of its distance from the origin is a rounding error wide."""
+
+UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
+
+
+def sheet(heading: str, words: str, described: str, parts: Iterable[Element], bottom: float) -> str:
+    """A complete SVG document: the parts, whose lower end is ``bottom``, below the heading and a line of words.
+
+    ``described`` says what is drawn to a reader who does not see it.
+    """
+    height = float(math.ceil(bottom + EDGE - FOOT))
+    return document(
+        heading,
+        described,
+        (WIDTH, height),
+        text(EDGE, 34.0, shortened(heading, 20.0, FULL), 20.0, font_weight="bold", fill=INK),
+        text(EDGE, 55.0, shortened(words, 12.5, FULL), 12.5, fill=GREY),
+        *parts,
+    )
+
+
+def beside(column: float = COLUMN) -> float:
+    """Width of a drawing that has a column of tables at its right."""
+    return FULL - column - GUTTER
+
+
+def stacked(
+    blocks: Iterable[Block], left: float | None = None, top: float = TOP - 6.0, width: float = COLUMN
+) -> tuple[list[Element], float]:
+    """Blocks below one another, at the right border where no place is given, and the y below them."""
+    parts, y = [], top
+    for block in blocks:
+        drawn, y = block(WIDTH - EDGE - width if left is None else left, y, width)
+        parts.append(drawn)
+    return parts, y
+
+
+def fitted(
+    box: Box, width: float, heights: tuple[float, float], margin: float, foot: float, spare: float = 4.0
+) -> Viewport:
+    """A panel at the left border, as high as what it shows needs, within the least and the greatest height.
+
+    ``margin`` pixels are left free around what is shown, ``foot`` more below it, and ``spare`` of the height.
+    """
+    across = max(box.width, THINNEST * abs(box.centre))
+    scale = (width - 2.0 * margin) / across if across > 0.0 else math.inf
+    # A level line needs no height at any scale.
+    needed = scale * box.height if box.height > 0.0 else 0.0
+    height = math.floor(min(max(needed + 2.0 * margin + foot + spare, heights[0]), heights[1]))
+    return Viewport.fit(box, Box(EDGE, TOP, EDGE + width, TOP + height), margin, foot)
+
+
+def verdict(passed: Sequence[bool]) -> str:
+    """In words, how many checks fail."""
+    failed = len(passed) - sum(passed)
+    return f"fails {failed} of {len(passed)} checks" if failed else "passes all checks"
