@@ -43,9 +43,6 @@ CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, SLIDER_CRANK, SLIDER_ROCKER, GEARED_FIVEBAR
 UNKNOWNS = {CRANK_ROCKER: 9, DOUBLE_CRANK: 9, FOURBAR: 9, SLIDER_CRANK: 8, SLIDER_ROCKER: 8, GEARED_FIVEBAR: 11}
 """How many numbers a linkage of each family has."""
 
-ROTATING = (CRANK_ROCKER, DOUBLE_CRANK, SLIDER_CRANK)
-"""Families whose crank turns through by the way their lengths are written."""
-
 SMALLEST_LOG, LARGEST_LOG = -16.0, 16.0
 """Logarithms of lengths, in task sizes, are kept between these: far outside any linkage, inside what rounding bears."""
 
