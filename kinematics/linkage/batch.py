@@ -7,7 +7,8 @@ S + (N,). A kernel sees D designs in a row and N angles, and takes one design, o
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,6 +46,40 @@ def block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray
         whole[row] = field
     whole.flags.writeable = False
     return whole
+
+
+class DesignBatch:
+    """A batch of designs as a value: its fields are read-only views of the two blocks that the kernels take."""
+
+    def _keep(self, points: dict[str, ArrayLike], lengths: dict[str, ArrayLike]) -> tuple[Complex, Real]:
+        """Copy the fields, three points and three lengths, into blocks of one shape; the blocks with designs in a row.
+
+        Raises
+        ------
+        ShapeError
+            For fields that do not broadcast.
+        """
+        p, q, r = (np.asarray(value, np.complex128) for value in points.values())
+        a, b, c = (np.asarray(value, np.float64) for value in lengths.values())
+        if p.shape == q.shape == r.shape == a.shape == b.shape == c.shape:
+            designs = a.shape
+        else:
+            fields = zip((*points, *lengths), (p, q, r, a, b, c), strict=True)
+            designs = one_shape(**{name: field.shape for name, field in fields})
+        at, long = block((p, q, r), designs, np.complex128), block((a, b, c), designs, np.float64)
+        for k, (point, length) in enumerate(zip(points, lengths, strict=True)):
+            self.__dict__[point], self.__dict__[length] = at[k, ...], long[k, ...]
+        self.__dict__["_blocks"] = at, long
+        return at.reshape(3, -1), long.reshape(3, -1)
+
+    @property
+    def blocks(self) -> tuple[Complex, Real]:
+        """The three points and the three lengths as the kernels take them, shape (3,) + S each."""
+        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
+        return blocks
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]:
+        return type(self), tuple(self.__dict__[field] for field in self.__annotations__)
 
 
 class CouplerPoints(NamedTuple):
@@ -106,6 +141,71 @@ def sweep(blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayL
     return Sweep(pivots.reshape(3, -1), lengths.reshape(3, -1), signs.reshape(-1), angle_rows(theta, shape), shape)
 
 
+Fields = tuple[Mask, Complex, Complex, Complex, Real, Real]
+"""Mask, points A, B and P, and two angles (or an angle and the slider's travel) of a configuration, or of its rates."""
+
+
+def swept_positions(
+    kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
+) -> Fields:
+    """Configurations by a linkage's kernel ``whole_positions``; parameters and errors as for :func:`sweep`."""
+    at = sweep(blocks, input_angle, assembly)
+    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
+    kernels.whole_positions(*at[:4], points, angles, valid)
+    return _fields(valid.reshape(at.shape), points.reshape(3, *at.shape), angles.reshape(2, *at.shape))
+
+
+def swept_coupler_points(
+    kernels: ModuleType, blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike
+) -> CouplerPoints:
+    """Coupler points by a linkage's kernel ``coupler_points``; parameters and errors as for :func:`sweep`."""
+    at = sweep(blocks, input_angle, assembly)
+    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
+    kernels.coupler_points(*at[:4], points, valid)
+    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+
+
+def swept_motion(
+    kernels: ModuleType,
+    blocks: tuple[Complex, Real],
+    input_angle: ArrayLike,
+    assembly: ArrayLike,
+    *rates: ArrayLike,
+) -> tuple[Fields, Fields, Fields, Fields]:
+    """Configurations and three time derivatives by ``whole_motion``; ``rates``: speed, acceleration and jerk."""
+    positions_shape, at, rows = rated_sweep(blocks, input_angle, assembly, *rates)
+    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
+    valid = np.empty((2, *at.flat), np.bool_)
+    kernels.whole_motion(*at[:4], rows, points, angles, valid)
+    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
+    valid = valid.reshape(2, *at.shape)
+    # Rates of more axes than the positions have do not multiply the positions.
+    if at.shape == positions_shape:
+        position = _fields(valid[0, ...], points[0], angles[0])
+    else:
+        position = swept_positions(kernels, blocks, input_angle, assembly)
+    sound = valid[1, ...]
+    velocity, acceleration, jerk = (_fields(sound, points[k], angles[k]) for k in (1, 2, 3))
+    return position, velocity, acceleration, jerk
+
+
+def rated_sweep(
+    blocks: tuple[Complex, Real], input_angle: ArrayLike, assembly: ArrayLike, *rates: ArrayLike
+) -> tuple[Shape, Sweep, Real]:
+    """Shape of the positions, the sweep of the shape that they make with the rates, and the rates as rows."""
+    narrow = sweep(blocks, input_angle, assembly)
+    speed, acceleration, jerk = (np.asarray(rate, np.float64) for rate in rates)
+    if speed.ndim == acceleration.ndim == jerk.ndim == 0:
+        return narrow.shape, narrow, rate_rows(speed, acceleration, jerk, narrow.shape)
+    shape = one_shape(positions=narrow.shape, speed=speed.shape, acceleration=acceleration.shape, jerk=jerk.shape)
+    at = narrow if shape == narrow.shape else sweep(blocks, input_angle, assembly, shape)
+    return narrow.shape, at, rate_rows(speed, acceleration, jerk, shape)
+
+
+def _fields(valid: Mask, points: Complex, angles: Real) -> Fields:
+    return valid, points[0, ...], points[1, ...], points[2, ...], angles[0, ...], angles[1, ...]
+
+
 def over_designs(
     blocks: tuple[Complex, Real], shape: Shape, *values: ArrayLike
 ) -> tuple[Complex, Real, *tuple[Real, ...]]:
@@ -118,11 +218,6 @@ def over_designs(
     for row, value in enumerate(values):
         rows[row] = value
     return pivots.reshape(3, -1), lengths.reshape(3, -1), *rows.reshape(len(values), math.prod(shape))
-
-
-def fields(valid: Mask, points: Complex, angles: Real) -> tuple[Mask, Complex, Complex, Complex, Real, Real]:
-    """Mask, three points and two angles, each of its own, of blocks of points and angles."""
-    return valid, points[0, ...], points[1, ...], points[2, ...], angles[0, ...], angles[1, ...]
 
 
 def flat(shape: Shape) -> tuple[int, int]:

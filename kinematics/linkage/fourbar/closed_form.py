@@ -10,7 +10,7 @@ axis from A to O4 (length f) it stands at x = (f² + b² − c²) / 2f with heig
 
 which is the half-angle solution of Norton 4.10 and 4.13 without its divisions by zero. The product under the root is
 kept in factors, 4 f² h² = (b + c + f)(b + c − f)(f + b − c)(f − b + c), so that it is exact near the toggles. The
-sweeps over designs × angles are compiled (:mod:`fourbar_kernels`).
+sweeps over designs × angles are compiled (:mod:`kinematics.linkage.fourbar.kernels`).
 
 Derivatives. The loop A + b e^{iθ3} = O4 + c e^{iθ4} is differentiated with respect to time; each order is a real 2×2
 linear system with the same matrix (Norton 6.18, 7.12), solved by cross products. Its determinant is
@@ -32,15 +32,15 @@ from kinematics.linkage.batch import (
     OPEN,
     Complex,
     CouplerPoints,
+    DesignBatch,
     Mask,
     Real,
-    Sweep,
-    block,
-    fields,
     one_shape,
-    rate_rows,
+    rated_sweep,
     require,
-    sweep,
+    swept_coupler_points,
+    swept_motion,
+    swept_positions,
 )
 from kinematics.linkage.fourbar import kernels
 from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
@@ -75,7 +75,7 @@ AngleAxis = tuple[EllipsisType] | tuple[EllipsisType, None]
 
 
 @dataclass(frozen=True, eq=False)
-class Fourbar:
+class Fourbar(DesignBatch):
     """A batch of fourbars; all fields are kept with one shape, the *designs*. One design has shape ``()``.
 
     A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
@@ -113,43 +113,20 @@ class Fourbar:
         output: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        o2, o4, point = (np.asarray(z, np.complex128) for z in (input_pivot, output_pivot, coupler_point))
-        a, b, c = (np.asarray(x, np.float64) for x in (input, coupler, output))
-        if o2.shape == o4.shape == point.shape == a.shape == b.shape == c.shape:
-            designs = a.shape
-        else:
-            named = {
-                "input_pivot": o2,
-                "output_pivot": o4,
-                "coupler_point": point,
-                "input": a,
-                "coupler": b,
-                "output": c,
-            }
-            designs = one_shape(**{name: field.shape for name, field in named.items()})
-        pivots, lengths = block((o2, o4, point), designs, np.complex128), block((a, b, c), designs, np.float64)
-        if not kernels.sound_dimensions(pivots.reshape(3, -1), lengths.reshape(3, -1)):
-            _refuse(o2, o4, point, a, b, c)
-        # Read-only views of the two blocks, which are what the kernels take.
-        self.__dict__.update(
-            input_pivot=pivots[0, ...],
-            output_pivot=pivots[1, ...],
-            coupler_point=pivots[2, ...],
-            input=lengths[0, ...],
-            coupler=lengths[1, ...],
-            output=lengths[2, ...],
-            _blocks=(pivots, lengths),
-        )
+        points = {"input_pivot": input_pivot, "output_pivot": output_pivot, "coupler_point": coupler_point}
+        if not kernels.sound_dimensions(*self._keep(points, {"input": input, "coupler": coupler, "output": output})):
+            self._refuse()
 
-    @property
-    def blocks(self) -> tuple[Complex, Real]:
-        """The fields as the kernels take them: O2, O4, P; a, b, c; shape (3,) + S each."""
-        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
-        return blocks
-
-    def __reduce__(self) -> tuple[type[Fourbar], tuple[Complex | Real, ...]]:
-        given = self.input_pivot, self.output_pivot, self.input, self.coupler, self.output, self.coupler_point
-        return Fourbar, given
+    def _refuse(self) -> None:
+        """Raise the error that names the first unsound field."""
+        for name in ("input", "coupler", "output"):
+            length = getattr(self, name)
+            require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
+        for name in ("input_pivot", "output_pivot", "coupler_point"):
+            require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
+        with np.errstate(over="ignore"):
+            ground = self.ground
+        require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
 
     @classmethod
     def from_lengths(
@@ -179,17 +156,6 @@ class Fourbar:
     def ground_angle(self) -> Real:
         """Angle of the line O2 → O4, radians, shape designs."""
         return np.asarray(np.angle(self.output_pivot - self.input_pivot))
-
-
-def _refuse(o2: Complex, o4: Complex, point: Complex, a: Real, b: Real, c: Real) -> None:
-    """Raise the error that names the first unsound field."""
-    for name, length in (("input", a), ("coupler", b), ("output", c)):
-        require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
-    for name, pivot in (("input_pivot", o2), ("output_pivot", o4), ("coupler_point", point)):
-        require(name, "finite", pivot, np.isfinite(pivot))
-    with np.errstate(over="ignore"):
-        ground = np.abs(o4 - o2)
-    require("ground", "positive and finite", ground, np.isfinite(ground) & (ground > 0.0))
 
 
 class Positions(NamedTuple):
@@ -264,19 +230,12 @@ def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OP
     ShapeError
         For angles or assemblies that do not broadcast with the designs.
     """
-    at = sweep(linkage.blocks, input_angle, assembly)
-    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
-    kernels.whole_positions(*at[:4], points, angles, valid)
-    points, angles = points.reshape(3, *at.shape), angles.reshape(2, *at.shape)
-    return Positions(*fields(valid.reshape(at.shape), points, angles))
+    return Positions(*swept_positions(kernels, linkage.blocks, input_angle, assembly))
 
 
 def coupler_points(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
     """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
-    at = sweep(linkage.blocks, input_angle, assembly)
-    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
-    kernels.coupler_points(*at[:4], points, valid)
-    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+    return swept_coupler_points(kernels, linkage.blocks, input_angle, assembly)
 
 
 def coupler_motion(
@@ -291,8 +250,7 @@ def coupler_motion(
 
     Parameters, shapes and errors are those of :func:`motion`.
     """
-    narrow = sweep(linkage.blocks, input_angle, assembly)
-    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, 0.0)
+    _, at, rates = rated_sweep(linkage.blocks, input_angle, assembly, speed, acceleration, 0.0)
     points, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat), np.bool_)
     kernels.coupler_motion(*at[:4], rates, points, valid)
     points, valid = points.reshape(3, *at.shape), valid.reshape(2, *at.shape)
@@ -328,39 +286,8 @@ def motion(
     DimensionError, ShapeError
         As for :func:`positions`; ShapeError also for rates that do not broadcast with the positions.
     """
-    narrow = sweep(linkage.blocks, input_angle, assembly)
-    rates, at = _rates(linkage, narrow, input_angle, assembly, speed, acceleration, jerk)
-    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
-    valid = np.empty((2, *at.flat), np.bool_)
-    kernels.whole_motion(*at[:4], rates, points, angles, valid)
-    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
-    valid = valid.reshape(2, *at.shape)
-    # Rates of more axes than the positions have do not multiply the positions.
-    if at.shape == narrow.shape:
-        position = Positions(*fields(valid[0, ...], points[0], angles[0]))
-    else:
-        position = positions(linkage, input_angle, assembly)
-    sound = valid[1, ...]
-    return Motion(position, *(Derivatives(*fields(sound, points[k], angles[k])) for k in (1, 2, 3)))
-
-
-def _rates(
-    linkage: Fourbar,
-    narrow: Sweep,
-    input_angle: ArrayLike,
-    assembly: ArrayLike,
-    speed: ArrayLike,
-    acceleration: ArrayLike,
-    jerk: ArrayLike,
-) -> tuple[Real, Sweep]:
-    """Input rates as rows, and the sweep of the shape that they and the positions make."""
-    given = np.asarray(speed, np.float64), np.asarray(acceleration, np.float64), np.asarray(jerk, np.float64)
-    if given[0].ndim == given[1].ndim == given[2].ndim == 0:
-        return rate_rows(*given, narrow.shape), narrow
-    named = dict(zip(("speed", "acceleration", "jerk"), (rate.shape for rate in given), strict=True))
-    shape = one_shape(positions=narrow.shape, **named)
-    at = narrow if shape == narrow.shape else sweep(linkage.blocks, input_angle, assembly, shape)
-    return rate_rows(*given, shape), at
+    position, *rates = swept_motion(kernels, linkage.blocks, input_angle, assembly, speed, acceleration, jerk)
+    return Motion(Positions(*position), *(Derivatives(*rate) for rate in rates))
 
 
 def with_angle_axis(linkage: Fourbar, input_angle: ArrayLike, assembly: tuple[int, ...] = ()) -> tuple[Real, AngleAxis]:

@@ -27,20 +27,19 @@ from kinematics.linkage.batch import (
     OPEN,
     Complex,
     CouplerPoints,
+    DesignBatch,
     Mask,
     Real,
-    block,
-    fields,
-    one_shape,
-    rate_rows,
     require,
-    sweep,
+    swept_coupler_points,
+    swept_motion,
+    swept_positions,
 )
 from kinematics.linkage.slider_crank import kernels
 
 
 @dataclass(frozen=True, eq=False)
-class SliderCrank:
+class SliderCrank(DesignBatch):
     """A batch of slider-cranks; all fields are kept with one shape, the *designs*. One design has shape ``()``.
 
     A value: the arrays are copies of what was given and cannot be written to. Two batches compare by identity.
@@ -82,39 +81,13 @@ class SliderCrank:
         coupler: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        o2, on_slide, point = (np.asarray(z, np.complex128) for z in (pivot, slide_point, coupler_point))
-        angle, a, b = (np.asarray(x, np.float64) for x in (slide_angle, crank, coupler))
-        named = {"pivot": o2, "slide_point": on_slide, "coupler_point": point, "slide_angle": angle}
-        lengths_named = {"crank": a, "coupler": b}
-        designs = one_shape(**{name: field.shape for name, field in (named | lengths_named).items()})
-        pivots, lengths = (
-            block((o2, on_slide, point), designs, np.complex128),
-            block((a, b, angle), designs, np.float64),
-        )
-        if not kernels.sound_dimensions(pivots.reshape(3, -1), lengths.reshape(3, -1)):
-            for name, length in lengths_named.items():
+        points = {"pivot": pivot, "slide_point": slide_point, "coupler_point": coupler_point}
+        lengths = {"crank": crank, "coupler": coupler, "slide_angle": slide_angle}
+        if not kernels.sound_dimensions(*self._keep(points, lengths)):
+            for name, length in (("crank", self.crank), ("coupler", self.coupler)):
                 require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
-            for name, field in named.items():
-                require(name, "finite", field, np.isfinite(field))
-        self.__dict__.update(
-            pivot=pivots[0, ...],
-            slide_point=pivots[1, ...],
-            coupler_point=pivots[2, ...],
-            crank=lengths[0, ...],
-            coupler=lengths[1, ...],
-            slide_angle=lengths[2, ...],
-            _blocks=(pivots, lengths),
-        )
-
-    @property
-    def blocks(self) -> tuple[Complex, Real]:
-        """The fields as the kernels take them: O2, a point of the slide, P; a, b, the slide's angle; shape (3,) + S."""
-        blocks: tuple[Complex, Real] = self.__dict__["_blocks"]
-        return blocks
-
-    def __reduce__(self) -> tuple[type[SliderCrank], tuple[Complex | Real, ...]]:
-        given = self.pivot, self.slide_point, self.slide_angle, self.crank, self.coupler, self.coupler_point
-        return SliderCrank, given
+            for name in (*points, "slide_angle"):
+                require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
 
     @classmethod
     def from_lengths(
@@ -196,19 +169,12 @@ def positions(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike 
     >>> round(float(at.travel), 4)
     4.9899
     """
-    at = sweep(linkage.blocks, crank_angle, assembly)
-    points, angles, valid = np.empty((3, *at.flat), np.complex128), np.empty((2, *at.flat)), np.empty(at.flat, np.bool_)
-    kernels.whole_positions(*at[:4], points, angles, valid)
-    points, angles = points.reshape(3, *at.shape), angles.reshape(2, *at.shape)
-    return SliderPositions(*fields(valid.reshape(at.shape), points, angles))
+    return SliderPositions(*swept_positions(kernels, linkage.blocks, crank_angle, assembly))
 
 
 def coupler_points(linkage: SliderCrank, crank_angle: ArrayLike, assembly: ArrayLike = OPEN) -> CouplerPoints:
     """Coupler points alone, for large sweeps; parameters, shapes and errors as for :func:`positions`."""
-    at = sweep(linkage.blocks, crank_angle, assembly)
-    points, valid = np.empty(at.flat, np.complex128), np.empty(at.flat, np.bool_)
-    kernels.coupler_points(*at[:4], points, valid)
-    return CouplerPoints(valid.reshape(at.shape), points.reshape(at.shape))
+    return swept_coupler_points(kernels, linkage.blocks, crank_angle, assembly)
 
 
 def motion(
@@ -240,19 +206,8 @@ def motion(
     DimensionError, ShapeError
         As for :func:`positions`; ShapeError also for rates that do not broadcast with them.
     """
-    at = sweep(linkage.blocks, crank_angle, assembly)
-    given = np.asarray(speed, np.float64), np.asarray(acceleration, np.float64), np.asarray(jerk, np.float64)
-    if any(rate.ndim for rate in given):
-        named = dict(zip(("speed", "acceleration", "jerk"), (rate.shape for rate in given), strict=True))
-        shape = one_shape(positions=at.shape, **named)
-        at = sweep(linkage.blocks, crank_angle, assembly, shape)
-    points, angles = np.empty((4, 3, *at.flat), np.complex128), np.empty((4, 2, *at.flat))
-    valid = np.empty((2, *at.flat), np.bool_)
-    kernels.whole_motion(*at[:4], rate_rows(*given, at.shape), points, angles, valid)
-    points, angles = points.reshape(4, 3, *at.shape), angles.reshape(4, 2, *at.shape)
-    valid = valid.reshape(2, *at.shape)
-    position, sound = SliderPositions(*fields(valid[0, ...], points[0], angles[0])), valid[1, ...]
-    return SliderMotion(position, *(SliderDerivatives(*fields(sound, points[k], angles[k])) for k in (1, 2, 3)))
+    position, *rates = swept_motion(kernels, linkage.blocks, crank_angle, assembly, speed, acceleration, jerk)
+    return SliderMotion(SliderPositions(*position), *(SliderDerivatives(*rate) for rate in rates))
 
 
 class CrankLimits(NamedTuple):
