@@ -10,7 +10,6 @@ from fastapi import APIRouter
 from service.api.guard import GuardedRoute
 from service.api.schemas import ProblemKind, ProblemKinds
 from service.render import forms
-from service.units import annotated
 from synthesis.registry import KINDS, example
 
 TAG = {"name": "problems", "description": "What can be asked."}
@@ -32,7 +31,7 @@ def _kinds() -> ProblemKinds:
                 kind=name,
                 title=kind.problem.model_config.get("title") or name,
                 description=inspect.getdoc(kind.problem) or "",
-                schema=annotated(kind.problem.model_json_schema(), kind.problem.__name__),
+                schema=kind.problem.model_json_schema(),
                 example=example(name),
                 files={one: list(found) for one in kind.mechanisms if (found := forms(name, one))},
             )

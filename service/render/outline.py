@@ -18,7 +18,7 @@ from pydantic import BaseModel
 
 from service.render.page.numbers import length
 from service.render.page.svg import clean
-from service.units import Dimension, dimension
+from synthesis.model.dimension import Dimension, dimensions
 
 MOST_ROWS = 40
 """Rows of a list at most; of longer ones so many are shown, evenly spread, with both ends."""
@@ -122,7 +122,7 @@ def _collect(
         value = getattr(model, name)
         if name in leave_out or name in columns or value is None:
             continue
-        measured = dimension(type(model).__name__, name)
+        measured = dimensions(type(model)).get(name)
         unit = "" if measured is None else symbols[measured]
         title = words(f"{prefix}: {name}" if prefix else name)
         meaning = _meaning(about.description or "")
@@ -167,7 +167,7 @@ def _columns(model: BaseModel) -> list[str]:
 
 
 def _head(model: BaseModel, name: str, symbols: Mapping[Dimension, str], prefix: str = "") -> tuple[str, str]:
-    measured = dimension(type(model).__name__, name)
+    measured = dimensions(type(model)).get(name)
     return words(f"{prefix} {name}".strip()), "" if measured is None else symbols[measured]
 
 

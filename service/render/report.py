@@ -14,17 +14,19 @@ from typing import Any
 
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
+from pydantic import BaseModel
 
 from service.render import NoSuchExport, NotBuilt, exported
 from service.render.outline import Outline, outline, words, written
 from service.render.page.numbers import length
 from service.render.page.svg import clean
-from service.units import Dimension, dimension, symbols
+from service.units import symbols
 from synthesis.model.answer import (
     Check,
     Result,
     Search,
 )
+from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
 
 UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
@@ -154,8 +156,7 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
 
 
 def _checked(check: Check, units: dict[Dimension, str]) -> Checked:
-    measured = dimension("Check", check.name)
-    unit = f" {units[measured]}" if measured is not None else ""
+    unit = f" {units[check.dimension]}" if check.dimension is not None else ""
 
     def amount(value: float | None) -> str:
         return "" if value is None else f"{length(value)}{unit}"
@@ -167,15 +168,17 @@ def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int
     """All designs with the first of their quantities."""
     found = []
     for n, design in enumerate(result.designs):
+        metrics: BaseModel = design.metrics
+        measures = dimensions(type(metrics))
         plain = [
             (name, value)
-            for name, value in design.metrics
+            for name, value in metrics
             if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool))
         ]
         plain.sort(key=lambda one: one[0] not in _TELLING)
         figures = []
         for name, value in plain[:4]:
-            measured = dimension(type(design.metrics).__name__, name)
+            measured = measures.get(name)
             figures.append((words(name), written(value) + ("" if measured is None else f" {units[measured]}")))
         found.append((n, words(design.mechanism.type), design.verification.passed, figures))
     return found

@@ -6,13 +6,14 @@ import cmath
 import math
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import Literal
+from typing import Annotated, Literal
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.model.dimension import LENGTH
 from synthesis.model.statement import (
+    Degrees,
     NonNegative,
-    Number,
     Point,
     Statement,
 )
@@ -51,8 +52,8 @@ class StatedPivots(Statement):
 class StatedCouplerPoint(Statement):
     """P: distance from A, and angle from the coupler's line (A towards its other pin) to the line A → P, degrees."""
 
-    distance: NonNegative
-    angle: Number = 0.0
+    distance: Annotated[NonNegative, LENGTH]
+    angle: Degrees = 0.0
 
     @property
     def vector(self) -> complex:
@@ -64,7 +65,7 @@ class StatedLine(Statement):
     """A slide on the ground: a point of its line and the line's angle, degrees."""
 
     point: Point
-    angle: Number
+    angle: Degrees
 
 
 def agree(path: str, stated: float | None, found: float, what: str = "the fixed pivots") -> None:

@@ -14,9 +14,12 @@ from kinematics.cam import follower as core
 from kinematics.cam.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.statement import (
+    Coordinate,
+    Degrees,
     NonNegative,
-    Number,
+    PositiveLength,
     PositiveNumber,
     Statement,
 )
@@ -24,18 +27,18 @@ from synthesis.model.statement import (
 MOST_POINTS = 20_000
 """Points of a given profile at most."""
 
-Coordinates = Annotated[list[Number], Field(min_length=16, max_length=MOST_POINTS)]
+Coordinates = Annotated[list[Coordinate], Field(min_length=16, max_length=MOST_POINTS)]
 
 
 class GivenFollower(Statement):
     """A follower: what belongs to its type must be given."""
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
-    roller_radius: NonNegative | None = Field(default=None, description="0 for a knife edge.")
-    offset: Number | None = Field(default=None, description="Of a translating roller's slide; 0 if left out.")
-    arm: PositiveNumber | None = None
-    pivot_distance: PositiveNumber | None = None
-    face_offset: Number | None = Field(default=None, description="0 if left out.")
+    roller_radius: Annotated[NonNegative, LENGTH] | None = Field(default=None, description="0 for a knife edge.")
+    offset: Coordinate | None = Field(default=None, description="Of a translating roller's slide; 0 if left out.")
+    arm: PositiveLength | None = None
+    pivot_distance: PositiveLength | None = None
+    face_offset: Coordinate | None = Field(default=None, description="0 if left out.")
     sense: Literal[1, -1] | None = Field(default=None, description="1, the default: the arm swings out with the cam.")
 
     def core(self, prime_radius: float | None, base_radius: float | None) -> core.Follower:
@@ -75,7 +78,7 @@ class GivenCurve(Statement):
 
     x: Coordinates
     y: Coordinates
-    angle: list[Number] | None = Field(default=None, max_length=MOST_POINTS)
+    angle: list[Degrees] | None = Field(default=None, max_length=MOST_POINTS)
 
     def points(self, path: str) -> NDArray[np.complex128]:
         """As complex numbers; faults are told under its path."""
@@ -97,8 +100,8 @@ class GivenCam(Statement):
 
     type: Literal["cam"]
     follower: GivenFollower
-    prime_radius: PositiveNumber | None = Field(default=None, description="Of a roller follower's cam.")
-    base_radius: PositiveNumber | None = Field(default=None, description="Of a flat-faced follower's cam.")
+    prime_radius: PositiveLength | None = Field(default=None, description="Of a roller follower's cam.")
+    base_radius: PositiveLength | None = Field(default=None, description="Of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"] = "ccw"
     profile: GivenCurve
     outer_wall: GivenCurve | None = Field(default=None, description="Of a groove; the profile is its inner wall.")
@@ -124,7 +127,7 @@ class GivenBarrelFollower(Statement):
     """A roller that moves along a barrel's axis."""
 
     type: Literal["barrel_roller"]
-    roller_radius: PositiveNumber
+    roller_radius: PositiveLength
 
 
 class GivenBarrelCam(Statement):
@@ -132,7 +135,7 @@ class GivenBarrelCam(Statement):
 
     type: Literal["barrel_cam"]
     follower: GivenBarrelFollower
-    cylinder_radius: PositiveNumber = Field(description="Of the cylinder on which the roller's middle runs.")
+    cylinder_radius: PositiveLength = Field(description="Of the cylinder on which the roller's middle runs.")
     rotation: Literal["ccw", "cw"] = "ccw"
     lower_wall: GivenCurve
     upper_wall: GivenCurve
@@ -144,8 +147,8 @@ class EccentricContour(Statement):
     """A circle that turns about a point off its centre."""
 
     shape: Literal["eccentric_circle"]
-    radius: PositiveNumber
-    eccentricity: NonNegative
+    radius: PositiveLength
+    eccentricity: Annotated[NonNegative, LENGTH]
 
     def core(self) -> contours.SpecifiedContour:
         """The contour of the analysis core."""
@@ -153,9 +156,9 @@ class EccentricContour(Statement):
 
 
 class _Nosed(Statement):
-    base_radius: PositiveNumber
-    nose_radius: PositiveNumber
-    nose_distance: PositiveNumber = Field(description="From the cam's centre to the nose's.")
+    base_radius: PositiveLength
+    nose_radius: PositiveLength
+    nose_distance: PositiveLength = Field(description="From the cam's centre to the nose's.")
 
 
 class TangentContour(_Nosed):
@@ -172,8 +175,8 @@ class ArcContour(_Nosed):
     """Base circle and nose with flanks that are arcs: of a radius, or ending at an angle from the nose."""
 
     shape: Literal["circular_arc"]
-    flank_radius: Number | None = Field(default=None, description="Negative for hollow flanks.")
-    half_action_angle: PositiveNumber | None = Field(
+    flank_radius: Coordinate | None = Field(default=None, description="Negative for hollow flanks.")
+    half_action_angle: Annotated[PositiveNumber, ANGLE] | None = Field(
         default=None, description="From the nose to the flank's end, degrees."
     )
 
@@ -193,8 +196,10 @@ class GivenContourCam(Statement):
 
     type: Literal["contour_cam"]
     contour: Annotated[EccentricContour | TangentContour | ArcContour, Discriminator("shape")]
-    roller_radius: NonNegative | None = Field(default=None, description="Of a roller follower; null: a flat face.")
-    offset: Number = 0.0
+    roller_radius: Annotated[NonNegative, LENGTH] | None = Field(
+        default=None, description="Of a roller follower; null: a flat face."
+    )
+    offset: Coordinate = 0.0
     rotation: Literal["ccw", "cw"] = "ccw"
 
     def core(self) -> tuple[contours.SpecifiedContour, core.TranslatingRoller | core.TranslatingFlat]:

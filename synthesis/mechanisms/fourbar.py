@@ -19,16 +19,16 @@ from synthesis.mechanisms.base import (
     reaching,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.model.statement import PositiveNumber, Statement
+from synthesis.model.statement import PositiveLength, Statement
 
 
 class FourbarLengths(Statement):
     """Link lengths; ``ground`` follows from the fixed pivots and may be left out."""
 
-    ground: PositiveNumber | None = None
-    input: PositiveNumber
-    coupler: PositiveNumber
-    output: PositiveNumber
+    ground: PositiveLength | None = None
+    input: PositiveLength
+    coupler: PositiveLength
+    output: PositiveLength
 
 
 class GivenFourbar(GivenByDimensions):

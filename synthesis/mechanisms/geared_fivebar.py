@@ -18,8 +18,9 @@ from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.model.statement import (
+    Degrees,
     Number,
-    PositiveNumber,
+    PositiveLength,
     Statement,
 )
 
@@ -35,11 +36,11 @@ BEST = 16
 class FivebarLengths(Statement):
     """Link lengths; ``ground`` may be left out."""
 
-    ground: PositiveNumber | None = None
-    input: PositiveNumber
-    coupler_1: PositiveNumber
-    coupler_2: PositiveNumber
-    output: PositiveNumber
+    ground: PositiveLength | None = None
+    input: PositiveLength
+    coupler_1: PositiveLength
+    coupler_2: PositiveLength
+    output: PositiveLength
 
 
 class GivenGearedFivebar(GivenByDimensions):
@@ -49,7 +50,7 @@ class GivenGearedFivebar(GivenByDimensions):
     fixed_pivots: StatedPivots
     links: FivebarLengths
     gear_ratio: Number = Field(description="Output rotation over input rotation.")
-    phase: Number
+    phase: Degrees
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     assembly: Assembly = "open"
 

@@ -18,9 +18,10 @@ from kinematics.linkage.planar.mechanism import (
 )
 from synthesis.mechanisms.base import AGREES, BODY, ROUNDING, MechanismError, StatedCouplerPoint, StatedLine
 from synthesis.model.statement import (
+    Degrees,
     Number,
     Point,
-    PositiveNumber,
+    PositiveLength,
     Statement,
 )
 
@@ -113,7 +114,7 @@ class GivenSkeleton(Statement):
         "pantograph",
     ] = "skeleton"
     skeleton: StatedSkeleton
-    links: dict[str, PositiveNumber] = Field(
+    links: dict[str, PositiveLength] = Field(
         default={},
         max_length=20,
         description="Lengths by name: each is the distance between two joints of the skeleton's link of that name, or, "
@@ -125,10 +126,10 @@ class GivenSkeleton(Statement):
     coupler_point: StatedCouplerPoint | None = Field(
         default=None, description="P of a coupler with the pins A and B; it must be the skeleton's own."
     )
-    reference_input_angle: Number | None = Field(
+    reference_input_angle: Degrees | None = Field(
         default=None, description="Angle of the input link in the skeleton, absolute, degrees; it must be its own."
     )
-    reference_body_angle: Number | None = Field(default=None, description=BODY)
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
 
     def mechanism(self) -> Mechanism:
         """The mechanism in its reference configuration.
@@ -177,10 +178,10 @@ class GivenSkeleton(Statement):
 class GivenByDimensions(Statement, ABC):
     """A type whose dimensions say it all. A skeleton beside them must have the same links, and is what is driven."""
 
-    reference_input_angle: Number | None = Field(
+    reference_input_angle: Degrees | None = Field(
         default=None, description="Input angle of the reference configuration, absolute, degrees."
     )
-    reference_body_angle: Number | None = Field(default=None, description=BODY)
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
     skeleton: StatedSkeleton | None = None
 
     @abstractmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -24,11 +24,13 @@ from synthesis.mechanisms.base import (
     reaching,
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
+from synthesis.model.dimension import LENGTH
 from synthesis.model.statement import (
+    Coordinate,
+    Degrees,
     NonNegative,
-    Number,
     Point,
-    PositiveNumber,
+    PositiveLength,
     Statement,
 )
 
@@ -36,8 +38,8 @@ from synthesis.model.statement import (
 class SliderCrankLengths(Statement):
     """Link lengths."""
 
-    crank: PositiveNumber
-    coupler: PositiveNumber
+    crank: PositiveLength
+    coupler: PositiveLength
 
 
 class GivenSliderCrank(GivenByDimensions):
@@ -47,7 +49,7 @@ class GivenSliderCrank(GivenByDimensions):
     fixed_pivot: Point
     links: SliderCrankLengths
     slide: StatedLine
-    offset: Number | None = None
+    offset: Coordinate | None = None
     assembly: Assembly = "open"
     coupler_point: StatedCouplerPoint = StatedCouplerPoint(distance=0.0)
     driven_by: Literal["crank", "slider"] = "crank"
@@ -84,16 +86,16 @@ class GivenSliderCrank(GivenByDimensions):
 class InvertedLengths(Statement):
     """Link lengths; ``ground`` may be left out. ``output`` is the distance from O4 to B on the sliding line, or 0."""
 
-    ground: PositiveNumber | None = None
-    input: PositiveNumber
-    output: NonNegative
+    ground: PositiveLength | None = None
+    input: PositiveLength
+    output: Annotated[NonNegative, LENGTH]
 
 
 class OutputSlide(Statement):
     """The line in the output link on which the crank pin slides: through B, at an angle from the line O4 → B."""
 
     link: Literal["output"] = "output"
-    angle: Number
+    angle: Degrees
 
 
 class GivenInvertedSliderCrank(GivenByDimensions):
@@ -151,10 +153,10 @@ class GivenInvertedSliderCrank(GivenByDimensions):
 class QuickReturnLengths(Statement):
     """Link lengths; ``ground`` may be left out. ``rocker`` is the distance from O4 to C."""
 
-    ground: PositiveNumber | None = None
-    crank: PositiveNumber
-    rocker: PositiveNumber
-    coupler: PositiveNumber
+    ground: PositiveLength | None = None
+    crank: PositiveLength
+    rocker: PositiveLength
+    coupler: PositiveLength
 
 
 class GivenQuickReturn(GivenByDimensions):

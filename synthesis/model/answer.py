@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Generic, TypeVar
+from typing import Annotated, Generic, TypeVar
 
 from pydantic import ConfigDict, Field
 
-from synthesis.model.dimension import Dimension, Measured
+from synthesis.model.dimension import LENGTH, Dimension, Measured
 
-Point = tuple[float, float]
+Point = Annotated[tuple[float, float], LENGTH]
 
 
 class Answer(Measured):

@@ -65,8 +65,23 @@ TORQUE = Dimension.TORQUE
 PERCENT = Dimension.PERCENT
 
 Length = Annotated[float, LENGTH]
+Area = Annotated[float, AREA]
 Angle = Annotated[float, ANGLE]
 """Degrees."""
+Displacement = Annotated[float, DISPLACEMENT]
+Velocity = Annotated[float, VELOCITY]
+Acceleration = Annotated[float, ACCELERATION]
+Jerk = Annotated[float, JERK]
+AccelerationSquared = Annotated[float, ACCELERATION_SQUARED]
+Output = Annotated[float, OUTPUT]
+OutputPerRadian = Annotated[float, OUTPUT_PER_RADIAN]
+OutputPerRadianSquared = Annotated[float, OUTPUT_PER_RADIAN_SQUARED]
+LengthPerRadian = Annotated[float, LENGTH_PER_RADIAN]
+RotationalSpeed = Annotated[float, ROTATIONAL_SPEED]
+RadianFrequency = Annotated[float, RADIAN_FREQUENCY]
+Force = Annotated[float, FORCE]
+Torque = Annotated[float, TORQUE]
+Percent = Annotated[float, PERCENT]
 
 
 class Measured(BaseModel):

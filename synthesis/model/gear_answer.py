@@ -11,6 +11,7 @@ from pydantic import Field
 from kinematics.gear.teeth import Mesh, saving_shift
 from kinematics.gear.train import OrdinaryTrain
 from synthesis.model.answer import Answer
+from synthesis.model.dimension import Length
 
 
 class Ratio(Answer):
@@ -38,7 +39,7 @@ class SuggestedShift(Answer):
 
     driver: float
     driven: float
-    centre_distance: float
+    centre_distance: Length
     contact_ratio: float
 
 
@@ -48,7 +49,7 @@ class MeshGeometry(Answer):
     stage: int
     driver: int = Field(description="Teeth; of an idler where one lies between.")
     driven: int
-    centre_distance: float
+    centre_distance: Length
     contact_ratio: float
     interferes: bool = Field(description="Whether a tip digs into the flank of this very mate.")
     undercut: bool = Field(description="Whether a rack that cuts the smaller gear takes away from its flanks.")

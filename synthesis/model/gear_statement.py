@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.ratio_target import LONGEST, parse_target
 from synthesis.model.statement import Contradiction, Count, Number, Statement
 
@@ -33,15 +34,17 @@ ExactRatio = Annotated[
 Pitch = Annotated[float, Field(strict=True, ge=1e-6, le=1e6)]
 """A module or diametral pitch; beyond, lengths of trains would leave the numbers there are. Finer is a typing error."""
 
+Module = Annotated[Pitch, LENGTH]
+
 ToothNumber = Annotated[Count, Field(ge=FEWEST_TEETH, le=MOST_TEETH)]
 
 RangedTeeth = Annotated[Count, Field(ge=4, le=1000)]
 """A tooth number, or the tooth sum of a pair, of planetary trains and gearboxes."""
 
-PressureAngle = Annotated[float, Field(strict=True, ge=10.0, le=30.0)]
+PressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=10.0, le=30.0)]
 """Degrees."""
 
-CommonPressureAngle = Annotated[float, Field(strict=True, ge=14.0, le=30.0)]
+CommonPressureAngle = Annotated[float, ANGLE, Field(strict=True, ge=14.0, le=30.0)]
 """Degrees; of planetary trains and gearboxes, whose bounds on tooth numbers hold from 14° on."""
 
 

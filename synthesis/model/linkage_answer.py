@@ -16,6 +16,7 @@ from synthesis.model.answer import (
     Verification,
     blank,
 )
+from synthesis.model.dimension import Angle, Length
 
 
 class Link(Answer):
@@ -31,7 +32,7 @@ class Slide(Answer):
     joint: str
     link: str
     point: Point
-    angle: float
+    angle: Angle
 
 
 class GearPair(Answer):
@@ -61,17 +62,17 @@ class FixedPivots(Answer):
 class FourbarLinks(Answer):
     """Link lengths; Norton's d, a, b, c."""
 
-    ground: float
-    input: float
-    coupler: float
-    output: float
+    ground: Length
+    input: Length
+    coupler: Length
+    output: Length
 
 
 class CouplerPoint(Answer):
     """P on the coupler: distance from A, and angle from the line A → B to the line A → P, degrees."""
 
-    distance: float
-    angle: float
+    distance: Length
+    angle: Angle
 
 
 class FourbarMechanism(Answer):
@@ -82,8 +83,8 @@ class FourbarMechanism(Answer):
     links: FourbarLinks
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
-    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: float | None = Field(
+    reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: Angle | None = Field(
         default=None,
         exclude_if=blank,
         description="Angle of the body's line at the first target, absolute, degrees; "
@@ -96,14 +97,14 @@ class Line(Answer):
     """A line in the plane: a point of it and its angle, degrees."""
 
     point: Point
-    angle: float
+    angle: Angle
 
 
 class SliderCrankLinks(Answer):
     """Link lengths of a slider-crank."""
 
-    crank: float
-    coupler: float
+    crank: Length
+    coupler: Length
 
 
 class SliderCrankMechanism(Answer):
@@ -116,14 +117,14 @@ class SliderCrankMechanism(Answer):
     fixed_pivot: Point
     links: SliderCrankLinks
     slide: Line = Field(description="The line of pin B on the ground.")
-    offset: float = Field(
+    offset: Length = Field(
         description="Distance of the fixed pivot from the slide's line, positive where the pivot is to the line's left."
     )
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
     driven_by: Literal["crank", "slider"]
-    reference_input_angle: float = Field(description="Crank angle at the first target, absolute, degrees.")
-    reference_body_angle: float | None = Field(
+    reference_input_angle: Angle = Field(description="Crank angle at the first target, absolute, degrees.")
+    reference_body_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
     )
     skeleton: Skeleton
@@ -132,16 +133,16 @@ class SliderCrankMechanism(Answer):
 class InvertedLinks(Answer):
     """Link lengths of an inverted slider-crank; ``output`` is from O4 to B, the foot of O4 on the line of pin A."""
 
-    ground: float
-    input: float
-    output: float
+    ground: Length
+    input: Length
+    output: Length
 
 
 class BlockSlide(Answer):
     """The line on which pin A moves in the block: through B, parallel to the body's line that the block guides."""
 
     link: Literal["output"] = "output"
-    angle: float = Field(description="Angle of the line from the line O4 → B, degrees.")
+    angle: Angle = Field(description="Angle of the line from the line O4 → B, degrees.")
 
 
 class InvertedSliderCrankMechanism(Answer):
@@ -157,8 +158,8 @@ class InvertedSliderCrankMechanism(Answer):
     slide: BlockSlide
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
-    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: float | None = Field(
+    reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
     )
     skeleton: Skeleton
@@ -167,11 +168,11 @@ class InvertedSliderCrankMechanism(Answer):
 class FivebarLinks(Answer):
     """Link lengths of a geared fivebar; ``output`` is the geared crank at the other fixed pivot."""
 
-    ground: float
-    input: float
-    coupler_1: float
-    coupler_2: float
-    output: float
+    ground: Length
+    input: Length
+    coupler_1: Length
+    coupler_2: Length
+    output: Length
 
 
 class GearedFivebarMechanism(Answer):
@@ -184,11 +185,11 @@ class GearedFivebarMechanism(Answer):
     fixed_pivots: FixedPivots = Field(description="O2 (input) and O5 (output).")
     links: FivebarLinks
     gear_ratio: float = Field(description="Rotation of the output over that of the input.")
-    phase: float = Field(description="Output angle from the ground line when the input lies along it, degrees.")
+    phase: Angle = Field(description="Output angle from the ground line when the input lies along it, degrees.")
     coupler_point: CouplerPoint = Field(description="P on coupler 1: its angle is from the line A → C.")
     assembly: Literal["open", "crossed"]
-    reference_input_angle: float = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: float | None = Field(
+    reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
+    reference_body_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
     )
     skeleton: Skeleton
@@ -203,12 +204,12 @@ class SixbarMechanism(Answer):
 
     type: Literal["watt_2", "stephenson_3"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4, O6.")
-    links: dict[str, float] = Field(
+    links: dict[str, Length] = Field(
         description="ground, input, coupler and output of the fourbar; crank and driver_coupler of the driver; "
         "driver_ground, its fixed pivot's distance from the driven link's (from O2 where the coupler is driven); "
         "driver_arm, C's distance from that pivot (from A where the coupler is driven)."
     )
-    reference_body_angle: float | None = Field(
+    reference_body_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
     )
     skeleton: Skeleton
@@ -225,15 +226,15 @@ class Target(Answer):
     """One demanded position as the driven mechanism meets it."""
 
     index: int
-    input_angle: float = Field(
+    input_angle: Angle = Field(
         description="Absolute input angle, degrees, continuous along the motion from the first target."
     )
     residual: float = Field(
         description="Larger of the distance to the demanded point, as a share of the task's size, "
         "and the difference to the demanded angle in radians."
     )
-    point_residual: float = Field(description="Distance of P from the demanded point, length units.")
-    angle_residual: float | None = Field(
+    point_residual: Length = Field(description="Distance of P from the demanded point, length units.")
+    angle_residual: Angle | None = Field(
         default=None,
         exclude_if=blank,
         description="Difference of the body's angle to the demanded angle, degrees, where an angle is demanded.",
@@ -247,20 +248,20 @@ class LinkageMetrics(Answer):
         Literal["double_crank", "crank_rocker", "double_rocker", "rocker_crank", "rocker_rocker", "change_point"] | None
     ) = Field(description="Of a fourbar, with a driver dyad too; null for others.")
     barker: str | None = Field(description="Barker's code of a fourbar, e.g. GCRR.")
-    min_transmission_angle: float = Field(description="Over the used range of the input, degrees.")
-    transmission_angles: dict[str, float] = Field(
+    min_transmission_angle: Angle = Field(description="Over the used range of the input, degrees.")
+    transmission_angles: dict[str, Angle] = Field(
         description="The least at each dyad of links over that range, by the name of its first link, degrees."
     )
     same_branch: bool
     visits_in_order: bool
     full_rotation: bool
-    input_rotation: float = Field(description="Rotation of the input from the first target to the last, degrees.")
+    input_rotation: Angle = Field(description="Rotation of the input from the first target to the last, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
         "angle is demanded, its difference in radians, added in squares."
     )
-    size: float = Field(description="Diagonal of the box around all joints and the point P at all targets.")
+    size: Length = Field(description="Diagonal of the box around all joints and the point P at all targets.")
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 

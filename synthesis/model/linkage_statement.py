@@ -6,12 +6,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
     Flag,
     Interval,
-    PositiveNumber,
+    PositiveLength,
     Sizable,
     StatedProblem,
     Statement,
@@ -24,8 +25,8 @@ ON_EDGE = 1e-9
 class Region(Statement):
     """A rectangle with sides along the axes, in length units."""
 
-    x: Interval
-    y: Interval
+    x: Annotated[Interval, LENGTH]
+    y: Annotated[Interval, LENGTH]
 
     def contains(self, point: complex) -> bool:
         """Whether a point lies in the region, its edges (to rounding) included."""
@@ -38,8 +39,8 @@ class Region(Statement):
 class LengthLimits(Statement):
     """Shortest and longest link allowed, in length units."""
 
-    min: Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable] = 0.0
-    max: PositiveNumber | None = None
+    min: Annotated[float, LENGTH, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_nan=False), Sizable] = 0.0
+    max: PositiveLength | None = None
 
     @model_validator(mode="after")
     def _min_below_max(self) -> Self:
@@ -51,7 +52,7 @@ class LengthLimits(Statement):
 class Constraints(Statement):
     """What a usable linkage must satisfy; everything has a default that demands nothing beyond a sound motion."""
 
-    min_transmission_angle: Annotated[float, Field(strict=True, ge=0.0, lt=90.0)] | None = Field(
+    min_transmission_angle: Annotated[float, ANGLE, Field(strict=True, ge=0.0, lt=90.0)] | None = Field(
         default=None, description="Least transmission angle over the used range of the input, degrees."
     )
     grashof: Literal["any", "crank_rocker", "double_crank", "double_rocker", "non_grashof"] = "any"

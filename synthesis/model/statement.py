@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
-from synthesis.model.dimension import Measured
+from synthesis.model.dimension import ANGLE, LENGTH, Measured
 
 ABSURD = 1e9
 """Numbers beyond this are typing errors or attacks, never mechanisms; they are refused."""
@@ -34,7 +34,10 @@ NonNegative = Annotated[float, Field(strict=True, ge=0.0, le=ABSURD, allow_inf_n
 PositiveNumber = Annotated[float, Field(strict=True, gt=0.0, le=ABSURD, allow_inf_nan=False), Sizable]
 Flag = Annotated[bool, Field(strict=True)]
 Count = Annotated[int, Field(strict=True)]
-Point = tuple[Number, Number]
+PositiveLength = Annotated[PositiveNumber, LENGTH]
+Coordinate = Annotated[Number, LENGTH]
+Degrees = Annotated[Number, ANGLE]
+Point = Annotated[tuple[Number, Number], LENGTH]
 
 
 class Contradiction(NamedTuple):
@@ -70,7 +73,7 @@ def _somewhere(point: tuple[float | None, float | None]) -> tuple[float | None, 
     return point
 
 
-PartialPoint = Annotated[tuple[Number | None, Number | None], AfterValidator(_somewhere)]
+PartialPoint = Annotated[tuple[Number | None, Number | None], LENGTH, AfterValidator(_somewhere)]
 """A point of which one coordinate may be left open (null)."""
 
 Interval = Annotated[tuple[Number, Number], AfterValidator(_ordered)]
@@ -84,6 +87,16 @@ class StatedProblem(Statement):
     max_designs: Annotated[Count, Field(ge=1, le=200)] = 10
     include_failed: Flag = Field(default=False, description="Also return designs that break a check, after the others.")
     seed: Annotated[Count, Field(ge=0, le=2**53 - 1)] = 0
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output is a slider: what measures an output is a length then, otherwise an angle."""
+        return False
+
+    @property
+    def oscillating(self) -> bool:
+        """Whether a displacement is that of an arm, in degrees, with rates in radians; otherwise it is a length."""
+        return False
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows."""

@@ -20,6 +20,7 @@ from synthesis.kinds.cam.design import (
     CamDesign,
     CamForces,
     CamJoint,
+    CamJump,
     CamResult,
     CamSearch,
     CamSegment,
@@ -70,7 +71,7 @@ def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
                 angle=math.degrees(joint.angle),
                 segments=joint.segments,
                 continuous=[name for name, same in zip(names, joint.continuous, strict=True) if same],
-                jump=(jump[0] * unit, jump[1], jump[2], jump[3]),
+                jump=CamJump(s=jump[0] * unit, v=jump[1], a=jump[2], j=jump[3]),
             )
         )
     return found

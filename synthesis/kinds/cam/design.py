@@ -16,6 +16,18 @@ from synthesis.model.answer import (
     Search,
     Verification,
 )
+from synthesis.model.dimension import (
+    Acceleration,
+    AccelerationSquared,
+    Angle,
+    Displacement,
+    Force,
+    Jerk,
+    Length,
+    RadianFrequency,
+    Torque,
+    Velocity,
+)
 
 
 def _blank(value: Any) -> bool:
@@ -26,30 +38,30 @@ class CamFollower(Answer):
     """The follower and what belongs to its type."""
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
-    roller_radius: float | None = Field(default=None, exclude_if=_blank)
-    offset: float | None = Field(default=None, exclude_if=_blank, description="Of a translating roller's slide.")
-    arm: float | None = Field(default=None, exclude_if=_blank)
-    pivot_distance: float | None = Field(default=None, exclude_if=_blank)
-    face_offset: float | None = Field(default=None, exclude_if=_blank)
+    roller_radius: Length | None = Field(default=None, exclude_if=_blank)
+    offset: Length | None = Field(default=None, exclude_if=_blank, description="Of a translating roller's slide.")
+    arm: Length | None = Field(default=None, exclude_if=_blank)
+    pivot_distance: Length | None = Field(default=None, exclude_if=_blank)
+    face_offset: Length | None = Field(default=None, exclude_if=_blank)
     sense: Literal[1, -1] | None = Field(default=None, exclude_if=_blank)
 
 
 class CamCurve(Answer):
     """Points of a closed curve in the cam's own frame, and the cam angles at which the follower stands there."""
 
-    angle: list[float]
-    x: list[float]
-    y: list[float]
+    angle: list[Angle]
+    x: list[Length]
+    y: list[Length]
 
 
 class ProgramTable(Answer):
     """The motion program at equal cam angles."""
 
-    angle: list[float]
-    s: list[float]
-    v: list[float]
-    a: list[float]
-    j: list[float]
+    angle: list[Angle]
+    s: list[Displacement]
+    v: list[Velocity]
+    a: list[Acceleration]
+    j: list[Jerk]
 
 
 class CamMechanism(Answer):
@@ -57,8 +69,8 @@ class CamMechanism(Answer):
 
     type: Literal["cam"] = "cam"
     follower: CamFollower
-    prime_radius: float | None = Field(default=None, exclude_if=_blank, description="Of a roller follower's cam.")
-    base_radius: float | None = Field(default=None, exclude_if=_blank, description="Of a flat-faced follower's cam.")
+    prime_radius: Length | None = Field(default=None, exclude_if=_blank, description="Of a roller follower's cam.")
+    base_radius: Length | None = Field(default=None, exclude_if=_blank, description="Of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"]
     profile: CamCurve
     outer_wall: CamCurve | None = Field(
@@ -74,7 +86,7 @@ class BarrelFollower(Answer):
     """A roller that moves along the barrel's axis."""
 
     type: Literal["barrel_roller"] = "barrel_roller"
-    roller_radius: float
+    roller_radius: Length
 
 
 class BarrelCamMechanism(Answer):
@@ -86,7 +98,7 @@ class BarrelCamMechanism(Answer):
 
     type: Literal["barrel_cam"] = "barrel_cam"
     follower: BarrelFollower
-    cylinder_radius: float
+    cylinder_radius: Length
     rotation: Literal["ccw", "cw"] = Field(description="Seen against the y axis.")
     lower_wall: CamCurve
     upper_wall: CamCurve
@@ -99,21 +111,30 @@ class CamSegment(Answer):
 
     motion: str
     law: str
-    start: float = Field(description="Cam angle, degrees.")
-    angle: float
-    displacement: tuple[float, float] = Field(description="At its start and its end.")
-    peak_velocity: float
-    peak_acceleration: float
-    peak_jerk: float
+    start: Angle = Field(description="Cam angle, degrees.")
+    angle: Angle
+    displacement: tuple[Displacement, Displacement] = Field(description="At its start and its end.")
+    peak_velocity: Velocity
+    peak_acceleration: Acceleration
+    peak_jerk: Jerk
+
+
+class CamJump(Answer):
+    """What displacement and derivatives gain at a joint, from the end of one segment to the start of the next."""
+
+    s: Displacement
+    v: Velocity
+    a: Acceleration
+    j: Jerk
 
 
 class CamJoint(Answer):
     """Where two segments meet: what is continuous there, and by how much each derivative jumps."""
 
-    angle: float
+    angle: Angle
     segments: tuple[int, int]
     continuous: list[Literal["s", "v", "a", "j"]]
-    jump: tuple[float, float, float, float]
+    jump: CamJump
 
 
 class Optimality(Answer):
@@ -132,16 +153,16 @@ class Optimality(Answer):
 class CamForces(Answer):
     """The follower as one mass on a spring, at the stated speed."""
 
-    preload: float = Field(description="Spring force at zero displacement.")
-    least_preload: float = Field(description="That keeps the least contact force.")
-    min_contact_force: float
-    max_contact_force: float
-    min_torque: float
-    max_torque: float
-    wall_changes: list[float] | None = Field(
+    preload: Force = Field(description="Spring force at zero displacement.")
+    least_preload: Force = Field(description="That keeps the least contact force.")
+    min_contact_force: Force
+    max_contact_force: Force
+    min_torque: Torque
+    max_torque: Torque
+    wall_changes: list[Angle] | None = Field(
         default=None, exclude_if=_blank, description="Cam angles at which a roller in a groove changes walls."
     )
-    natural_frequency: float = Field(description="Of mass and spring, rad/s.")
+    natural_frequency: RadianFrequency = Field(description="Of mass and spring, rad/s.")
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     warning: str | None = Field(default=None, exclude_if=_blank)
 
@@ -149,19 +170,19 @@ class CamForces(Answer):
 class CamMetrics(Answer):
     """Measured on the finished cam."""
 
-    size: float = Field(description="Greatest radius of the profile.")
-    lift: float
-    max_pressure_angle_rise: float | None = Field(default=None, exclude_if=_blank, description="Degrees.")
-    max_pressure_angle_fall: float | None = Field(default=None, exclude_if=_blank, description="Degrees.")
-    min_convex_radius: float = Field(description="Least convex radius of curvature of the profile.")
-    min_concave_radius: float | None = Field(default=None, exclude_if=_blank, description="None where it is convex.")
+    size: Length = Field(description="Greatest radius of the profile.")
+    lift: Displacement
+    max_pressure_angle_rise: Angle | None = Field(default=None, exclude_if=_blank, description="Degrees.")
+    max_pressure_angle_fall: Angle | None = Field(default=None, exclude_if=_blank, description="Degrees.")
+    min_convex_radius: Length = Field(description="Least convex radius of curvature of the profile.")
+    min_concave_radius: Length | None = Field(default=None, exclude_if=_blank, description="None where it is convex.")
     curvature_ratio: float | None = Field(default=None, exclude_if=_blank, description="Pitch curve over roller.")
-    face_width: float | None = Field(default=None, exclude_if=_blank, description="Length that the contact sweeps.")
-    peak_velocity: float
-    peak_acceleration: float
-    peak_jerk: float
-    rms_acceleration: float
-    peak_inertia_torque: float = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
+    face_width: Length | None = Field(default=None, exclude_if=_blank, description="Length that the contact sweeps.")
+    peak_velocity: Velocity
+    peak_acceleration: Acceleration
+    peak_jerk: Jerk
+    rms_acceleration: Acceleration
+    peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = Field(default=None, exclude_if=_blank)
 
 
@@ -179,18 +200,18 @@ class CamDesign(Answer):
 class BarrelMetrics(Answer):
     """Measured on the finished groove."""
 
-    lift: float
-    groove_width: float
-    length: float = Field(description="Along the axis, from the lowest to the highest point of the groove.")
-    max_pressure_angle_rise: float = Field(description="Degrees.")
-    max_pressure_angle_fall: float = Field(description="Degrees.")
-    min_radius: float = Field(description="Least radius of curvature of the unrolled pitch curve.")
+    lift: Displacement
+    groove_width: Length
+    length: Length = Field(description="Along the axis, from the lowest to the highest point of the groove.")
+    max_pressure_angle_rise: Angle = Field(description="Degrees.")
+    max_pressure_angle_fall: Angle = Field(description="Degrees.")
+    min_radius: Length = Field(description="Least radius of curvature of the unrolled pitch curve.")
     curvature_ratio: float = Field(description="That over the roller's radius.")
-    peak_velocity: float
-    peak_acceleration: float
-    peak_jerk: float
-    rms_acceleration: float
-    peak_inertia_torque: float = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
+    peak_velocity: Velocity
+    peak_acceleration: Acceleration
+    peak_jerk: Jerk
+    rms_acceleration: Acceleration
+    peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = Field(default=None, exclude_if=_blank)
 
 

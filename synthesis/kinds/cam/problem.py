@@ -17,12 +17,26 @@ from synthesis.kinds.cam.joints import (
     law_ends,
     polynomial_ends,
 )
+from synthesis.model.dimension import (
+    ACCELERATION,
+    ANGLE,
+    DISPLACEMENT,
+    FORCE,
+    JERK,
+    LENGTH,
+    MASS,
+    ROTATIONAL_SPEED,
+    STIFFNESS,
+    VELOCITY,
+)
 from synthesis.model.statement import (
     Contradiction,
+    Coordinate,
     Count,
     Flag,
     NonNegative,
     Number,
+    PositiveLength,
     PositiveNumber,
     Sizable,
     StatedProblem,
@@ -35,7 +49,7 @@ WHOLE_TURN = 1e-7
 SMOOTH = 1e-6
 """Jump at a joint, relative to the segments' own rates, up to which it is continuous."""
 
-Angle = Annotated[float, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
+Span = Annotated[float, ANGLE, Field(strict=True, ge=1e-4, le=360.0, allow_inf_nan=False)]
 """Of a segment, degrees: shorter ones are below what any shaft is set to, and rates over them are rounding."""
 
 
@@ -69,11 +83,11 @@ Law = Literal[
 class ProgramCondition(Statement):
     """What must hold at one angle; whatever is left out is free."""
 
-    angle: NonNegative = Field(description="From the segment's start, degrees.")
-    s: Number | None = Field(default=None, description="Displacement from the program's zero.")
-    v: Number | None = Field(default=None, description="Velocity, per radian of cam rotation.")
-    a: Number | None = Field(default=None, description="Acceleration, per radian squared.")
-    j: Number | None = Field(default=None, description="Jerk, per radian cubed.")
+    angle: Annotated[NonNegative, ANGLE] = Field(description="From the segment's start, degrees.")
+    s: Annotated[Number, DISPLACEMENT] | None = Field(default=None, description="Displacement from the program's zero.")
+    v: Annotated[Number, VELOCITY] | None = Field(default=None, description="Velocity, per radian of cam rotation.")
+    a: Annotated[Number, ACCELERATION] | None = Field(default=None, description="Acceleration, per radian squared.")
+    j: Annotated[Number, JERK] | None = Field(default=None, description="Jerk, per radian cubed.")
 
     def values(self) -> list[tuple[int, float]]:
         """(order, value) of what is stated."""
@@ -83,25 +97,25 @@ class ProgramCondition(Statement):
 class DisplacementBand(Statement):
     """A stretch in which the displacement stays between two values."""
 
-    start: NonNegative = Field(description="From the segment's start, degrees.")
-    end: Angle = Field(description="From the segment's start, degrees.")
-    lower: Number | None = None
-    upper: Number | None = None
+    start: Annotated[NonNegative, ANGLE] = Field(description="From the segment's start, degrees.")
+    end: Span = Field(description="From the segment's start, degrees.")
+    lower: Annotated[Number, DISPLACEMENT] | None = None
+    upper: Annotated[Number, DISPLACEMENT] | None = None
 
 
 class Dwell(Statement):
     """A rest where the segment before has ended."""
 
     motion: Literal["dwell"]
-    angle: Angle
+    angle: Span
 
 
 class Move(Statement):
     """A rise, or a fall (``return`` is another word for it), by a law."""
 
     motion: Literal["rise", "fall", "return"]
-    angle: Angle
-    lift: PositiveNumber | None = Field(
+    angle: Span
+    lift: Annotated[PositiveNumber, DISPLACEMENT] | None = Field(
         default=None, description="Travel, positive for a fall too; a return without it goes back to zero."
     )
     law: Law = "auto"
@@ -113,15 +127,15 @@ class ConstantVelocity(Statement):
     """A stretch of constant velocity."""
 
     motion: Literal["constant_velocity"]
-    angle: Angle
-    lift: Number = Field(description="Travel, with its sign.")
+    angle: Span
+    lift: Annotated[Number, DISPLACEMENT] = Field(description="Travel, with its sign.")
 
 
 class Polynomial(Statement):
     """The polynomial of least degree through conditions anywhere in the segment."""
 
     motion: Literal["polynomial"]
-    angle: Angle
+    angle: Span
     conditions: list[ProgramCondition] = Field(min_length=1, max_length=40)
 
 
@@ -131,64 +145,64 @@ Segment = Annotated[Dwell | Move | ConstantVelocity | Polynomial, Discriminator(
 class LengthRange(Statement):
     """A dimension that is free between two lengths."""
 
-    min: PositiveNumber
-    max: PositiveNumber
+    min: PositiveLength
+    max: PositiveLength
 
 
 class TranslatingRoller(Statement):
     """A roller on a slide. Without a prime radius the smallest sound one is found."""
 
     type: Literal["translating_roller"]
-    roller_radius: PositiveNumber | LengthRange = Field(
+    roller_radius: PositiveLength | LengthRange = Field(
         description="Radius, or a range: the largest that fits is taken."
     )
-    offset: Number | Literal["free"] = Field(
+    offset: Coordinate | Literal["free"] = Field(
         default=0.0,
         description="Distance of the slide from the cam's centre; positive lowers the rise's pressure angle.",
     )
-    prime_radius: PositiveNumber | None = None
+    prime_radius: PositiveLength | None = None
 
 
 class OscillatingRoller(Statement):
     """A roller on a swinging arm; lifts are degrees of the arm."""
 
     type: Literal["oscillating_roller"]
-    roller_radius: PositiveNumber | LengthRange = Field(
+    roller_radius: PositiveLength | LengthRange = Field(
         description="Radius, or a range: the largest that fits is taken."
     )
-    arm: PositiveNumber = Field(description="From the pivot to the roller's centre.")
-    pivot_distance: PositiveNumber | LengthRange = Field(description="From the cam's centre to the pivot, or a range.")
+    arm: PositiveLength = Field(description="From the pivot to the roller's centre.")
+    pivot_distance: PositiveLength | LengthRange = Field(description="From the cam's centre to the pivot, or a range.")
     sense: Literal[1, -1] = Field(
         default=1, description="1: the arm swings outward in the sense in which the cam turns; -1: against it."
     )
-    prime_radius: PositiveNumber | None = None
+    prime_radius: PositiveLength | None = None
 
 
 class TranslatingFlat(Statement):
     """A flat face on a slide, square to its motion. Without a base radius the smallest sound one is found."""
 
     type: Literal["translating_flat"]
-    base_radius: PositiveNumber | None = None
+    base_radius: PositiveLength | None = None
 
 
 class OscillatingFlat(Statement):
     """A flat face on a swinging arm; lifts are degrees of the arm."""
 
     type: Literal["oscillating_flat"]
-    pivot_distance: PositiveNumber
-    face_offset: Number = Field(
+    pivot_distance: PositiveLength
+    face_offset: Coordinate = Field(
         default=0.0, description="Distance of the face from the pivot, positive toward the cam."
     )
     sense: Literal[1, -1] = 1
-    base_radius: PositiveNumber | None = None
+    base_radius: PositiveLength | None = None
 
 
 class BarrelRoller(Statement):
     """A roller in the groove of a barrel (cylindrical) cam, moving along its axis; the groove's two walls guide it."""
 
     type: Literal["barrel_roller"]
-    roller_radius: PositiveNumber
-    cylinder_radius: PositiveNumber | None = Field(
+    roller_radius: PositiveLength
+    cylinder_radius: PositiveLength | None = Field(
         default=None, description="Of the cylinder on which the roller's middle runs; null: the smallest sound one."
     )
 
@@ -197,7 +211,7 @@ Follower = Annotated[
     TranslatingRoller | OscillatingRoller | TranslatingFlat | OscillatingFlat | BarrelRoller, Discriminator("type")
 ]
 
-LimitAngle = Annotated[float, Field(strict=True, gt=0.0, le=85.0), Sizable]
+LimitAngle = Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=85.0), Sizable]
 
 
 class CamLimits(Statement):
@@ -212,18 +226,20 @@ class CamLimits(Statement):
     curvature_ratio: NonNegative = Field(
         default=2.0, description="Least radius of curvature of the pitch curve over the roller radius (Norton: 2 to 3)."
     )
-    min_radius: NonNegative = Field(
+    min_radius: Annotated[NonNegative, LENGTH] = Field(
         default=0.0,
         description="Least radius of curvature of the cam under a flat face; a fiftieth of the travel at least.",
     )
-    face_width: PositiveNumber | None = Field(default=None, description="Length that the contact may sweep on a face.")
-    hub_radius: NonNegative = Field(default=0.0, description="The base circle is at least as large.")
-    size: PositiveNumber | None = Field(
+    face_width: PositiveLength | None = Field(default=None, description="Length that the contact may sweep on a face.")
+    hub_radius: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The base circle is at least as large.")
+    size: PositiveLength | None = Field(
         default=None, description="Greatest prime radius (roller) or base radius (face)."
     )
-    velocity: PositiveNumber | None = Field(default=None, description="Peak of every optimal or automatic motion.")
-    acceleration: PositiveNumber | None = None
-    jerk: PositiveNumber | None = None
+    velocity: Annotated[PositiveNumber, VELOCITY] | None = Field(
+        default=None, description="Peak of every optimal or automatic motion."
+    )
+    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = None
+    jerk: Annotated[PositiveNumber, JERK] | None = None
 
 
 class FollowerDynamics(Statement):
@@ -232,11 +248,15 @@ class FollowerDynamics(Statement):
     For an oscillating follower all is taken at its arm's end: effective mass and spring at the roller.
     """
 
-    mass: PositiveNumber
-    spring_rate: NonNegative = Field(default=0.0, description="Force per length unit.")
+    mass: Annotated[PositiveNumber, MASS]
+    spring_rate: Annotated[NonNegative, STIFFNESS] = Field(default=0.0, description="Force per length unit.")
     damping_ratio: NonNegative = Field(default=0.0, description="Share of critical damping of mass and spring.")
-    preload: NonNegative | None = Field(default=None, description="Spring force at zero displacement; null: the least.")
-    least_force: NonNegative = Field(default=0.0, description="Contact force that must always be left.")
+    preload: Annotated[NonNegative, FORCE] | None = Field(
+        default=None, description="Spring force at zero displacement; null: the least."
+    )
+    least_force: Annotated[NonNegative, FORCE] = Field(
+        default=0.0, description="Contact force that must always be left."
+    )
 
 
 Criterion = Literal[
@@ -334,7 +354,9 @@ class CamProblem(StatedProblem):
     segments: list[Segment] = Field(min_length=1, description="Once around, in order.")
     follower: Follower
     limits: CamLimits = CamLimits()
-    speed_rpm: PositiveNumber | None = Field(default=None, description="Cam speed, revolutions a minute.")
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="Cam speed, revolutions a minute."
+    )
     rotation: Literal["ccw", "cw"] = Field(default="ccw", description="Sense in which the cam turns.")
     minimize: Criterion = Field(
         default="peak_acceleration",

@@ -12,6 +12,13 @@ from synthesis.model.answer import (
     Result,
     Verification,
 )
+from synthesis.model.dimension import (
+    Angle,
+    Length,
+    Output,
+    OutputPerRadian,
+    OutputPerRadianSquared,
+)
 from synthesis.model.linkage_answer import CouplerPoint, Skeleton
 
 
@@ -24,12 +31,12 @@ class DwellMechanism(Answer):
 
     type: Literal["dwell_rocker", "dwell_slider", "dwell_slot"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, but for a slider, O6.")
-    links: dict[str, float] = Field(
+    links: dict[str, Length] = Field(
         description="ground (O2–O4), input, coupler, rocker; link_5 and output, where there are such, the latter of a "
         "slot to its end."
     )
     coupler_point: CouplerPoint
-    reference_input_angle: float = Field(description="Crank angle where the first dwell begins, absolute, degrees.")
+    reference_input_angle: Angle = Field(description="Crank angle where the first dwell begins, absolute, degrees.")
     skeleton: Skeleton
 
 
@@ -37,30 +44,34 @@ class Rest(Answer):
     """A dwell as it was measured."""
 
     index: int
-    input_angle: float = Field(description="Crank angle where it begins, absolute, degrees; the crank turns ccw.")
-    level: float = Field(description="Of the output, in the middle of its extremes: degrees, or place along the slide.")
-    jitter: float = Field(description="Greatest less least output during the demanded crank rotation.")
-    width: float = Field(description="Crank rotation, degrees, during which the output stays within the tolerance.")
+    input_angle: Angle = Field(description="Crank angle where it begins, absolute, degrees; the crank turns ccw.")
+    level: Output = Field(
+        description="Of the output, in the middle of its extremes: degrees, or place along the slide."
+    )
+    jitter: Output = Field(description="Greatest less least output during the demanded crank rotation.")
+    width: Angle = Field(description="Crank rotation, degrees, during which the output stays within the tolerance.")
     off_end: float = Field(description="Distance of the mean from the nearer end of the way, as a share of the way.")
 
 
 class DwellMetrics(Answer):
     """Measured properties of a dwell sixbar. The output is in degrees, or in length units of a slider."""
 
-    way: float = Field(description="Swing or stroke over a whole turn.")
-    jitter: float = Field(description="The largest of all dwells.")
-    peak_velocity: float = Field(description="Of the output at a crank speed of 1 rad/s: rad/s, or length units/s.")
-    peak_acceleration: float = Field(description="The same: rad/s², or length units/s².")
+    way: Output = Field(description="Swing or stroke over a whole turn.")
+    jitter: Output = Field(description="The largest of all dwells.")
+    peak_velocity: OutputPerRadian = Field(
+        description="Of the output at a crank speed of 1 rad/s: rad/s, or length units/s."
+    )
+    peak_acceleration: OutputPerRadianSquared = Field(description="The same: rad/s², or length units/s².")
     grashof: str | None = Field(description="Of the fourbar.")
     barker: str | None
-    min_transmission_angle: float = Field(description="Over the whole turn, degrees.")
-    transmission_angles: dict[str, float] = Field(
+    min_transmission_angle: Angle = Field(description="Over the whole turn, degrees.")
+    transmission_angles: dict[str, Angle] = Field(
         description="The least over the turn at each dyad of links, by the name of its first link, degrees."
     )
     same_branch: bool
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")
-    size: float = Field(description="Diagonal of the box around all joints over the turn.")
+    size: Length = Field(description="Diagonal of the box around all joints over the turn.")
     quality: float = Field(
         description="Between 0 and 1; see docs/ranking.md. The task's size is the stroke, or twice the crank."
     )

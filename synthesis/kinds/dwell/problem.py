@@ -6,12 +6,14 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
+from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import (
     ROUNDED_OFF,
     Contradiction,
     Count,
     Point,
+    PositiveLength,
     PositiveNumber,
     Sizable,
     Statement,
@@ -28,14 +30,14 @@ class RockerOutput(Statement):
     """The output swings about a fixed pivot."""
 
     type: Literal["rocker"] = "rocker"
-    swing: Annotated[float, Field(strict=True, gt=0.0, lt=180.0), Sizable] = Field(description="Degrees.")
+    swing: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=180.0), Sizable] = Field(description="Degrees.")
 
 
 class SliderOutput(Statement):
     """The output slides to and fro."""
 
     type: Literal["slider"]
-    stroke: PositiveNumber = Field(description="In length units.")
+    stroke: PositiveLength = Field(description="In length units.")
 
 
 def _tag(statement: Any) -> str | None:
@@ -84,7 +86,7 @@ class DwellProblem(LinkageProblem):
     )
 
     kind: Literal["dwell"]
-    dwell_angle: Annotated[float, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
+    dwell_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] = Field(
         description="Rotation of the crank during a dwell, degrees; of each of two."
     )
     output: Output = Field(description="What the output is, and how far it goes.")
@@ -92,12 +94,12 @@ class DwellProblem(LinkageProblem):
     mechanism: Literal["auto", "pseudo_arc", "straight_slot"] = Field(
         default="auto", description="How the output is kept at rest; `auto` compares both for a rocker."
     )
-    tolerance: PositiveNumber | None = Field(
+    tolerance: Annotated[PositiveNumber, OUTPUT] | None = Field(
         default=None,
         description="Most that the output may move during a dwell: degrees, or length units of a slider. By default a "
         "hundredth of the swing or stroke.",
     )
-    crank: PositiveNumber | None = Field(
+    crank: PositiveLength | None = Field(
         default=None, description="Length of the crank of a linkage with a rocker, in length units; 10 by default."
     )
     pivot: Point = Field(default=(0.0, 0.0), description="Where the crank's fixed pivot lies.")
@@ -111,6 +113,11 @@ class DwellProblem(LinkageProblem):
     def allowed(self) -> float:
         """How far the output may move during a dwell, in units of the way."""
         return DEFAULT_TOLERANCE * self.way if self.tolerance is None else self.tolerance
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output is a slider."""
+        return self.output.type == "slider"
 
     @property
     def types(self) -> tuple[Literal["pseudo_arc", "straight_slot"], ...]:

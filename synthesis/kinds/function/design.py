@@ -11,6 +11,7 @@ from synthesis.model.answer import (
     Result,
     Verification,
 )
+from synthesis.model.dimension import Angle, Output
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
     LinkageMetrics,
@@ -20,23 +21,33 @@ from synthesis.model.linkage_answer import (
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
 
 
-class Dial(Answer):
-    """How a value is read off a link: where the link stands at one value, and how far it goes for a unit of it.
+class InputDial(Answer):
+    """How a value is read off the input: where the link stands at one value, and how far it turns for a unit of it.
 
-    The link stands at ``place`` + ``scale`` · (value − ``at``): an absolute angle, degrees, or a slider's position
-    along its line from the foot of the fixed pivot.
+    The link stands at ``place`` + ``scale`` · (value − ``at``), an absolute angle, degrees.
     """
 
     at: float
-    place: float
-    scale: float
+    place: Angle
+    scale: Angle
+
+
+class OutputDial(Answer):
+    """The same of the output: an absolute angle, degrees, or a slider's position.
+
+    A slider's position is along its line, from the foot of the fixed pivot.
+    """
+
+    at: float
+    place: Output
+    scale: Output
 
 
 class Dials(Answer):
     """Dials of input and output. Their values are those of the pairs, or x and y of the function."""
 
-    input: Dial
-    output: Dial
+    input: InputDial
+    output: OutputDial
 
 
 class FunctionTarget(Answer):
@@ -45,11 +56,11 @@ class FunctionTarget(Answer):
     index: int
     input: float = Field(description="Value of the input: of the pair, or x.")
     output: float = Field(description="The demanded value of the output: of the pair, or y.")
-    input_angle: float = Field(description="Absolute angle of the input link, degrees.")
-    output_place: float = Field(
+    input_angle: Angle = Field(description="Absolute angle of the input link, degrees.")
+    output_place: Output = Field(
         description="Where the output stands: absolute angle, degrees, or the slider's position."
     )
-    error: float = Field(description="Structural error here: degrees, or length units.")
+    error: Output = Field(description="Structural error here: degrees, or length units.")
     residual: float = Field(description="Its size in radians, or as a share of the slider's range.")
 
 
@@ -57,16 +68,16 @@ class ErrorExtreme(Answer):
     """A greatest or least structural error, or that at an end of the range."""
 
     input: float
-    input_angle: float
-    error: float
+    input_angle: Angle
+    error: Output
 
 
 class ErrorCurve(Answer):
     """Structural error over the range."""
 
     input: list[float]
-    input_angle: list[float]
-    error: list[float]
+    input_angle: list[Angle]
+    error: list[Output]
 
 
 class StructuralError(Answer):
@@ -77,8 +88,8 @@ class StructuralError(Answer):
     """
 
     unit: Literal["degrees", "length"]
-    max: float
-    rms: float
+    max: Output
+    rms: Output
     alternations: int
     extremes: list[ErrorExtreme]
     curve: ErrorCurve
@@ -87,9 +98,9 @@ class StructuralError(Answer):
 class FunctionMetrics(LinkageMetrics):
     """Measured properties of a function generator; ``rms_residual`` is over the targets."""
 
-    max_structural_error: float
-    rms_structural_error: float
-    output_range: float = Field(description="From the first value to the last: degrees, or length units.")
+    max_structural_error: Output
+    rms_structural_error: Output
+    output_range: Output = Field(description="From the first value to the last: degrees, or length units.")
 
 
 class FunctionDesign(Answer):

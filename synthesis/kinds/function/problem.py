@@ -10,11 +10,13 @@ import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.function.functions import FunctionStatement, Real
+from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
     Count,
+    Degrees,
     Flag,
     Interval,
     Number,
@@ -43,8 +45,8 @@ MOST_EXACT = 7
 class Pair(Statement):
     """A value of the input, degrees, and the value of the output that belongs to it: degrees, or length units."""
 
-    input: Number
-    output: Number
+    input: Degrees
+    output: Annotated[Number, OUTPUT]
 
 
 class Zeros(Statement):
@@ -53,15 +55,15 @@ class Zeros(Statement):
     Of a slider the position along its line, from the foot of the fixed pivot, in length units. Null leaves it open.
     """
 
-    input: Number | None = None
-    output: Number | None = None
+    input: Degrees | None = None
+    output: Annotated[Number, OUTPUT] | None = None
 
 
 class Scales(Statement):
     """How far the link turns (or the slider moves) for one unit of the value. Null leaves it open."""
 
-    input: PositiveNumber | None = None
-    output: PositiveNumber | None = None
+    input: Annotated[PositiveNumber, ANGLE] | None = None
+    output: Annotated[PositiveNumber, OUTPUT] | None = None
 
 
 class GroundPivots(Statement):
@@ -131,18 +133,20 @@ class FunctionProblem(LinkageProblem):
     kind: Literal["function"]
     pairs: Annotated[list[Pair], Field(min_length=2, max_length=200)] | None = None
     function: FunctionStatement | None = None
-    input_range: Number | tuple[Number, Number] | None = Field(
+    input_range: Degrees | tuple[Degrees, Degrees] | None = Field(
         default=None,
         description="Degrees through which the input turns while x runs over its interval, counter-clockwise positive; "
         "or its values at both ends; null leaves it open.",
     )
-    output_range: Number | tuple[Number, Number] | None = Field(
+    output_range: Annotated[Number | tuple[Number, Number] | None, OUTPUT] = Field(
         default=None,
         description="The same for the output: degrees, or length units of a slider. It is positive where the output "
         "begins to turn counter-clockwise, whether y grows or falls; null leaves it open, and its direction too.",
     )
     either_direction: Flag = Field(default=False, description="Also try the output going the other way.")
-    range_limits: Interval = Field(default=(30.0, 150.0), description="Of ranges that are left open, degrees.")
+    range_limits: Annotated[Interval, ANGLE] = Field(
+        default=(30.0, 150.0), description="Of ranges that are left open, degrees."
+    )
     scales: Scales | None = Field(
         default=None,
         description="Of pairs; left out they are 1 where at most five pairs are met exactly, for six the output's is "

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.function.closure import Closure, closure_of
-from synthesis.kinds.function.design import Dial, Dials
+from synthesis.kinds.function.design import Dials, InputDial, OutputDial
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.structural_error import Generators
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
@@ -161,8 +161,8 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
             for value, zero in zip((problem.pairs[0].input, problem.pairs[0].output), task.zeros, strict=True)
         ]
         dials = Dials(
-            input=Dial(at=shift[0], place=frame + start * to_input, scale=k),
-            output=Dial(at=shift[1], place=turned + zero * to_output, scale=scale),
+            input=InputDial(at=shift[0], place=frame + start * to_input, scale=k),
+            output=OutputDial(at=shift[1], place=turned + zero * to_output, scale=scale),
         )
     else:
         function = problem.function
@@ -171,8 +171,8 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
         least, greatest = function.extent()
         first = float(function.values(np.array([low]))[0])
         dials = Dials(
-            input=Dial(at=low, place=frame + start * to_input, scale=k * to_input / (high - low)),
-            output=Dial(
+            input=InputDial(at=low, place=frame + start * to_input, scale=k * to_input / (high - low)),
+            output=OutputDial(
                 at=first,
                 place=turned + zero * to_output,
                 scale=scale * to_output * function.direction / (greatest - least),

@@ -32,13 +32,14 @@ from kinematics.linkage import (
 )
 from kinematics.linkage.slider_crank import range as slider_range
 from synthesis.kinds.function.design import (
-    Dial,
     Dials,
     ErrorCurve,
     ErrorExtreme,
     FunctionDesign,
     FunctionMetrics,
     FunctionTarget,
+    InputDial,
+    OutputDial,
     StructuralError,
 )
 from synthesis.kinds.function.problem import FunctionProblem
@@ -299,7 +300,7 @@ def _wanted(problem: FunctionProblem, dials: Dials, values: Real, drive: _Drive)
     return _Wanted(values, outputs, np.radians(_place(dials.input, values)), places)
 
 
-def _place(dial: Dial, values: Real) -> Real:
+def _place(dial: InputDial | OutputDial, values: Real) -> Real:
     return np.asarray(dial.place + dial.scale * (values - dial.at))
 
 
@@ -423,7 +424,7 @@ def _dials_off(problem: FunctionProblem, dials: Dials, drive: _Drive) -> float:
     radians = math.pi / 180.0
     sides: tuple[Literal["input", "output"], ...] = ("input", "output")
     for k, side in enumerate(sides):
-        dial: Dial = getattr(dials, side)
+        dial: InputDial | OutputDial = getattr(dials, side)
         slides = side == "output" and problem.slides
         stated = problem.stated_zeros[k]
         if problem.pairs is not None:

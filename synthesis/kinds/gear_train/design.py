@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Result, Search, Verification
+from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import MeshGeometry, Ratio
 
 
@@ -15,7 +16,7 @@ class Stage(Answer):
 
     driver: int = Field(description="Teeth of the driving gear.")
     driven: int = Field(description="Teeth of the driven gear.")
-    module: float = Field(description="Module in length units.")
+    module: Length = Field(description="Module in length units.")
 
 
 class Idler(Answer):
@@ -32,7 +33,7 @@ class GearTrainMechanism(Answer):
     stages: list[Stage]
     idlers: list[Idler] = Field(default=[])
     ratio: Ratio
-    pressure_angle: float = Field(default=20.0, description="Degrees.")
+    pressure_angle: Angle = Field(default=20.0, description="Degrees.")
 
 
 class GearTrainMetrics(Answer):
@@ -44,7 +45,7 @@ class GearTrainMetrics(Answer):
     largest_gear: int
     largest_stage_ratio: float = Field(description="Larger over smaller gear, the greatest of all stages.")
     hunting_tooth: bool = Field(description="The teeth of every mesh have no common divisor.")
-    centre_distances: list[float] = Field(description="Of the shafts of each stage, idlers in line.")
+    centre_distances: list[Length] = Field(description="Of the shafts of each stage, idlers in line.")
     meshes: list[MeshGeometry]
 
 

@@ -8,7 +8,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from synthesis.model.gear_statement import MOST_TEETH, ExactRatio, Pitch, PressureAngle, ToothNumber
+from synthesis.model.dimension import INVERSE_LENGTH
+from synthesis.model.gear_statement import MOST_TEETH, ExactRatio, Module, Pitch, PressureAngle, ToothNumber
 from synthesis.model.ratio_target import Target, decimal, parse_target
 from synthesis.model.statement import (
     Contradiction,
@@ -122,12 +123,12 @@ class GearTrainProblem(StatedProblem):
     reverted: Flag = Field(
         default=False, description="Every stage has the same centre distance, so that output and input can be coaxial."
     )
-    module: Pitch | Annotated[list[Pitch], Field(min_length=1, max_length=8)] | None = Field(
+    module: Module | Annotated[list[Module], Field(min_length=1, max_length=8)] | None = Field(
         default=None,
         description="Module in length units, 1 if left out; a list: for a reverted train what every stage may choose "
         "from, otherwise the modules of stage 1, 2, ...",
     )
-    diametral_pitch: Pitch | None = Field(
+    diametral_pitch: Annotated[Pitch, INVERSE_LENGTH] | None = Field(
         default=None, description="Teeth per length unit of pitch diameter, in place of the module."
     )
     pressure_angle: PressureAngle = Field(default=20.0, description="Degrees.")

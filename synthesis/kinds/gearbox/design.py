@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Result, Verification
+from synthesis.model.dimension import Angle, Length, RotationalSpeed
 from synthesis.model.gear_answer import GearPairTeeth
 
 
@@ -15,7 +16,7 @@ class GearboxStage(Answer):
 
     characteristic: int = Field(description="Steps of the progression from one pair to the next.")
     pairs: list[GearPairTeeth]
-    centre_distance: float
+    centre_distance: Length
 
 
 class GearboxMechanism(Answer):
@@ -23,19 +24,21 @@ class GearboxMechanism(Answer):
 
     type: Literal["gearbox"] = "gearbox"
     formula: str = Field(description="Structural formula, stages in the order of the shafts, e.g. 3(1) 2(3).")
-    input_speed: float
+    input_speed: RotationalSpeed
     stages: list[GearboxStage]
-    module: float
-    pressure_angle: float = Field(description="Degrees.")
+    module: Length
+    pressure_angle: Angle = Field(description="Degrees.")
 
 
 class SpindleSpeed(Answer):
     """A speed of the spindle beside its nominal value."""
 
-    speed: float
-    nominal: float
+    speed: RotationalSpeed
+    nominal: RotationalSpeed
     error: float = Field(description="speed/nominal − 1.")
-    standard: float | None = Field(description="The rounded preferred number, where the speeds are of a series.")
+    standard: RotationalSpeed | None = Field(
+        description="The rounded preferred number, where the speeds are of a series."
+    )
     engaged: list[int] = Field(description="The pair that is engaged in each stage, from 0.")
 
 
@@ -43,7 +46,7 @@ class ShaftSpeeds(Answer):
     """All speeds of one shaft, lowest first; the first shaft is the input."""
 
     shaft: int
-    speeds: list[float]
+    speeds: list[RotationalSpeed]
 
 
 class GearboxMetrics(Answer):

@@ -8,7 +8,8 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from kinematics.gear.gearbox import preferred_numbers, preferred_ratio, progression
-from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Pitch, ToothRange, tooth_faults
+from synthesis.model.dimension import ROTATIONAL_SPEED
+from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, tooth_faults
 from synthesis.model.statement import (
     Contradiction,
     Count,
@@ -32,9 +33,9 @@ STANDARD_TOLERANCE = 0.1
 class SpindleSpeeds(Statement):
     """Speeds in geometric progression: the lowest, how many, and one of highest, ratio of neighbours, or series."""
 
-    min: PositiveNumber = Field(description="Lowest speed, revolutions a minute.")
+    min: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Lowest speed, revolutions a minute.")
     count: Annotated[Count, Field(ge=2, le=MOST_SPEEDS)]
-    max: PositiveNumber | None = Field(default=None, description="Highest speed.")
+    max: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(default=None, description="Highest speed.")
     ratio: Annotated[float, Field(strict=True, gt=1.0, le=10.0)] | None = Field(
         default=None, description="Each speed over the one below it, φ."
     )
@@ -101,7 +102,9 @@ class GearboxProblem(StatedProblem):
     )
 
     kind: Literal["gearbox"]
-    input_speed: PositiveNumber = Field(description="Speed of the first shaft, revolutions a minute.")
+    input_speed: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(
+        description="Speed of the first shaft, revolutions a minute."
+    )
     speeds: SpindleSpeeds
     structure: list[Annotated[Count, Field(ge=1, le=6)]] | None = Field(
         default=None,
@@ -124,7 +127,7 @@ class GearboxProblem(StatedProblem):
         description="Largest |ln(speed/nominal)|, below half of ln φ; null: a tenth of a step, 0.1 (φ − 1), "
         "or a quarter of ln φ where that is less.",
     )
-    module: Pitch = Field(default=1.0, description="Of all gears, in the length unit.")
+    module: Module = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     rank_by: Literal["error", "size"] = Field(
         default="error", description="error: least deviation first. size: least sum of tooth sums first."

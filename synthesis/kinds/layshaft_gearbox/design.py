@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from synthesis.model.answer import Answer, Result, Verification
+from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import GearPairTeeth, Ratio
 
 
@@ -34,9 +35,9 @@ class LayshaftMechanism(Answer):
     head: GearPairTeeth = Field(description="From the input shaft to the layshaft.")
     gears: list[LayshaftGear]
     reverse: ReverseGear | None
-    module: float
-    pressure_angle: float = Field(description="Degrees.")
-    centre_distance: float
+    module: Length
+    pressure_angle: Angle = Field(description="Degrees.")
+    centre_distance: Length
 
 
 class LayshaftMetrics(Answer):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Pitch, ToothRange, tooth_faults
+from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, tooth_faults
 from synthesis.model.statement import Contradiction, Flag, StatedProblem
 
 
@@ -51,7 +51,7 @@ class LayshaftProblem(StatedProblem):
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of any gear; null takes the best there is."
     )
-    module: Pitch = Field(default=1.0, description="Of all gears, in the length unit.")
+    module: Module = Field(default=1.0, description="Of all gears, in the length unit.")
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     rank_by: Literal["error", "size"] = Field(
         default="error", description="Least largest error first, or least tooth sum within the tolerance first."

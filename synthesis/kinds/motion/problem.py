@@ -9,14 +9,16 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_statement import LinkageProblem, Region
 from synthesis.model.statement import (
     Contradiction,
+    Coordinate,
+    Degrees,
     Flag,
-    Number,
     PartialPoint,
     Point,
-    PositiveNumber,
+    PositiveLength,
     Sizable,
     Statement,
 )
@@ -47,9 +49,9 @@ MOST_HELD = 5
 class Tolerance(Statement):
     """How far a position may be missed, coordinate by coordinate; what is left out is met exactly."""
 
-    x: PositiveNumber | None = Field(default=None, description="Length units, either way.")
-    y: PositiveNumber | None = Field(default=None, description="Length units, either way.")
-    angle: Annotated[float, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
+    x: PositiveLength | None = Field(default=None, description="Length units, either way.")
+    y: PositiveLength | None = Field(default=None, description="Length units, either way.")
+    angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
         default=None, description="Degrees, either way."
     )
 
@@ -63,10 +65,10 @@ class Tolerance(Statement):
 class Position(Statement):
     """Where the body is: its reference point P and the angle of a line fixed in it."""
 
-    x: Number
-    y: Number
-    angle: Number = Field(description="Angle of the body's line, degrees, counter-clockwise from +x.")
-    tolerance: PositiveNumber | Tolerance | None = Field(
+    x: Coordinate
+    y: Coordinate
+    angle: Degrees = Field(description="Angle of the body's line, degrees, counter-clockwise from +x.")
+    tolerance: PositiveLength | Tolerance | None = Field(
         default=None,
         description="How far the position may be missed: by coordinate, or a length for x and y, the angle then being "
         "allowed to move a point one task size away by as much.",
@@ -90,7 +92,7 @@ class GroundLine(Statement):
     """A straight line on which both fixed pivots lie."""
 
     point: Point
-    angle: Number = Field(description="Direction of the line, degrees.")
+    angle: Degrees = Field(description="Direction of the line, degrees.")
 
     def offset(self, point: complex) -> float:
         """Signed distance of a point from the line, in length units."""
@@ -104,8 +106,8 @@ class GroundLine(Statement):
 class CouplerVector(Statement):
     """Vector Z from the moving pivot to the body's point P in the first position; each part may be left open."""
 
-    length: PositiveNumber | None = None
-    angle: Number | None = Field(default=None, description="Angle of Z in the first position, degrees.")
+    length: PositiveLength | None = None
+    angle: Degrees | None = Field(default=None, description="Angle of Z in the first position, degrees.")
 
 
 class DyadChoices(Statement):
@@ -125,17 +127,17 @@ class DyadChoices(Statement):
     moving_pivot: PartialPoint | None = Field(
         default=None, description="Moving pivot in the first position; null leaves a coordinate open."
     )
-    rotations: list[Number | None] | None = Field(
+    rotations: list[Degrees | None] | None = Field(
         default=None,
         min_length=1,
         max_length=8,
         description="Rotation of the link from the first position to the 2nd, 3rd, ..., degrees; null leaves one open.",
     )
-    link_angle: Number | None = Field(
+    link_angle: Degrees | None = Field(
         default=None, description="Angle of the link, fixed pivot to moving pivot, in the first position, degrees."
     )
     coupler_vector: CouplerVector | None = None
-    slide_angle: Number | None = Field(
+    slide_angle: Degrees | None = Field(
         default=None,
         description="For PR: angle of the slide's line, degrees. For RP: of the body's line in the first position.",
     )

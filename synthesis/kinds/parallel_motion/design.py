@@ -12,6 +12,7 @@ from synthesis.model.answer import (
     Result,
     Verification,
 )
+from synthesis.model.dimension import Angle, Length
 from synthesis.model.linkage_answer import (
     CouplerPoint,
     LinkageMetrics,
@@ -28,11 +29,11 @@ class ParallelMotionMechanism(Answer):
 
     type: Literal["watt_1"] = "watt_1"
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2 and O4.")
-    links: dict[str, float] = Field(
+    links: dict[str, Length] = Field(
         description="ground, input (O2–A), coupler (A–B), output (O4–B), input_arm (O2–C), guide (C–Q), body (P–Q)."
     )
     coupler_point: CouplerPoint
-    reference_input_angle: float = Field(description="Input angle of the skeleton, absolute, degrees.")
+    reference_input_angle: Angle = Field(description="Input angle of the skeleton, absolute, degrees.")
     skeleton: Skeleton
 
 
@@ -46,10 +47,10 @@ class ParallelMotionMetrics(LinkageMetrics):
         description="The fourbar that the sixbar is made of."
     )
     input_side: Literal["input", "output"] = Field(description="Which of its fixed pivots the input turns about.")
-    rotation: float = Field(description="The greatest rotation of the body, degrees: rounding.")
+    rotation: Angle = Field(description="The greatest rotation of the body, degrees: rounding.")
     translation: Point = Field(description="From P to Q, constant.")
-    curve_distance: float | None = Field(description="Greatest distance of P from the given curve; null for a path.")
-    input_range: tuple[float, float] = Field(description="Input angles between which it was driven, degrees.")
+    curve_distance: Length | None = Field(description="Greatest distance of P from the given curve; null for a path.")
+    input_range: tuple[Angle, Angle] = Field(description="Input angles between which it was driven, degrees.")
 
 
 class ParallelMotionDesign(Answer):

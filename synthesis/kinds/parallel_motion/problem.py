@@ -13,9 +13,9 @@ from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import (
     ROUNDED_OFF,
     Contradiction,
-    Number,
+    Degrees,
     Point,
-    PositiveNumber,
+    PositiveLength,
     Statement,
 )
 
@@ -33,16 +33,16 @@ class SourcePivots(Statement):
 class SourceLinks(Statement):
     """Link lengths; the ground's follows from the pivots."""
 
-    input: PositiveNumber
-    coupler: PositiveNumber
-    output: PositiveNumber
+    input: PositiveLength
+    coupler: PositiveLength
+    output: PositiveLength
 
 
 class SourcePoint(Statement):
     """P: its distance from A, and the angle from the line A → B to the line A → P, degrees."""
 
-    distance: PositiveNumber
-    angle: Number = 0.0
+    distance: PositiveLength
+    angle: Degrees = 0.0
 
 
 class SourceLinkage(Statement):
@@ -54,7 +54,7 @@ class SourceLinkage(Statement):
     assembly: Literal["open", "crossed"] = Field(
         default="open", description="open: B lies to the left of the directed line from A to O4."
     )
-    reference_input_angle: Number | None = Field(
+    reference_input_angle: Degrees | None = Field(
         default=None, description="Input angle of the first position, absolute, degrees; by default one that there is."
     )
 

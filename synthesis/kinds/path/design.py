@@ -11,6 +11,7 @@ from synthesis.model.answer import (
     Point,
     Result,
 )
+from synthesis.model.dimension import Angle, Area, Length
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
     LinkageDesign,
@@ -37,16 +38,16 @@ class CognateTriples(Answer):
 class PathMetrics(LinkageMetrics):
     """Measured properties of a linkage that guides a point, with its errors in length units."""
 
-    sum_of_squares: float = Field(description="Of the distances of P from the points, length units squared.")
-    rms_distance: float = Field(description="Root mean square of these distances, length units.")
-    max_distance: float = Field(description="The largest of them, length units.")
-    curve_distance: float | None = Field(
+    sum_of_squares: Area = Field(description="Of the distances of P from the points, length units squared.")
+    rms_distance: Length = Field(description="Root mean square of these distances, length units.")
+    max_distance: Length = Field(description="The largest of them, length units.")
+    curve_distance: Length | None = Field(
         default=None,
         exclude_if=nothing,
         description="For curves that are matched as a whole: the largest distance of the traced curve from the "
         "straight lines through the points, length units.",
     )
-    excursion: float | None = Field(
+    excursion: Length | None = Field(
         default=None,
         exclude_if=nothing,
         description="How much farther the traced curve goes from these lines than max_distance and what a curve may "
@@ -58,7 +59,7 @@ class CurvePlacement(Answer):
     """Where a matched curve is traced, if not where it was drawn: sized and turned about the origin, then shifted."""
 
     size: float
-    rotation: float = Field(description="Degrees.")
+    rotation: Angle = Field(description="Degrees.")
     shift: Point
 
 
@@ -75,8 +76,8 @@ class PathCognate(Answer):
     same_timing: bool = Field(description="Its input turns with the design's input, so that crank angles are kept.")
     same_branch: bool = Field(description="Its own input drives it through all targets without a toggle.")
     visits_in_order: bool
-    min_transmission_angle: float = Field(description="Over the used range of its own input, degrees.")
-    deviation: float = Field(description="Largest distance of its P from the design's at the targets, length units.")
+    min_transmission_angle: Angle = Field(description="Over the used range of its own input, degrees.")
+    deviation: Length = Field(description="Largest distance of its P from the design's at the targets, length units.")
 
 
 class PathDesign(LinkageDesign):

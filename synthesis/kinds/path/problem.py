@@ -9,6 +9,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
+from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import (
     Constraints,
     LinkageProblem,
@@ -16,7 +17,9 @@ from synthesis.model.linkage_statement import (
 )
 from synthesis.model.statement import (
     Contradiction,
+    Coordinate,
     Count,
+    Degrees,
     Flag,
     Interval,
     Number,
@@ -47,9 +50,9 @@ run off to links that are many times longer and bring nothing."""
 class PathPoint(Statement):
     """A point of the path, in length units."""
 
-    x: Number
-    y: Number
-    crank_angle: Number | None = Field(
+    x: Coordinate
+    y: Coordinate
+    crank_angle: Degrees | None = Field(
         default=None, description="Angle of the crank where P is here, degrees; for prescribed timing."
     )
 
@@ -62,8 +65,8 @@ class PathPoint(Statement):
 class CouplerPointLimits(Statement):
     """Where P may lie on the coupler: along the line A → B, and across it to the left, from A, in length units."""
 
-    along: Interval | None = None
-    across: Interval | None = None
+    along: Annotated[Interval, LENGTH] | None = None
+    across: Annotated[Interval, LENGTH] | None = None
 
 
 class PathConstraints(Constraints):

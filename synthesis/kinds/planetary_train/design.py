@@ -11,6 +11,7 @@ from synthesis.model.answer import (
     Result,
     Verification,
 )
+from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import Ratio
 
 
@@ -29,8 +30,8 @@ class PlanetaryMechanism(Answer):
     teeth: dict[str, int]
     planets: int = Field(description="Copies of each planet.")
     places: dict[str, PlanetPlaces] = Field(description="By planet.")
-    module: float
-    pressure_angle: float = Field(description="Degrees.")
+    module: Length
+    pressure_angle: Angle = Field(description="Degrees.")
     addendum: dict[str, float] = Field(
         description="Addendum by gear, in modules: 1, or less for a ring whose full teeth would dig into its planets."
     )
@@ -45,14 +46,14 @@ class MeshContact(Answer):
 
     gears: tuple[str, str]
     contact_ratio: float
-    centre_distance: float
+    centre_distance: Length
 
 
 class PlanetaryMetrics(Answer):
     """Measured properties that were not demanded; powers are shares of the input power."""
 
     error: float = Field(description="Relative error of the ratio, with its sign.")
-    size: float = Field(description="Largest pitch diameter around the axis, planets included.")
+    size: Length = Field(description="Largest pitch diameter around the axis, planets included.")
     total_teeth: int = Field(description="Of one copy of every gear.")
     speeds: dict[str, float] = Field(description="Speed of every body where the input has 1; planets absolute too.")
     efficiency: float = Field(description="With the stated efficiency of each mesh; 0 where the train locks itself.")
@@ -60,7 +61,7 @@ class PlanetaryMetrics(Answer):
     rolling_power: float = Field(description="Largest power of a mesh relative to its carrier, without losses.")
     branch_power: float = Field(description="Largest power between a row and a member, without losses.")
     circulating_power: bool = Field(description="A warning: a member carries more power than is put in.")
-    least_room: float | None = Field(description="Least room between tips of gears that do not mesh.")
+    least_room: Length | None = Field(description="Least room between tips of gears that do not mesh.")
     meshes: list[MeshContact]
     undercut: list[str] = Field(description="Gears whose flanks a generating rack would undercut.")
 
@@ -83,7 +84,7 @@ class ParetoPlanetaryTrain(Answer):
     teeth: dict[str, int]
     ratio: Ratio
     error: float = Field(description="Relative error of the ratio, with its sign.")
-    size: float
+    size: Length
 
 
 class PlanetaryResult(Result[PlanetaryDesign]):

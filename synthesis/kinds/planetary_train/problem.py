@@ -8,12 +8,13 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
-from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Pitch, RangedTeeth, ToothRange
+from synthesis.model.dimension import LENGTH
+from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
 from synthesis.model.ratio_target import parse_target
 from synthesis.model.statement import (
     Contradiction,
     Count,
-    PositiveNumber,
+    PositiveLength,
     StatedProblem,
     Statement,
 )
@@ -105,15 +106,15 @@ class PlanetaryProblem(StatedProblem):
     output: str | None = Field(default=None, description="The member taken off; null tries all.")
     fixed: str | None = Field(default=None, description="The member held; null tries all.")
     teeth: PlanetaryTeeth = PlanetaryTeeth()
-    module: Pitch = Field(default=1.0, description="Module of all gears, in the length unit.")
+    module: Module = Field(default=1.0, description="Module of all gears, in the length unit.")
     pressure_angle: CommonPressureAngle = Field(default=20.0, description="Degrees.")
     tolerance: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] | None = Field(
         default=None, description="Largest relative error of the ratio; null takes the best there is."
     )
-    max_size: PositiveNumber | None = Field(
+    max_size: PositiveLength | None = Field(
         default=None, description="Largest pitch diameter around the axis, planets included, in the length unit."
     )
-    min_clearance: Annotated[float, Field(strict=True, ge=0.0, le=1e9)] = Field(
+    min_clearance: Annotated[float, LENGTH, Field(strict=True, ge=0.0, le=1e9)] = Field(
         default=0.0, description="Least room between the tips of gears that do not mesh, in the length unit."
     )
     min_contact_ratio: Annotated[float, Field(strict=True, ge=1.0, lt=2.0)] = Field(

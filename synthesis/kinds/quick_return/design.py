@@ -13,6 +13,7 @@ from synthesis.model.answer import (
     Verification,
     blank,
 )
+from synthesis.model.dimension import Angle, Length, Output
 from synthesis.model.linkage_answer import (
     FixedPivots,
     FourbarMechanism,
@@ -25,10 +26,10 @@ from synthesis.model.linkage_answer import (
 class QuickReturnLinks(Answer):
     """Link lengths; ``rocker`` is the distance from O4 to C."""
 
-    ground: float
-    crank: float
-    rocker: float
-    coupler: float
+    ground: Length
+    crank: Length
+    rocker: Length
+    coupler: Length
 
 
 class QuickReturnMechanism(Answer):
@@ -42,7 +43,7 @@ class QuickReturnMechanism(Answer):
     links: QuickReturnLinks
     slide: Line = Field(description="The ram's line on the ground.")
     assembly: Literal["open", "crossed"]
-    reference_input_angle: float = Field(description="Crank angle at the first target, absolute, degrees.")
+    reference_input_angle: Angle = Field(description="Crank angle at the first target, absolute, degrees.")
     skeleton: Skeleton
 
 
@@ -54,7 +55,7 @@ class DragLinkMechanism(Answer):
 
     type: Literal["drag_link_rocker", "drag_link_slider"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, O4 and, for a rocker, O6.")
-    links: dict[str, float] = Field(
+    links: dict[str, Length] = Field(
         description="ground, input, coupler and driven_crank of the drag link; link_5, from B to the output; "
         "output, O6 to C, and output_ground, O4 to O6, of a rocker."
     )
@@ -71,27 +72,27 @@ class LimitPosition(Answer):
     """A limit position of the output, as measured on the driven mechanism; the slow stroke goes from 0 to 1."""
 
     index: int
-    input_angle: float = Field(description="Absolute crank angle, degrees; the crank turns counter-clockwise.")
-    output: float = Field(description="Angle of the output link, degrees, or position along the slide from its point.")
+    input_angle: Angle = Field(description="Absolute crank angle, degrees; the crank turns counter-clockwise.")
+    output: Output = Field(description="Angle of the output link, degrees, or position along the slide from its point.")
 
 
 class QuickReturnMetrics(Answer):
     """Measured properties of a quick-return mechanism."""
 
     time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
-    slow_rotation: float = Field(description="Crank rotation of the slow stroke, degrees.")
-    fast_rotation: float = Field(description="Crank rotation of the fast stroke, degrees.")
-    swing: float | None = Field(default=None, exclude_if=blank, description="Degrees; of an output that swings.")
-    stroke: float | None = Field(default=None, exclude_if=blank, description="Length; of an output that slides.")
+    slow_rotation: Angle = Field(description="Crank rotation of the slow stroke, degrees.")
+    fast_rotation: Angle = Field(description="Crank rotation of the fast stroke, degrees.")
+    swing: Angle | None = Field(default=None, exclude_if=blank, description="Degrees; of an output that swings.")
+    stroke: Length | None = Field(default=None, exclude_if=blank, description="Length; of an output that slides.")
     grashof: str | None = Field(description="Of the fourbar that the crank drives; null for others.")
     barker: str | None = Field(description="Its Barker code, e.g. GCRR.")
-    min_transmission_angle: float = Field(description="Over a full turn of the crank, degrees.")
-    transmission_angles: dict[str, float] = Field(
+    min_transmission_angle: Angle = Field(description="Over a full turn of the crank, degrees.")
+    transmission_angles: dict[str, Angle] = Field(
         description="The least at each dyad of links over the turn, by the name of its first link, degrees."
     )
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")
-    size: float = Field(description="Diagonal of the box around all joints over the turn.")
+    size: Length = Field(description="Diagonal of the box around all joints over the turn.")
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 

@@ -7,13 +7,15 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
-    Number,
+    Coordinate,
+    Degrees,
     Point,
-    PositiveNumber,
+    PositiveLength,
     Sizable,
     Statement,
 )
@@ -39,9 +41,9 @@ SAME_POLE = 1e-6
 class RockerPosition(Statement):
     """Where a body on the rocker is at a limit: a point of it, and the angle of its line."""
 
-    x: Number
-    y: Number
-    angle: Number = Field(description="Angle of the body's line, degrees.")
+    x: Coordinate
+    y: Coordinate
+    angle: Degrees = Field(description="Angle of the body's line, degrees.")
 
     @property
     def point(self) -> complex:
@@ -80,10 +82,10 @@ class QuickReturnProblem(LinkageProblem):
     time_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD, allow_inf_nan=False)] = Field(
         description="Time of the slow stroke over time of the fast one."
     )
-    swing: Annotated[float, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
+    swing: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=360.0), Sizable] | None = Field(
         default=None, description="Angle between the output's limit positions, degrees; for an output that swings."
     )
-    stroke: PositiveNumber | None = Field(
+    stroke: PositiveLength | None = Field(
         default=None, description="Distance of the output's limit positions; for an output that slides."
     )
     positions: tuple[RockerPosition, RockerPosition] | None = Field(
@@ -98,7 +100,7 @@ class QuickReturnProblem(LinkageProblem):
     mechanism: Literal[QuickReturnType, "auto"] = Field(
         default="auto", description="`auto` compares all types that have such an output and can reach the ratio."
     )
-    rocker_length: PositiveNumber | None = Field(
+    rocker_length: PositiveLength | None = Field(
         default=None,
         description="Distance from the output's fixed pivot to its pin, for an output that swings; left out it is 1, "
         "or what puts the links within the limits of `link_length`, or the body's distance from the rotopole.",
@@ -106,10 +108,15 @@ class QuickReturnProblem(LinkageProblem):
     crank_pivot: Point | None = Field(
         default=None, description="Where the crank's fixed pivot O2 shall be; (0, 0) if left out, without a rotopole."
     )
-    ground_angle: Number = Field(
+    ground_angle: Degrees = Field(
         default=0.0, description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees."
     )
     rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "transmission_angle"
+
+    @property
+    def slides(self) -> bool:
+        """Whether the output is a slider."""
+        return self.stroke is not None
 
     @property
     def types(self) -> tuple[QuickReturnType, ...]:

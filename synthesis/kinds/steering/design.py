@@ -13,6 +13,7 @@ from synthesis.model.answer import (
     Verification,
     blank,
 )
+from synthesis.model.dimension import Angle, Length
 from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
 
 
@@ -21,7 +22,7 @@ class DavisMechanism(Answer):
 
     type: Literal["davis"] = "davis"
     fixed_pivots: dict[str, Point] = Field(description="The kingpins: O2 left, O4 right.")
-    links: dict[str, float] = Field(description="ground between the kingpins, and bar between its pins.")
+    links: dict[str, Length] = Field(description="ground between the kingpins, and bar between its pins.")
     skeleton: Skeleton
 
 
@@ -34,28 +35,28 @@ class SteeringPosition(Answer):
 
     index: int
     input_angle: float = Field(description="What drives it: angle of the left arm, degrees, or place of the bar.")
-    inner: float
-    outer: float
-    required: float = Field(description="What the outer wheel should have.")
-    error: float = Field(description="outer − required.")
+    inner: Angle
+    outer: Angle
+    required: Angle = Field(description="What the outer wheel should have.")
+    error: Angle = Field(description="outer − required.")
 
 
 class SteeringMetrics(Answer):
     """Measured properties of a steering mechanism."""
 
-    steering_error: float = Field(description="Greatest magnitude up to the lock, to both sides, degrees.")
-    correct_at: list[float] = Field(description="Inner angles between which the error changes sign, degrees.")
-    outer_lock: float = Field(description="Angle of the outer wheel at the lock, degrees.")
-    arm_length: float = Field(description="Of a steering arm; of Davis's gear, in the straight position.")
-    arm_angle: float = Field(description="Of the arms from the vehicle's axis in the straight position, degrees.")
+    steering_error: Angle = Field(description="Greatest magnitude up to the lock, to both sides, degrees.")
+    correct_at: list[Angle] = Field(description="Inner angles between which the error changes sign, degrees.")
+    outer_lock: Angle = Field(description="Angle of the outer wheel at the lock, degrees.")
+    arm_length: Length = Field(description="Of a steering arm; of Davis's gear, in the straight position.")
+    arm_angle: Angle = Field(description="Of the arms from the vehicle's axis in the straight position, degrees.")
     tie_rod: Literal["behind", "ahead"]
-    turning_radius: float = Field(
+    turning_radius: Length = Field(
         description="Of the outer front wheel's path at the lock, were its angle the required one."
     )
-    min_transmission_angle: float = Field(description="Over the whole range, degrees.")
+    min_transmission_angle: Angle = Field(description="Over the whole range, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
-    size: float = Field(description="Diagonal of the box around all joints in the straight position.")
-    bar_travel: float | None = Field(default=None, exclude_if=blank, description="Of Davis's bar, to each side.")
+    size: Length = Field(description="Diagonal of the box around all joints in the straight position.")
+    bar_travel: Length | None = Field(default=None, exclude_if=blank, description="Of Davis's bar, to each side.")
 
 
 class SteeringDesign(Answer):

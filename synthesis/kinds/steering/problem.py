@@ -6,10 +6,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import (
     Contradiction,
-    PositiveNumber,
+    PositiveLength,
     Sizable,
     Statement,
 )
@@ -21,8 +22,8 @@ ARM = (0.1, 0.25)
 class ArmLimits(Statement):
     """Least and greatest length of the steering arms; equal to fix it."""
 
-    min: PositiveNumber
-    max: PositiveNumber
+    min: PositiveLength
+    max: PositiveLength
 
     @model_validator(mode="after")
     def _min_to_max(self) -> Self:
@@ -49,12 +50,12 @@ class SteeringProblem(LinkageProblem):
     )
 
     kind: Literal["steering"]
-    wheelbase: PositiveNumber = Field(description="From the rear axle to the front axle.")
-    pivot_distance: PositiveNumber = Field(description="Between the kingpins.")
-    track: PositiveNumber | None = Field(
+    wheelbase: PositiveLength = Field(description="From the rear axle to the front axle.")
+    pivot_distance: PositiveLength = Field(description="Between the kingpins.")
+    track: PositiveLength | None = Field(
         default=None, description="Between the front wheels; for the turning circle. The pivot distance if left out."
     )
-    lock: Annotated[float, Field(strict=True, gt=0.0, lt=90.0), Sizable] = Field(
+    lock: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=90.0), Sizable] = Field(
         description="Greatest angle of the inner wheel, degrees."
     )
     mechanism: Literal["ackermann", "davis", "auto"] = "auto"
@@ -64,7 +65,7 @@ class SteeringProblem(LinkageProblem):
     arm_length: ArmLimits | None = Field(
         default=None, description="Of the steering arms; 0.1 to 0.25 of the pivot distance if left out."
     )
-    max_steering_error: Annotated[float, Field(strict=True, gt=0.0, lt=90.0), Sizable] | None = Field(
+    max_steering_error: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=90.0), Sizable] | None = Field(
         default=None, description="Greatest error of the outer wheel's angle that is allowed, degrees."
     )
 

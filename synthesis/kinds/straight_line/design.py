@@ -14,6 +14,7 @@ from synthesis.model.answer import (
     Verification,
     blank,
 )
+from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
 from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
 
 
@@ -27,7 +28,7 @@ class ExactLineMechanism(Answer):
 
     type: Literal["peaucellier", "hart", "scott_russell"]
     fixed_pivots: dict[str, Point] = Field(description="By the names of the joints: O2, and O4 of an inversor.")
-    links: dict[str, float] = Field(description="Lengths by the names of the skeleton's links.")
+    links: dict[str, Length] = Field(description="Lengths by the names of the skeleton's links.")
     skeleton: Skeleton
 
 
@@ -39,10 +40,10 @@ class LinePoint(Answer):
     """P at an end of the line, as measured."""
 
     index: int
-    input_angle: float = Field(description="Absolute input angle, degrees, continuous from the first.")
-    x: float
-    y: float
-    deviation: float = Field(description="Distance from the demanded line, length units.")
+    input_angle: Angle = Field(description="Absolute input angle, degrees, continuous from the first.")
+    x: Length
+    y: Length
+    deviation: Length = Field(description="Distance from the demanded line, length units.")
 
 
 class StraightLineMetrics(Answer):
@@ -53,31 +54,31 @@ class StraightLineMetrics(Answer):
         description="Whether the proportions are the best of the family, those of the books, or such that the line is "
         "exact; free proportions of an exact mechanism are those of best quality."
     )
-    deviation: float = Field(description="Greatest distance of P from the demanded line, length units.")
-    straightness_error: float = Field(
+    deviation: Length = Field(description="Greatest distance of P from the demanded line, length units.")
+    straightness_error: Percent = Field(
         description="Width of the strip along the line's direction that holds P's path, percent of the length."
     )
-    velocity_variation: float = Field(
+    velocity_variation: Percent = Field(
         description="Greatest less least velocity along the line at constant input speed, percent of the mean."
     )
-    mean_velocity: float = Field(description="Along the line, length units per radian of the input.")
-    middle_velocity: float = Field(description="The same in the middle of the input's range.")
-    input_rotation: float = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
+    mean_velocity: LengthPerRadian = Field(description="Along the line, length units per radian of the input.")
+    middle_velocity: LengthPerRadian = Field(description="The same in the middle of the input's range.")
+    input_rotation: Angle = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
     moving_links: int
     grashof: str | None = Field(description="Of a fourbar; null for others.")
     barker: str | None
-    min_transmission_angle: float = Field(description="Along the line, degrees.")
-    transmission_angles: dict[str, float] = Field(
+    min_transmission_angle: Angle = Field(description="Along the line, degrees.")
+    transmission_angles: dict[str, Angle] = Field(
         description="The least along the line at each dyad of links, by the name of its first link, degrees."
     )
-    cycle_transmission_angle: float | None = Field(
+    cycle_transmission_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="Over the whole turn of an input that turns through, degrees."
     )
     same_branch: bool
     visits_in_order: bool = Field(description="Whether P runs along the line without turning back.")
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")
-    size: float = Field(description="Diagonal of the box around all joints while P is on the line.")
+    size: Length = Field(description="Diagonal of the box around all joints while P is on the line.")
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 

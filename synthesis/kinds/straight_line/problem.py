@@ -6,12 +6,14 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from synthesis.model.dimension import ANGLE, PERCENT
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import (
     ROUNDED_OFF,
     Contradiction,
-    Number,
+    Degrees,
     Point,
+    PositiveLength,
     PositiveNumber,
 )
 
@@ -66,8 +68,8 @@ class StraightLineProblem(LinkageProblem):
     )
 
     kind: Literal["straight_line"]
-    length: PositiveNumber = Field(description="Of the line, in length units.")
-    crank_range: Annotated[float, Field(strict=True, ge=LEAST_RANGE, lt=360.0)] | None = Field(
+    length: PositiveLength = Field(description="Of the line, in length units.")
+    crank_range: Annotated[float, ANGLE, Field(strict=True, ge=LEAST_RANGE, lt=360.0)] | None = Field(
         default=None,
         description="Rotation of the input while P runs along the line, degrees. By default what the type is commonly "
         f"used over: {', '.join(f'{name} {value:g}' for name, value in DEFAULT_RANGE.items())}.",
@@ -79,18 +81,18 @@ class StraightLineProblem(LinkageProblem):
         default="auto", description="Type of mechanism; `auto` compares all that can turn by the range."
     )
     start: Point = Field(default=(0.0, 0.0), description="Where P begins the line.")
-    direction: Number = Field(default=0.0, description="In which P runs, degrees.")
+    direction: Degrees = Field(default=0.0, description="In which P runs, degrees.")
     rotation: Literal["any", "ccw", "cw"] = Field(
         default="any",
         description="Which way the input turns meanwhile. It decides on which side of the line the linkage lies: the "
         "two are mirror images. `any` takes counter-clockwise unless only the other one meets the constraints.",
     )
-    max_deviation: PositiveNumber | None = Field(
+    max_deviation: PositiveLength | None = Field(
         default=None,
         description="Greatest distance of P from the line, in length units. With `optimize: velocity` it says how "
         "straight the line must be; where it is left out that is as straight as Norton's family is at its most even.",
     )
-    max_velocity_variation: PositiveNumber | None = Field(
+    max_velocity_variation: Annotated[PositiveNumber, PERCENT] | None = Field(
         default=None,
         description="Greatest less least velocity along the line at constant input speed, in percent of the mean.",
     )
