@@ -37,28 +37,26 @@ class WorkerMetrics:
         self.registry = CollectorRegistry()
         for collector in (ProcessCollector, PlatformCollector, GCCollector):
             collector(registry=self.registry)
-        self._attempts = Counter(
-            "mechsynth_job_attempts",
-            "Attempts at jobs that have ended, by how.",
-            ["outcome"],
-            registry=self.registry,
-        )
-        self._job_seconds = Histogram(
-            "mechsynth_job_seconds",
+        self._attempts = self._counter("job_attempts", "Attempts at jobs that have ended, by how.", "outcome")
+        self._job_seconds = self._histogram(
+            "job_seconds",
             "Computation of an attempt at a job that its worker has brought to an end.",
-            ["kind"],
-            buckets=_JOB_SECONDS,
-            registry=self.registry,
+            "kind",
+            _JOB_SECONDS,
         )
-        self._worker_restarts = Counter(
-            "mechsynth_worker_restarts",
-            "Worker processes that were replaced, by why.",
-            ["reason"],
-            registry=self.registry,
+        self._worker_restarts = self._counter(
+            "worker_restarts", "Worker processes that were replaced, by why.", "reason"
         )
-        self._workers = Gauge(
-            "mechsynth_workers_ready", "Worker processes that have finished starting.", registry=self.registry
-        )
+        self._workers = self._gauge("workers_ready", "Worker processes that have finished starting.")
+
+    def _counter(self, name: str, text: str, *labels: str) -> Counter:
+        return Counter(f"mechsynth_{name}", text, labels, registry=self.registry)
+
+    def _gauge(self, name: str, text: str, *labels: str) -> Gauge:
+        return Gauge(f"mechsynth_{name}", text, labels, registry=self.registry)
+
+    def _histogram(self, name: str, text: str, label: str, buckets: tuple[float, ...]) -> Histogram:
+        return Histogram(f"mechsynth_{name}", text, (label,), buckets=buckets, registry=self.registry)
 
     def attempt(self, outcome: str, kind: str | None = None, seconds: float = 0.0) -> None:
         """An attempt at a job has ended; kind and time are known where the worker itself has ended it."""
@@ -76,11 +74,10 @@ class HostMetrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._jobs = Gauge(
-            "mechsynth_host_jobs",
+        self._jobs = self._gauge(
+            "host_jobs",
             "Jobs that the broker has given to this host: a worker computes them, or none is free for them yet.",
-            ["status"],
-            registry=self.registry,
+            "status",
         )
 
     def watch(self, workers: Callable[[], int], running: Callable[[], int], waiting: Callable[[], int]) -> None:
@@ -95,31 +92,18 @@ class Metrics(WorkerMetrics):
 
     def __init__(self) -> None:
         super().__init__()
-        self._requests = Counter(
-            "mechsynth_http_requests",
-            "Requests that were answered.",
-            ["operation", "method", "status"],
-            registry=self.registry,
-        )
-        self._request_seconds = Histogram(
-            "mechsynth_http_request_seconds",
+        self._requests = self._counter("http_requests", "Requests that were answered.", "operation", "method", "status")
+        self._request_seconds = self._histogram(
+            "http_request_seconds",
             "From the head of a request to the end of its answer, waits and streams included.",
-            ["operation"],
-            buckets=_REQUEST_SECONDS,
-            registry=self.registry,
+            "operation",
+            _REQUEST_SECONDS,
         )
-        self._rejections = Counter(
-            "mechsynth_http_rejections",
-            "Requests that were answered with an error, by the type of the problem.",
-            ["reason"],
-            registry=self.registry,
+        self._rejections = self._counter(
+            "http_rejections", "Requests that were answered with an error, by the type of the problem.", "reason"
         )
-        self._jobs_accepted = Counter(
-            "mechsynth_jobs_accepted", "Jobs that were accepted.", ["kind"], registry=self.registry
-        )
-        self._listeners = Gauge(
-            "mechsynth_event_listeners", "Clients that listen to the events of a job.", registry=self.registry
-        )
+        self._jobs_accepted = self._counter("jobs_accepted", "Jobs that were accepted.", "kind")
+        self._listeners = self._gauge("event_listeners", "Clients that listen to the events of a job.")
 
     def request(self, operation: str, method: str, status: int, seconds: float) -> None:
         """A request has been answered."""
@@ -159,12 +143,12 @@ class _Queue(Collector):
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         try:
-            counted = self._queue()
+            counts = self._queue()
         except Exception:  # whatever a database driver raises: the other metrics are wanted all the more
             log.exception("the unfinished jobs could not be counted")
             return
         family = _family()
-        for status, jobs in counted.items():
+        for status, jobs in counts.items():
             family.add_metric([status], jobs)
         yield family
 

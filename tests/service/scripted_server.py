@@ -198,6 +198,19 @@ def break_lanes():
     ProcessPool.schedule = late_schedule
 
 
+def import_core_only():
+    """Let the server import the analysis core and not warm it up: few of these tests analyse anything."""
+    from service import analyst
+    from service.loading import IMPORTS
+
+    def load():
+        with IMPORTS:
+            import synthesis.analyses  # noqa: F401
+
+    analyst.warm_up = load
+
+
 if __name__ == "__main__":
     break_lanes()
+    import_core_only()
     sys.exit(main())
