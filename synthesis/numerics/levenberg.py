@@ -1,40 +1,44 @@
-"""Levenberg and Marquardt's method with inequalities, compiled: thousands of small descents in a second.
+"""Levenberg and Marquardt's method, compiled: thousands of small descents in a second.
 
-Half the sum of squared residuals is made least under equations h(x) = 0 and inequalities g(x) ≥ 0 by the augmented
-Lagrangian (Nocedal & Wright, *Numerical Optimization*, 2nd ed., secs. 10.3, 17.3): a limit is one more residual,
+Half the sum of squared residuals is made least from a start. Limits are residuals too; they are made to hold by
+:mod:`synthesis.numerics.augmented_lagrangian`.
 
-    √w (λ/w − g)   where it is positive,        √w (h − λ/w),
+A problem is one compiled function that writes residuals and their Jacobian:
 
-and between descents λ becomes the part of λ − w g that is positive, or λ − w h. The residuals stay a sum of squares,
-and limits are met in the end to rounding, as the multipliers λ bear their load and not the weight w.
+    rows(x, points, setting, multipliers, state, residuals, jacobian) -> number of rows m, or −1 where x is impossible
 
-A problem is one compiled function that writes residuals and their Jacobian, limits among them:
+``points`` and ``setting`` are what the problem is made of. ``multipliers`` has one number for each limit and their
+weight as its last. ``state`` is what a problem remembers of the last point that was accepted, and changes as it likes:
+unknowns that it eliminates itself. The type of the function is :data:`ROWS`, so that one compiled method serves all.
 
-    rows(x, points, setting, multipliers, state, residuals, jacobian) -> number of rows, or −1 where x is impossible
+With r the residuals, J their Jacobian, A = JᵀJ and g = Jᵀr, a step solves
 
-``points`` and ``setting`` are what the problem is made of. ``multipliers`` has λ for each limit and w as its last
-number. ``state`` is what a problem remembers of the last point that was accepted, and changes as it likes: unknowns
-that it eliminates itself. The type of the function is :data:`ROWS`, so that one compiled method serves all.
+    (A + μ D) δ = −g,        D = the greatest diagonal of A so far (Moré 1978, doi:10.1007/BFb0067700),
+
+and is expected to gain −δᵀ(g + A δ/2). The damping μ falls with the ratio ρ of the gain to what was expected, by
+max(1/3, 1 − (2ρ − 1)³), and rises by 2, 4, 8 … while steps are refused (Nielsen 1999, IMM-REP-1999-05, sec. 3).
 """
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from numba import njit, types
 from numpy.typing import NDArray
 
+from synthesis.numerics.cholesky import solve_positive
+from synthesis.numerics.status import Status
+
 Real = NDArray[np.float64]
 
-_VECTOR = types.Array(types.float64, 1, "C")
-_MATRIX = types.Array(types.float64, 2, "C")
+VECTOR = types.Array(types.float64, 1, "C")
+MATRIX = types.Array(types.float64, 2, "C")
 
-ROWS = types.int64(_VECTOR, _MATRIX, _VECTOR, _VECTOR, _VECTOR, _VECTOR, _MATRIX)
+ROWS = types.int64(VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
 """The type of a problem: x, points, setting, multipliers, state, residuals, jacobian."""
 
-LEAST_DAMPING, FIRST_DAMPING, MOST_DAMPING = 1e-15, 1e-3, 1e12
+MIN_DAMPING, FIRST_DAMPING, MAX_DAMPING = 1e-15, 1e-3, 1e12
 
 LONGEST_STEP = 1.0
 """Longest step of one unknown; unknowns are scaled so that this is far."""
@@ -42,33 +46,32 @@ LONGEST_STEP = 1.0
 NOTHING = 1e-30
 """A sum of squares that is rounding alone."""
 
+SMALLEST_SQUARE = 1e-12
+"""Least entry of D: an unknown that no residual hangs on stays where it is."""
+
+ROUNDING = 1e-15
+"""A step of this length, or a gain of this share of the cost, is rounding."""
+
+_STALLED, _SINGULAR, _IMPOSSIBLE = int(Status.STALLED), int(Status.SINGULAR), int(Status.IMPOSSIBLE)
+_STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
+_STEP, _ZERO = int(Status.STEP), int(Status.ZERO)
+
+ENDED: Any = types.Tuple((types.float64, types.int64))  # type: ignore[no-untyped-call]
+"""The type of an end: half the sum of squares, and the :class:`~synthesis.numerics.status.Status`."""
+
 
 @njit(cache=True, nogil=True)
-def solve_positive(matrix: Real, right: Real, n: int) -> bool:
-    """Solve a symmetric positive definite system in place by Cholesky's method; False where it is not definite."""
-    for j in range(n):
-        for k in range(j):
-            matrix[j, j] -= matrix[j, k] * matrix[j, k]
-        if not matrix[j, j] > 0.0:
-            return False
-        matrix[j, j] = math.sqrt(matrix[j, j])
-        for i in range(j + 1, n):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
-    for i in range(n):
-        for k in range(i):
-            right[i] -= matrix[i, k] * right[k]
-        right[i] /= matrix[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            right[i] -= matrix[k, i] * right[k]
-        right[i] /= matrix[i, i]
-    return True
+def half_square(residuals: Real, m: int) -> float:
+    """Half the sum of the first m residuals' squares."""
+    cost = 0.0
+    for k in range(m):
+        cost += 0.5 * residuals[k] * residuals[k]
+    return cost
 
 
 @njit(cache=True, nogil=True)
 def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradient: Real) -> None:
+    """A (its lower triangle) and g of the first m rows."""
     for i in range(n):
         gradient[i] = 0.0
         for j in range(i + 1):
@@ -82,10 +85,20 @@ def _normal(residuals: Real, jacobian: Real, m: int, n: int, matrix: Real, gradi
                     matrix[i, j] += row[i] * row[j]
 
 
+@njit(cache=True, nogil=True)
+def _expected_gain(matrix: Real, gradient: Real, step: Real) -> float:
+    """−δᵀ(g + A δ/2), from the lower triangle of A."""
+    gain = 0.0
+    for i in range(step.size):
+        curved = 0.0
+        for j in range(step.size):
+            curved += (matrix[i, j] if j <= i else matrix[j, i]) * step[j]
+        gain -= step[i] * (gradient[i] + 0.5 * curved)
+    return gain
+
+
 @njit(
-    types.float64(
-        types.FunctionType(ROWS), _VECTOR, _MATRIX, _VECTOR, _VECTOR, _VECTOR, types.int64, types.int64, types.float64
-    ),
+    ENDED(types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, types.int64, types.int64, types.float64),
     cache=True,
     nogil=True,
 )
@@ -99,8 +112,8 @@ def descend(
     most: int,
     steps: int,
     tolerance: float,
-) -> float:
-    """Descend from x, in place, to a local minimum; returns half the sum of squares there, infinite if x is impossible.
+) -> tuple[float, int]:
+    """Descend from x, in place, to a local minimum; returns half the sum of squares there, and the status.
 
     Parameters
     ----------
@@ -114,77 +127,100 @@ def descend(
         Steps at most, tried ones included.
     tolerance : float
         Relative decrease at which the descent ends when two steps in turn make no more.
+
+    Returns
+    -------
+    cost : float
+        Infinite where the start is impossible.
+    status : int
+        A :class:`~synthesis.numerics.status.Status`.
     """
     n = x.size
     residuals, trial_residuals = np.empty(most), np.empty(most)
     jacobian, trial_jacobian = np.zeros((most, n)), np.zeros((most, n))
     m = rows(x, points, setting, multipliers, state, residuals, jacobian)
     if m < 0:
-        return np.inf
+        return np.inf, _IMPOSSIBLE
     trial, trial_state = np.empty(n), np.empty(state.size)
     matrix, factor, gradient, step = np.empty((n, n)), np.empty((n, n)), np.empty(n), np.empty(n)
-    scale = np.full(n, 1e-12)
-    cost = 0.0
-    for k in range(m):
-        cost += 0.5 * residuals[k] * residuals[k]
+    scale = np.full(n, SMALLEST_SQUARE)
+    cost = half_square(residuals, m)
+    if not cost < np.inf:
+        return np.inf, _IMPOSSIBLE
     _normal(residuals, jacobian, m, n, matrix, gradient)
     damping, growth, small = FIRST_DAMPING, 2.0, 0
     for _ in range(steps):
-        if not 1e-300 < cost < np.inf or cost < NOTHING:
-            break
+        if cost < NOTHING:
+            return cost, _ZERO
         for i in range(n):
             scale[i] = max(scale[i], matrix[i, i])
             step[i] = -gradient[i]
             for j in range(i + 1):
                 factor[i, j] = matrix[i, j]
             factor[i, i] += damping * scale[i]
-        if not solve_positive(factor, step, n):
+        if not solve_positive(factor, step):
             damping *= 10.0
-            if damping > MOST_DAMPING:
-                break
+            if damping > MAX_DAMPING:
+                return cost, _SINGULAR
             continue
-        longest = 0.0
-        for i in range(n):
-            longest = max(longest, abs(step[i]))
+        longest = np.abs(step).max()
         if not longest < np.inf:
-            break
-        short = LONGEST_STEP / longest if longest > LONGEST_STEP else 1.0
-        expected = 0.0
-        for i in range(n):
-            step[i] *= short
-        for i in range(n):
-            trial[i] = x[i] + step[i]
-            curved = 0.0
-            for j in range(n):
-                curved += (matrix[i, j] if j <= i else matrix[j, i]) * step[j]
-            expected -= step[i] * (gradient[i] + 0.5 * curved)
+            return cost, _SINGULAR
+        step *= LONGEST_STEP / longest if longest > LONGEST_STEP else 1.0
+        expected = _expected_gain(matrix, gradient, step)
+        trial[:] = x + step
         trial_state[:] = state
-        found = rows(trial, points, setting, multipliers, trial_state, trial_residuals, trial_jacobian)
-        now = np.inf
-        if found >= 0:
-            now = 0.0
-            for k in range(found):
-                now += 0.5 * trial_residuals[k] * trial_residuals[k]
-        if now < cost:
-            ratio = (cost - now) / expected if expected > 0.0 else 1.0
-            small = small + 1 if cost - now <= tolerance * cost else 0
-            cost = now
+        trial_m = rows(trial, points, setting, multipliers, trial_state, trial_residuals, trial_jacobian)
+        trial_cost = half_square(trial_residuals, trial_m) if trial_m >= 0 else np.inf
+        if trial_cost < cost:
+            ratio = (cost - trial_cost) / expected if expected > 0.0 else 1.0
+            small = small + 1 if cost - trial_cost <= tolerance * cost else 0
+            cost, m = trial_cost, trial_m
             x[:] = trial
             state[:] = trial_state
-            m = found
             residuals, trial_residuals = trial_residuals, residuals
             jacobian, trial_jacobian = trial_jacobian, jacobian
             _normal(residuals, jacobian, m, n, matrix, gradient)
-            damping = max(damping * max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3), LEAST_DAMPING)
+            damping = max(damping * max(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3), MIN_DAMPING)
             growth = 2.0
             if small >= 2:
-                break
-        else:
-            # A step that should gain less than rounding and gains nothing: the minimum is here.
-            if expected <= 1e-15 * cost or longest < 1e-15:
-                break
-            damping *= growth
-            growth *= 2.0
-            if damping > MOST_DAMPING:
-                break
-    return cost
+                return cost, _COST
+            continue
+        # A step that should gain less than rounding and gains nothing: the minimum is here.
+        if expected <= ROUNDING * cost:
+            return cost, _GRADIENT
+        if longest < ROUNDING:
+            return cost, _STEP
+        damping *= growth
+        growth *= 2.0
+        if damping > MAX_DAMPING:
+            return cost, _STALLED
+    return cost, _STEP_LIMIT
+
+
+@njit(
+    types.void(
+        types.FunctionType(ROWS), MATRIX, MATRIX, VECTOR, VECTOR, MATRIX, types.int64, types.int64, types.float64,
+        VECTOR, types.Array(types.int64, 1, "C"),
+    ),
+    cache=True,
+    nogil=True,
+)  # fmt: skip
+def descend_each(
+    rows: Any,
+    starts: Real,
+    points: Real,
+    setting: Real,
+    multipliers: Real,
+    states: Real,
+    most: int,
+    steps: int,
+    tolerance: float,
+    costs: Real,
+    statuses: NDArray[np.int64],
+) -> None:
+    """Descend from each start in place; ``costs`` and ``statuses`` get how each has ended. See :func:`descend`."""
+    for k in range(len(starts)):
+        costs[k], statuses[k] = descend(
+            rows, starts[k], points, setting, multipliers, states[k], most, steps, tolerance
+        )

@@ -11,15 +11,7 @@ from kinematics.linkage import OPEN, Fourbar, SliderCrank, positions
 from kinematics.linkage.planar.catalogue import geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders
-from synthesis.kinds.path.curve_descent import descend
-from synthesis.kinds.path.curve_match import with_cognates
-from synthesis.kinds.path.curve_shapes import (
-    SHAPE_POINTS,
-    alike,
-    draw,
-    equal_steps,
-)
-from synthesis.kinds.path.traced_curves import (
+from synthesis.fit.chart import (
     CRANK_ROCKER,
     DOUBLE_CRANK,
     FOURBAR,
@@ -28,9 +20,15 @@ from synthesis.kinds.path.traced_curves import (
     SLIDER_ROCKER,
     UNKNOWNS,
     natural,
-    place,
-    place_with_slopes,
-    sweep,
+)
+from synthesis.fit.coupler_curve import place, place_with_slopes, sweep
+from synthesis.kinds.path.curve_descent import descend
+from synthesis.kinds.path.curve_match import with_cognates
+from synthesis.kinds.path.curve_shapes import (
+    SHAPE_POINTS,
+    alike,
+    draw,
+    equal_steps,
 )
 from synthesis.kinds.path.verify_curve import verify_curve
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism

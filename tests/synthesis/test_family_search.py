@@ -5,8 +5,8 @@ import pytest
 
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
+from synthesis.fit.chart import CRANK_ROCKER, natural
 from synthesis.kinds.path.curve_descent import ANYWHERE, descend
-from synthesis.kinds.path.traced_curves import CRANK_ROCKER, natural
 from synthesis.registry import parse_problem
 
 

@@ -20,16 +20,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synthesis.kinds.path.traced_curves import (
-    FOURBAR,
-    GEARED_FIVEBAR,
-    LARGEST_LOG,
-    OPTIONS,
-    SMALLEST_LOG,
-    natural,
-    place,
-    place_with_slopes,
-)
+from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, MAX_LOG, MIN_LOG, OPTIONS, natural
+from synthesis.fit.coupler_curve import place, place_with_slopes
+from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.portions import in_portions
 
 Real = NDArray[np.float64]
@@ -141,35 +134,6 @@ def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, 
 
 
 @njit(**OPTIONS)
-def _solved(matrix: Real, right: Real) -> bool:
-    """Cholesky's method in place; the solution is left in ``right``; False where not positive definite."""
-    m = len(right)
-    for j in range(m):
-        pivot = matrix[j, j]
-        for k in range(j):
-            pivot -= matrix[j, k] * matrix[j, k]
-        if not pivot > 0.0:
-            return False
-        pivot = math.sqrt(pivot)
-        matrix[j, j] = pivot
-        for i in range(j + 1, m):
-            value = matrix[i, j]
-            for k in range(j):
-                value -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = value / pivot
-    for i in range(m):
-        for k in range(i):
-            right[i] -= matrix[i, k] * right[k]
-        right[i] /= matrix[i, i]
-    for j in range(m):
-        i = m - 1 - j
-        for k in range(i + 1, m):
-            right[i] -= matrix[k, i] * right[k]
-        right[i] /= matrix[i, i]
-    return True
-
-
-@njit(**OPTIONS)
 def _descend(
     family: int,
     x: Real,
@@ -253,7 +217,7 @@ def _descend(
                     step[j] += cij * h[i]
                     for k in range(j + 1):
                         work[j, k] -= cij * c[i, k]
-            if not _solved(work, step):
+            if not solve_positive(work, step):
                 damping *= STIFFENED
                 continue
             shrink = 1.0
@@ -262,7 +226,7 @@ def _descend(
             for j in range(m):
                 x_new[j] = x[j] + shrink * step[j]
             for j in range(logs, logs + count):
-                x_new[j] = min(max(x_new[j], SMALLEST_LOG), LARGEST_LOG)
+                x_new[j] = min(max(x_new[j], MIN_LOG), MAX_LOG)
             for i in range(n):
                 turn = -h[i]
                 for j in range(m):
@@ -328,7 +292,7 @@ def descend(
     Parameters
     ----------
     family : int
-        Of :mod:`synthesis.kinds.path.traced_curves`.
+        Of :mod:`synthesis.fit.chart`.
     x, sign, theta : float, shapes (n, m), (n,), (n, points)
         Starts: unknowns, assembly signs, crank angles at the points.
     points : complex, shape (points,)

@@ -16,14 +16,10 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from synthesis.fit.chart import OPTIONS, natural
+from synthesis.fit.coupler_curve import place, place_with_slopes
 from synthesis.kinds.path.curve_descent import Descent, descend
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.traced_curves import (
-    OPTIONS,
-    natural,
-    place,
-    place_with_slopes,
-)
 from synthesis.model.linkage_statement import Region
 
 Real = NDArray[np.float64]

@@ -24,6 +24,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural
+from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_descent import Descent, descend
 from synthesis.kinds.path.curve_limits import (
     Limits,
@@ -53,13 +55,6 @@ from synthesis.kinds.path.point_fit import (
     point_task,
 )
 from synthesis.kinds.path.problem import PathPoint, PathProblem
-from synthesis.kinds.path.traced_curves import (
-    CRANK_ROCKER,
-    DOUBLE_CRANK,
-    FOURBAR,
-    natural,
-    place,
-)
 from synthesis.kinds.path.verify_curve import distances, verify_curve
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress

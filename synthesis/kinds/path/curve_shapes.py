@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy import fft
 from scipy.stats import qmc
 
-from synthesis.kinds.path.traced_curves import (
+from synthesis.fit.chart import (
     CRANK_ROCKER,
     DOUBLE_CRANK,
     FOURBAR,
@@ -37,8 +37,8 @@ from synthesis.kinds.path.traced_curves import (
     SLIDER_ROCKER,
     UNKNOWNS,
     natural,
-    sweep,
 )
+from synthesis.fit.coupler_curve import sweep
 from synthesis.numerics.portions import THREADS
 
 Real = NDArray[np.float64]
@@ -336,7 +336,7 @@ def alike(
     Parameters
     ----------
     family : int
-        Of :mod:`synthesis.kinds.path.traced_curves`.
+        Of :mod:`synthesis.fit.chart`.
     target : complex, shape (SHAPE_POINTS,)
         Equal steps along the target.
     closed : bool

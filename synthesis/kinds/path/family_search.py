@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural
+from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_descent import ANYWHERE, descend
 from synthesis.kinds.path.curve_shapes import (
     SHAPE_POINTS,
@@ -28,13 +30,6 @@ from synthesis.kinds.path.design import (
     PathResult,
 )
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.traced_curves import (
-    CRANK_ROCKER,
-    DOUBLE_CRANK,
-    FOURBAR,
-    natural,
-    place,
-)
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress

@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, natural
+from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_descent import ANYWHERE, descend
 from synthesis.kinds.path.curve_match import (
     ranked_by_nearness,
@@ -35,13 +37,6 @@ from synthesis.kinds.path.curve_shapes import (
 )
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.traced_curves import (
-    GEARED_FIVEBAR,
-    SLIDER_CRANK,
-    SLIDER_ROCKER,
-    natural,
-    place,
-)
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress

@@ -3,12 +3,12 @@
 Many random starts are thinned out while they descend, so that most of the work goes into those that promise most; the
 best distinct ones are brought to minima that meet the client's limits to rounding, then driven and verified like any
 other linkage. Which class of fourbar is looked for is written into the unknowns
-(:mod:`synthesis.kinds.path.coupler_curve`), and limits are met by multipliers (:mod:`synthesis.numerics.levenberg`):
-neither is a penalty.
+(:mod:`synthesis.fit.chart`), and limits are met by multipliers (:mod:`synthesis.fit.demands`): neither is a penalty.
 """
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -16,29 +16,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.path.coupler_curve import (
-    ANY,
-    PHASE,
-    POINT,
+from synthesis.fit.chart import (
+    CRANK_ROCKER,
+    DOUBLE_CRANK,
+    DOUBLE_ROCKER,
+    FOURBAR,
     UNKNOWNS,
-    closure,
-    lengths_of,
+    natural,
 )
+from synthesis.fit.coupler_curve import place
+from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
-from synthesis.kinds.path.limits import (
-    LIMITS,
-    SHORTEST,
-    SIGN,
-    Usable,
-    setting_of,
-)
-from synthesis.kinds.path.point_rows import (
-    HELD,
-    descend_each,
-    hold,
-    path_rows,
-)
+from synthesis.kinds.path.limits import Usable, setting_of
+from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
     COUPLER,
     DRAWS,
@@ -54,11 +45,15 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
+from synthesis.numerics.status import Status
 from synthesis.outcome.ranking import distinct
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 
 PORTION = 16
@@ -115,11 +110,16 @@ SAME_FIT = 1e-2
 AS_GOOD_AS_EXACT = 1e-9
 """Root mean square distance, in task sizes, below which fits are equally near."""
 
-_CLASSES = {"double_crank": [0], "crank_rocker": [1], "double_rocker": [2], "non_grashof": [ANY]}
+_FAMILIES = {
+    "double_crank": DOUBLE_CRANK,
+    "crank_rocker": CRANK_ROCKER,
+    "double_rocker": DOUBLE_ROCKER,
+    "non_grashof": FOURBAR,
+}
 
 
 class PointTask(NamedTuple):
-    """Points in task coordinates: rows (x, y, crank angle in radians), the origin's place and the unit's length."""
+    """Points in task coordinates: rows (x, y, crank angle in radians, 1), the origin's place and the unit's length."""
 
     rows: Real
     origin: complex
@@ -127,11 +127,13 @@ class PointTask(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A linkage on its way: unknowns, crank angles, half the sum of squares, its setting, and the crank's direction."""
+    """A linkage on its way: unknowns, state (crank angles first), half the sum of squares, how its last descent has
+    ended, its setting, and the crank's direction."""
 
     x: Real
     state: Real
     cost: float
+    status: Status
     setting: Real
     way: int
 
@@ -145,16 +147,18 @@ def point_task(problem: PathProblem) -> PointTask:
     turns = np.array(problem.crank_turns) if problem.prescribed else np.zeros(len(z))
     if problem.prescribed and problem.crank_phase != "free":
         turns = turns + math.radians(math.remainder(problem.points[0].crank_angle or 0.0, 360.0))
-    return PointTask(np.ascontiguousarray(np.stack([unit.real, unit.imag, turns], axis=1)), origin, size)
+    return PointTask(
+        np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, np.ones(len(z))], axis=1)), origin, size
+    )
 
 
-def classes(problem: PathProblem) -> list[int]:
-    """The shortest links of the classes of fourbars that are looked for."""
+def families(problem: PathProblem) -> list[int]:
+    """The families of fourbars that are looked for."""
     wanted = problem.constraints.grashof
     if wanted != "any":
-        return _CLASSES[wanted]
+        return [_FAMILIES[wanted]]
     turning = problem.constraints.full_rotation or problem.closed
-    return [1, 0] if turning else [1, 0, ANY]
+    return [CRANK_ROCKER, DOUBLE_CRANK] if turning else [CRANK_ROCKER, DOUBLE_CRANK, FOURBAR]
 
 
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
@@ -180,11 +184,11 @@ def warm_up() -> None:
     for stated in ({"points": points}, {"points": turning, "timing": "prescribed"}):
         problem = PathProblem.model_validate({"kind": "path", "method": "least_squares", **stated})
         task = point_task(problem)
-        setting = setting_of(problem, task.origin, task.size, sign=1.0, shortest=1)
+        setting = setting_of(problem, task.origin, task.size, sign=1.0, family=CRANK_ROCKER)
         flock = _descended(problem, task.rows, setting, 300, np.random.default_rng(0))
         _kicked(problem, (flock, flock), task.rows, setting, np.random.default_rng(0))
-        for candidate in (Candidate(x, state, 0.0, setting, 1) for x, state, _ in zip(*flock, strict=True)):
-            mechanism = mechanism_of(candidate, task)
+        for x, state in zip(flock.starts, flock.states, strict=True):
+            mechanism = mechanism_of(Candidate(x, state, 0.0, Status.STEP_LIMIT, setting, 1), task)
             if mechanism is not None:
                 verify_path(problem, mechanism)
 
@@ -201,10 +205,10 @@ def fitted(
     """Minima within the limits, least first: ``finalists`` of them at most, within limits of our own too if stated."""
     thinned = _thinned(task)
     ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
-    cases = [(way, shortest, sign) for way in ways for shortest in classes(problem) for sign in (1.0, -1.0)]
+    cases = [(way, family, sign) for way in ways for family in families(problem) for sign in (1.0, -1.0)]
     settings = [
-        setting_of(problem, task.origin, task.size, sign=sign, shortest=shortest, usable=usable)
-        for _, shortest, sign in cases
+        setting_of(problem, task.origin, task.size, sign=sign, family=family, usable=usable)
+        for _, family, sign in cases
     ]
     flocks = []
     for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
@@ -219,9 +223,9 @@ def fitted(
             rows = _directed(thinned.rows, way)
             flocks[n] = _joined([flocks[n], _kicked(problem, pair, rows, settings[n], rng)])
     pool = [
-        Candidate(x, state, float(cost), setting, way)
+        Candidate(x, state, float(cost), Status(status), setting, way)
         for (way, _, _), setting, flock in zip(cases, settings, flocks, strict=True)
-        for x, state, cost in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
+        for x, state, cost, status in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
     ]
     pool.sort(key=lambda candidate: candidate.cost)
     most = finalists if len(task.rows) <= MANY else OF_MANY
@@ -229,13 +233,13 @@ def fitted(
     for _ in range(RETURNS if thinned is task else 0):
         # What has come to its limits may lie next to something better beyond them.
         again: list[Candidate] = []
-        for n, (way, shortest, sign) in enumerate(cases):
+        for n, (way, family, sign) in enumerate(cases):
             progress(0.8 + 0.1 * n / len(cases), "changing the best fits")
-            held = _flock_of(found, (way, shortest, sign)), _flock_of(found, (way, shortest, -sign))
+            held = _flock_of(found, (way, family, sign)), _flock_of(found, (way, family, -sign))
             flock = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
             again += [
-                Candidate(x, state, float(cost), settings[n], way)
-                for x, state, cost in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
+                Candidate(x, state, float(cost), Status(status), settings[n], way)
+                for x, state, cost, status in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
             ]
         again.sort(key=lambda candidate: candidate.cost)
         found += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
@@ -257,13 +261,13 @@ def _all_held(
 
 
 def _flock_of(found: list[Candidate], case: tuple[int, int, float]) -> _Flock:
-    """The best distinct ones of a case: the crank's direction, the shortest link and the assembly."""
-    way, shortest, sign = case
-    own = [c for c in found if c.way == way and c.setting[SHORTEST] == shortest and c.setting[SIGN] == sign]
+    """The best distinct ones of a case: the crank's direction, the family and the assembly."""
+    way, family, sign = case
+    own = [c for c in found if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
     own.sort(key=lambda candidate: candidate.cost)
     if not own:
-        return _empty(0, 9, 0)
-    flock = _Flock(*(np.array(column) for column in list(zip(*own, strict=True))[:3]))
+        return _empty(0, UNKNOWNS[FOURBAR], 0)
+    flock = _Flock(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
     return _different(flock, KICKED)
 
 
@@ -276,7 +280,7 @@ def _thinned(task: PointTask) -> PointTask:
 
 
 def _directed(rows: Real, way: int) -> Real:
-    return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0])
+    return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0, 1.0])
 
 
 def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Flock:
@@ -284,7 +288,8 @@ def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng:
     n = len(rows)
     free = FREE_STARTS if n <= FEW else STARTS_OF_MANY
     count = (TIMED_STARTS if problem.prescribed else free) // cases
-    unknowns = UNKNOWNS if problem.prescribed and problem.crank_phase == "free" else PHASE
+    phased = problem.prescribed and problem.crank_phase == "free"
+    unknowns = UNKNOWNS[FOURBAR] + phased
     draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAWS - 4))], axis=1)
     flock = _empty(count, unknowns, n)
     if problem.prescribed:
@@ -327,7 +332,7 @@ def _kicked(
         draws = reach * rng.normal(size=(size, 4))
         kicked(base.starts, part.states, its_sign, flip, draws, rows, setting, part.starts, part.costs)
         parts.append(part)
-    near = _joined(parts) if parts else _empty(0, 9, n)
+    near = _joined(parts) if parts else _empty(0, UNKNOWNS[FOURBAR], n)
     for share, steps, tolerance in KICK_THINNING:
         near = _best(near, math.ceil(share * len(near.costs)))
         _descend(near, rows, setting, steps, tolerance)
@@ -335,15 +340,22 @@ def _kicked(
 
 
 class _Flock(NamedTuple):
-    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points) and costs (k,)."""
+    """Starts that descend together: unknowns (k, unknowns), states (k, 3 points + limits), costs (k,), and how the last
+    descent of each has ended (k,)."""
 
     starts: Real
     states: Real
     costs: Real
+    statuses: Whole
 
 
 def _empty(count: int, unknowns: int, points: int) -> _Flock:
-    return _Flock(np.zeros((count, unknowns)), np.zeros((count, 3 * points)), np.full(count, np.inf))
+    return _Flock(
+        np.zeros((count, unknowns)),
+        np.zeros((count, 3 * points + LIMITS)),
+        np.full(count, np.inf),
+        np.full(count, Status.STEP_LIMIT, np.int64),
+    )
 
 
 def _joined(flocks: list[_Flock]) -> _Flock:
@@ -354,13 +366,13 @@ def _best(flock: _Flock, count: int) -> _Flock:
     """The best of them, copies."""
     kept = np.argsort(flock.costs, kind="stable")[:count]
     kept = kept[np.isfinite(flock.costs[kept])]
-    return _Flock(flock.starts[kept], flock.states[kept], flock.costs[kept])
+    return _Flock._make(column[kept] for column in flock)
 
 
 def _different(flock: _Flock, count: int) -> _Flock:
     """Those, best first, whose cost is not that of the one before: they have not come to the same minimum."""
     kept = np.flatnonzero(np.diff(flock.costs, prepend=-1.0) > SAME_COST * flock.costs)[:count]
-    return _Flock(flock.starts[kept], flock.states[kept], flock.costs[kept])
+    return _Flock._make(column[kept] for column in flock)
 
 
 def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
@@ -368,10 +380,12 @@ def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: fl
         return
     multipliers = np.zeros(LIMITS + 1)
     multipliers[LIMITS] = SOFT
+    most = 2 * len(rows) + LIMITS
 
     def work(some: slice) -> None:
-        starts, states, costs = flock.starts[some], flock.states[some], flock.costs[some]
-        descend_each(path_rows, starts, states, rows, setting, multipliers, steps, tolerance, costs)
+        starts, states = flock.starts[some], flock.states[some]
+        costs, statuses = flock.costs[some], flock.statuses[some]
+        descend_each(path_rows, starts, rows, setting, multipliers, states, most, steps, tolerance, costs, statuses)
 
     in_portions(work, len(flock.costs), PORTION)
 
@@ -387,16 +401,15 @@ def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
 def _joints(candidate: Candidate) -> Complex:
     """O2, A, B, O4 and P at the first point, in task coordinates; NaN beyond a toggle."""
     lengths = np.empty(4)
-    x, phi = candidate.x, float(candidate.state[0])
-    lengths_of(x, int(candidate.setting[SHORTEST]), lengths, np.empty((4, 4)))
-    d, a, b, c = map(float, lengths)
-    good, x3, y3, _, _ = closure(d, a, b, c, float(candidate.setting[SIGN]), math.cos(phi), math.sin(phi))
+    x, sign = candidate.x, float(candidate.setting[SIGN])
+    natural(int(candidate.setting[FAMILY]), x, lengths, np.empty((4, 4)))
+    theta = float(candidate.state[0] + x[2])
+    good, point, coupler = place(FOURBAR, x, lengths, sign, 0.0, theta)
     if not good:
         return np.full(5, np.nan + 0j)
-    o2, ground = complex(x[0], x[1]), np.exp(1j * x[2])
-    pin = o2 + ground * a * np.exp(1j * phi)
-    coupler = ground * complex(x3, y3)
-    return np.array([o2, pin, pin + b * coupler, o2 + d * ground, pin + coupler * complex(x[POINT], x[POINT + 1])])
+    o2 = complex(x[0], x[1])
+    pin = o2 + cmath.rect(lengths[1], theta)
+    return np.array([o2, pin, pin + lengths[2] * coupler, o2 + cmath.rect(lengths[0], x[2]), point])
 
 
 def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidate | None:
@@ -404,16 +417,16 @@ def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidat
     x, state = candidate.x.copy(), candidate.state
     n, few = len(task.rows), len(thinned.rows)
     if n > few:
-        state = np.zeros(3 * n)
+        state = np.zeros(3 * n + LIMITS)
         state[:n] = np.interp(np.arange(n), np.linspace(0, n - 1, few).round(), candidate.state[:few])
     else:
         state = state.copy()
     rows = _directed(task.rows, candidate.way)
-    ended = np.empty(2)
-    hold(path_rows, x, state, rows, candidate.setting, FIRM, ended)
-    if not np.all(np.isfinite(ended)) or ended[1] > 10.0 * HELD:
+    ended = np.empty(1)
+    status = hold(path_rows, x, rows, candidate.setting, state, 2 * n + LIMITS, LIMITS, EQUATIONS, FIRM, ended)
+    if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(ended[0]):
         return None
-    return candidate._replace(x=x, state=state, cost=float(ended[0]))
+    return candidate._replace(x=x, state=state, cost=float(ended[0]), status=Status(status))
 
 
 def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfiguration | None:

@@ -12,49 +12,35 @@ Pereyra 1973, doi:10.1137/0710036, in Kaufman's form). Points that share an angl
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import njit
 from numpy.typing import NDArray
 
+from synthesis.fit.chart import FOURBAR, LENGTHS, natural
+from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes
+from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, margins
 from synthesis.kinds.path.assignment import pool
-from synthesis.kinds.path.coupler_curve import (
-    LENGTHS,
-    PHASE,
-    lengths_of,
-    point_and_slopes,
-    point_at,
-)
-from synthesis.kinds.path.limits import (
-    ABSOLUTE,
-    LIMITS,
-    ORDERED,
-    PHASED,
-    SHORTEST,
-    SIGN,
-    TIMED,
-    limit_rows,
-    renew,
-)
-from synthesis.numerics.levenberg import ROWS, descend
+from synthesis.kinds.path.limits import ABSOLUTE, ORDERED, PHASED, TIMED
+from synthesis.numerics.augmented_lagrangian import limit_rows
+from synthesis.numerics.levenberg import ROWS
 
 Real = NDArray[np.float64]
+
+PHASE = 9
+"""Where the crank's phase stands among the unknowns, behind those of the chart, where it is one."""
+
+WIDEST_LOG = 40.0
+"""No number for a length leaves ± this: beyond it lengths are rounding beside one another."""
+
+DIFFERENCE = 1e-5
+"""Radians over which the curvature of P's path is differenced."""
 
 NEWTON_STEPS = 4
 """Steps of the eliminated angles at each linkage; the last linkage's are the start."""
 
 LONGEST_TURN = 0.2
 """Longest such step, radians."""
-
-HELD = 1e-11
-"""Violation of a limit (task sizes; shares of a length) that is rounding."""
-
-ROUNDS = 20
-"""Descents in which limits are brought to hold, at most."""
-
-STEPS, TOLERANCE = 300, 1e-14
-"""Steps of each at most, and the relative decrease at which it ends."""
 
 SETTLED = 1e-7
 """Radians; where a step of Newton's is shorter, the next would be shorter than rounding."""
@@ -91,20 +77,20 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
     values, weights = np.empty(n), np.empty(n)
     for _ in range(NEWTON_STEPS):
         for k in range(n):
-            good, px, py, tx, ty = point_at(x, lengths, sign, angles[k])
+            good, p, t = fourbar_velocity(x, lengths, sign, x[2] + angles[k])
             if not good:
                 return False
-            square = tx * tx + ty * ty
+            square = t.real * t.real + t.imag * t.imag
             # The second derivative of half the squared distance, its part from the curvature by a difference.
-            good, _, _, sx, sy = point_at(x, lengths, sign, angles[k] + 1e-5)
-            gx, gy = px - points[k, 0], py - points[k, 1]
+            good, _, ahead = fourbar_velocity(x, lengths, sign, x[2] + angles[k] + DIFFERENCE)
+            gx, gy = p.real - points[k, 0], p.imag - points[k, 1]
             curved = square
             if good:
-                curved += ((sx - tx) * gx + (sy - ty) * gy) * 1e5
+                curved += ((ahead.real - t.real) * gx + (ahead.imag - t.imag) * gy) / DIFFERENCE
             curved = max(curved, 0.25 * square, 1e-12)
-            step = -(tx * gx + ty * gy) / curved
+            step = -(t.real * gx + t.imag * gy) / curved
             values[k] = way * (angles[k] + min(max(step, -LONGEST_TURN), LONGEST_TURN))
-            weights[k] = curved
+            weights[k] = points[k, 3] * points[k, 3] * curved
         if setting[ORDERED] == 0.0:
             blocks[:] = np.arange(n)
         else:
@@ -130,17 +116,16 @@ def path_rows(
 ) -> int:
     """Residuals and Jacobian of all points, and of the limits; see :data:`synthesis.numerics.levenberg.ROWS`.
 
-    ``points`` are rows (x, y, crank angle); with free timing the third number is not looked at, and ``state`` has the
-    crank angles from the ground line; with prescribed timing it is overwritten by them. Its last entry + 1 turns by
-    the direction in which angles rise.
+    ``points`` are rows (x, y, crank angle, root of the weight); with free timing the third number is not looked at, and
+    ``state`` has the crank angles from the ground line first; with prescribed timing they are written there. Behind
+    them stands room for two numbers a point, and the limits' margins are the last.
     """
     n = len(points)
-    lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty((2, 9))
+    lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty(10, np.complex128)
     for i in range(LENGTHS, LENGTHS + 4):
-        if not -40.0 < x[i] < 40.0:
+        if not -WIDEST_LOG < x[i] < WIDEST_LOG:
             return -1
-    shortest = int(setting[SHORTEST])
-    lengths_of(x, shortest, lengths, slopes)
+    natural(int(setting[FAMILY]), x, lengths, slopes)
     sign = setting[SIGN]
     timed = setting[TIMED] > 0.0
     absolute = setting[PHASED] == ABSOLUTE
@@ -154,10 +139,15 @@ def path_rows(
     m = 0
     first = 0
     for k in range(n):
-        good, px, py, tx, ty = point_and_slopes(x, lengths, slopes, sign, state[k], by)
+        good, p = place_with_slopes(FOURBAR, x, lengths, slopes, sign, 0.0, x[2] + state[k], by)
         if not good:
             return -1
-        gx, gy = px - points[k, 0], py - points[k, 1]
+        root = points[k, 3]
+        gx, gy = root * (p.real - points[k, 0]), root * (p.imag - points[k, 1])
+        tx, ty = root * by[9].real, root * by[9].imag
+        # The crank stands still to the ground line, not in the plane, where crank angles are not absolute.
+        if not absolute:
+            by[2] += by[9]
         if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
             # Alone at its angle: what lies across the curve is all that is left.
             fast = math.sqrt(tx * tx + ty * ty)
@@ -165,18 +155,15 @@ def path_rows(
                 nx, ny = -ty / fast, tx / fast
                 residuals[m] = nx * gx + ny * gy
                 for i in range(9):
-                    jacobian[m, i] = nx * by[0, i] + ny * by[1, i]
+                    jacobian[m, i] = root * (nx * by[i].real + ny * by[i].imag)
                 m += 1
                 continue
         one, two = jacobian[m], jacobian[m + 1]
         residuals[m], residuals[m + 1] = gx, gy
         for i in range(9):
-            one[i], two[i] = by[0, i], by[1, i]
+            one[i], two[i] = root * by[i].real, root * by[i].imag
         if timed:
-            if absolute:
-                one[2] -= tx
-                two[2] -= ty
-            elif unknowns > PHASE:
+            if unknowns > PHASE:
                 one[PHASE], two[PHASE] = tx, ty
         else:
             if k == 0 or blocks[k - 1] != blocks[k]:
@@ -185,74 +172,7 @@ def path_rows(
             if k + 1 == n or blocks[k + 1] != blocks[k]:
                 _project(jacobian, first, m + 2, state[n : n + m + 2 - first])
         m += 2
-    values = np.empty(LIMITS)
     ends = np.array([state[0], state[n - 1]])
-    return limit_rows(x, lengths, slopes, ends, setting, multipliers, residuals, jacobian, m, values)
-
-
-_VECTOR, _MATRIX = types.Array(types.float64, 1, "C"), types.Array(types.float64, 2, "C")
-
-
-@njit(
-    types.void(
-        types.FunctionType(ROWS), _MATRIX, _MATRIX, _MATRIX, _VECTOR, _VECTOR, types.int64, types.float64, _VECTOR
-    ),
-    cache=True,
-    nogil=True,
-)
-def descend_each(
-    rows: Any,
-    starts: Real,
-    states: Real,
-    points: Real,
-    setting: Real,
-    multipliers: Real,
-    steps: int,
-    tolerance: float,
-    costs: Real,
-) -> None:  # fmt: skip
-    """Descend from each start in place; its cost becomes that of where it has come to."""
-    most = 2 * len(points) + LIMITS
-    for k in range(len(starts)):
-        costs[k] = descend(rows, starts[k], points, setting, multipliers, states[k], most, steps, tolerance)
-
-
-@njit(
-    types.void(types.FunctionType(ROWS), _VECTOR, _VECTOR, _MATRIX, _VECTOR, types.float64, _VECTOR),
-    cache=True,
-    nogil=True,
-)
-def hold(rows: Any, x: Real, state: Real, points: Real, setting: Real, weight: float, ended: Real) -> None:
-    """Descend to a minimum at which all limits are met; ``ended`` gets half the sum of squares and the violation.
-
-    Both are infinite where there is none.
-    """
-    most = 2 * len(points) + LIMITS
-    multipliers = np.zeros(LIMITS + 1)
-    multipliers[LIMITS] = weight
-    lengths, slopes, values = np.empty(4), np.empty((4, 4)), np.empty(LIMITS)
-    residuals, jacobian = np.empty(most), np.zeros((most, x.size))
-    before = worst = np.inf
-    ended[:] = np.inf
-    for _ in range(ROUNDS):
-        if not descend(rows, x, points, setting, multipliers, state, most, STEPS, TOLERANCE) < np.inf:
-            return
-        lengths_of(x, int(setting[SHORTEST]), lengths, slopes)
-        ends = np.array([state[0], state[len(points) - 1]])
-        limit_rows(x, lengths, slopes, ends, setting, multipliers, residuals, jacobian, 2 * len(points), values)
-        worst = renew(multipliers, values, setting, x, lengths)
-        if worst <= HELD:
-            break
-        if worst > 0.25 * before:
-            # Multipliers stay what they are: their unit does not hang on the weight.
-            multipliers[LIMITS] *= 10.0
-        before = worst
-    found = rows(x, points, setting, multipliers, state, residuals, jacobian)
-    if found < 0:
-        return
-    spare, unused = np.empty(LIMITS), np.zeros((LIMITS, x.size))
-    limited = limit_rows(x, lengths, slopes, ends, setting, multipliers, spare, unused, 0, values)
-    cost = 0.0
-    for k in range(found - limited):
-        cost += 0.5 * residuals[k] * residuals[k]
-    ended[0], ended[1] = cost, worst
+    values, gradients = state[state.size - LIMITS :], np.empty((LIMITS, unknowns))
+    margins(x, lengths, slopes, ends, setting, values, gradients)
+    return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)

@@ -18,29 +18,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synthesis.fit.chart import FOURBAR, LENGTHS, POINT, from_lengths, natural
+from synthesis.fit.coupler_curve import crank_range, place, two_bars, unit
+from synthesis.fit.demands import FAMILY, GIVEN, SIGN, WHOLE
 from synthesis.kinds.path.assignment import assign
-from synthesis.kinds.path.coupler_curve import (
-    ANY,
-    LENGTHS,
-    PHASE,
-    POINT,
-    closure,
-    crank_range,
-    lengths_of,
-    numbers_of,
-    point_at,
-)
-from synthesis.kinds.path.limits import (
-    ABSOLUTE,
-    CLOSED,
-    GIVEN,
-    GROUND_LINE,
-    ORDERED,
-    PHASED,
-    SHORTEST,
-    SIGN,
-    TIMED,
-)
+from synthesis.kinds.path.limits import ABSOLUTE, GROUND_LINE, ORDERED, PHASED, TIMED
+from synthesis.kinds.path.point_rows import PHASE
 
 Real = NDArray[np.float64]
 
@@ -65,12 +48,15 @@ and beyond the slider there is the link's mirror image."""
 NEAR_EDGE = 1e-5
 """Share of all links together at which a linkage that has left its class is put back."""
 
+SMALLEST_GROUND = 1e-3
+"""Least ground link of a start, in task sizes, where its direction is given."""
+
 TURNS = 3
 """Times that angles and places are put right by turns."""
 
 
 @njit(cache=True, nogil=True)
-def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
+def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real, turn: float, x: Real) -> float:
     """Place, size and coupler point for a shape at crank angles from the ground line; half the sum of squares.
 
     ``x`` gets the linkage's nine numbers. ``turn`` is the angle of the ground line where crank angles are absolute.
@@ -80,12 +66,11 @@ def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real,
     crank, coupler = np.empty(n, np.complex128), np.empty(n, np.complex128)
     target = np.empty(n, np.complex128)
     for k in range(n):
-        cosine, sine = math.cos(angles[k]), math.sin(angles[k])
-        good, x3, y3, _, _ = closure(d, a, lengths[2], lengths[3], sign, cosine, sine)
+        pin = a * unit(angles[k])
+        good, coupler[k] = two_bars(d - pin, lengths[2], lengths[3], sign)
         if not good:
             return np.inf
-        crank[k] = complex(a * cosine, a * sine) / d
-        coupler[k] = complex(x3, y3)
+        crank[k] = pin / d
         target[k] = complex(points[k, 0], points[k, 1])
     pivot_given = not (math.isnan(setting[GIVEN]) or math.isnan(setting[GIVEN + 1]))
     ground_given = pivot_given and not (math.isnan(setting[GIVEN + 2]) or math.isnan(setting[GIVEN + 3]))
@@ -112,8 +97,8 @@ def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real,
     if ground_given:
         ground = complex(setting[GIVEN + 2] - setting[GIVEN], setting[GIVEN + 3] - setting[GIVEN + 1])
     elif setting[TIMED] > 0.0 and setting[PHASED] == ABSOLUTE:
-        unit = complex(math.cos(turn), math.sin(turn))
-        ground = max((ground * unit.conjugate()).real, 1e-3) * unit
+        along = unit(turn)
+        ground = max((ground * along.conjugate()).real, SMALLEST_GROUND) * along
     size = abs(ground)
     if not 1e-9 < size < 1e9:
         return np.inf
@@ -126,7 +111,7 @@ def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real,
     x[0], x[1] = pivot.real, pivot.imag
     x[2] = math.atan2(ground.imag, ground.real)
     scaled = lengths * (size / d)
-    if not numbers_of(scaled, int(setting[SHORTEST]), x):
+    if not from_lengths(scaled, int(setting[FAMILY]), 0.0, x):
         return np.inf
     point = arm * ground.conjugate() / size
     x[POINT], x[POINT + 1] = point.real, point.imag
@@ -134,15 +119,16 @@ def place(lengths: Real, sign: float, angles: Real, points: Real, setting: Real,
 
 
 @njit(cache=True, nogil=True)
-def shape(draw: Real, shortest: int, x: Real, lengths: Real) -> bool:
+def shape(draw: Real, family: int, x: Real, lengths: Real) -> bool:
     """A random shape of a class; False for one that cannot be assembled."""
     slopes = np.empty((4, 4))
-    spread = 0.9 if shortest == ANY else 1.3
+    spread = 0.9 if family == FOURBAR else 1.3
     for i in range(4):
         x[LENGTHS + i] = spread * draw[i] * (1.0 + TAIL * draw[i] * draw[i])
-    lengths_of(x, shortest, lengths, slopes)
+    natural(family, x, lengths, slopes)
     low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
-    return low < high
+    assembles: bool = low < high
+    return assembles
 
 
 @njit(cache=True, nogil=True)
@@ -153,12 +139,12 @@ def timed_starts(draws: Real, points: Real, setting: Real, unknowns: int, starts
     for row in range(len(draws)):
         draw, x = draws[row], np.zeros(10)
         costs[row] = np.inf
-        if not shape(draw, int(setting[SHORTEST]), x, lengths):
+        if not shape(draw, int(setting[FAMILY]), x, lengths):
             continue
         phase = 0.0 if setting[PHASED] == GROUND_LINE else math.pi * draw[4]
         for k in range(n):
             angles[k] = points[k, 2] + phase
-        costs[row] = place(lengths, setting[SIGN], angles, points, setting, -phase, x)
+        costs[row] = fitted_place(lengths, setting[SIGN], angles, points, setting, -phase, x)
         if unknowns > PHASE:
             x[PHASE] = phase
         starts[row] = x[:unknowns]
@@ -176,18 +162,18 @@ def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: R
     for row in range(len(draws)):
         draw, x = draws[row], np.zeros(9)
         costs[row] = np.inf
-        if not shape(draw, int(setting[SHORTEST]), x, lengths):
+        if not shape(draw, int(setting[FAMILY]), x, lengths):
             continue
         low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
         crank = low == 0.0 and high == math.pi
-        if not crank and setting[CLOSED] > 0.0:
+        if not crank and setting[WHOLE] > 0.0:
             continue
         way = 1.0 if draw[5] > 0.0 else -1.0
         share = 0.5 + 0.5 * draw[6]
         angles = runs[row]
         if crank:
             # All round, the gap between the last point and the first in proportion; or a part of a turn.
-            whole = 2.0 * math.pi if setting[CLOSED] > 0.0 or draw[7] > 0.0 else 2.0 * math.pi * share / along[n - 1]
+            whole = 2.0 * math.pi if setting[WHOLE] > 0.0 or draw[7] > 0.0 else 2.0 * math.pi * share / along[n - 1]
             begin = math.pi * draw[4]
             for k in range(n):
                 s = along[k]
@@ -205,14 +191,14 @@ def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: R
             for k in range(n):
                 s = along[k] / along[n - 1]
                 angles[k] = begin + used * (s if way > 0.0 else 1.0 - s)
-        cost = place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
+        cost = fitted_place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
         for _ in range(TURNS):
             if not cost < np.inf:
                 break
             costs[row] = reassign(x, points, setting, angles)
             starts[row] = x
-            lengths_of(x, int(setting[SHORTEST]), lengths, np.empty((4, 4)))
-            cost = place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
+            natural(int(setting[FAMILY]), x, lengths, np.empty((4, 4)))
+            cost = fitted_place(lengths, setting[SIGN], angles, points, setting, 0.0, x)
 
 
 @njit(cache=True, nogil=True)
@@ -220,7 +206,7 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
     """Crank angles at which a linkage comes nearest to the points in order, by samples; half the sum of squares."""
     n = len(points)
     lengths, slopes = np.empty(4), np.empty((4, 4))
-    lengths_of(x, int(setting[SHORTEST]), lengths, slopes)
+    natural(int(setting[FAMILY]), x, lengths, slopes)
     low, high = crank_range(lengths[0], lengths[1], lengths[2], lengths[3])
     crank = low == 0.0 and high == math.pi
     count = SAMPLES
@@ -238,9 +224,9 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
         begin += 0.5 * step
     squares = np.empty((n, count))
     for j in range(count):
-        good, px, py, _, _ = point_at(x, lengths, setting[SIGN], begin + j * step)
+        good, p, _ = place(FOURBAR, x, lengths, setting[SIGN], 0.0, x[2] + begin + j * step)
         for k in range(n):
-            gx, gy = px - points[k, 0], py - points[k, 1]
+            gx, gy = p.real - points[k, 0], p.imag - points[k, 1]
             squares[k, j] = gx * gx + gy * gy if good else 1e18
     if setting[ORDERED] == 0.0:
         least = 0.0
@@ -311,23 +297,22 @@ def kicked(
         As for :func:`free_starts`; the setting's assembly sign is the starts'.
     """
     lengths, slopes = np.empty(4), np.empty((4, 4))
-    shortest, n = int(setting[SHORTEST]), len(points)
+    family, n = int(setting[FAMILY]), len(points)
     angles = np.empty(n)
     for row in range(len(starts)):
         base = row % len(bases)
         x = np.zeros(10)
         x[: bases.shape[1]] = bases[base]
         costs[row] = np.inf
-        lengths_of(x, shortest, lengths, slopes)
+        natural(family, x, lengths, slopes)
         turned = 0.0
         if flip != SAME:
             phi = states[row, n // 2]
-            cosine, sine = math.cos(phi), math.sin(phi)
-            good, x3, y3, _, _ = closure(lengths[0], lengths[1], lengths[2], lengths[3], sign, cosine, sine)
+            a = lengths[1] * unit(phi)
+            good, coupler = two_bars(lengths[0] - a, lengths[2], lengths[3], sign)
             if not good:
                 continue
-            a = complex(lengths[1] * cosine, lengths[1] * sine)
-            b = a + lengths[2] * complex(x3, y3)
+            b = a + lengths[2] * coupler
             o4 = complex(lengths[0], 0.0)
             if flip == OUTPUT:
                 o4 = 2.0 * b - o4
@@ -337,31 +322,13 @@ def kicked(
                     o4 = -o4
             turned = math.atan2(o4.imag, o4.real)
             lengths[0], lengths[3] = abs(o4), abs(b - o4)
-            if not of_class(lengths, shortest, x):
+            if not from_lengths(lengths, family, NEAR_EDGE, x):
                 continue
         for i in range(4):
             x[LENGTHS + i] += draws[row, i]
-        lengths_of(x, shortest, lengths, slopes)
+        natural(family, x, lengths, slopes)
         for k in range(n):
             angles[k] = states[row, k] - turned
             states[row, k] = angles[k]
-        costs[row] = place(lengths, setting[SIGN], angles, points, setting, x[2], x)
+        costs[row] = fitted_place(lengths, setting[SIGN], angles, points, setting, x[2], x)
         starts[row] = x[: bases.shape[1]]
-
-
-@njit(cache=True, nogil=True)
-def of_class(lengths: Real, shortest: int, x: Real) -> bool:
-    """The numbers of lengths that may be a little outside their class, as if they stood at its edge."""
-    if shortest < 0:
-        return numbers_of(lengths, shortest, x)
-    rest, place_ = np.empty(3), 0
-    for i in range(4):
-        if i != shortest:
-            rest[place_] = lengths[i] - lengths[shortest]
-            place_ += 1
-    edge = NEAR_EDGE * lengths.sum()
-    x[LENGTHS] = math.log(lengths[shortest])
-    x[LENGTHS + 1] = math.log(max(rest[1] + rest[2] - rest[0], edge))
-    x[LENGTHS + 2] = math.log(max(rest[0] + rest[1] - rest[2], edge))
-    x[LENGTHS + 3] = math.log(max(rest[0] + rest[2] - rest[1], edge))
-    return True

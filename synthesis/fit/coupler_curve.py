@@ -1,0 +1,221 @@
+"""Coupler curves of driven linkages, point by point, with their slopes in every dimension.
+
+The crank of a linkage (:mod:`synthesis.fit.chart`) stands at θ, absolute, and the geared output at λθ + Φ. Two bars b
+and c close the loop over the base w from A to the pin at which c ends: with h = (|w|² + b² − c²)/2 the coupler is
+
+    b e^{iθ₃} = w (h ± i √(b²|w|² − h²)) / |w|²,        + with the bars' common pin left of w.
+
+With F the vector of the last link of the loop (O4 → B, B → C), which has a fixed length, Re(F̄ dF) = |F| d|F| gives the
+coupler's turn dθ₃ for any change of dimensions, and z = O2 + a e^{iθ} + P e^{iθ₃} the slopes of the curve (Norton,
+Sec. 4.5 and 4.8, 4.16).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, natural
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FLAT = 1e-9
+"""|sin(θ₃ − θ₄)| below which a configuration is a toggle, where derivatives do not exist."""
+
+
+@njit(**OPTIONS)
+def unit(angle: float) -> complex:
+    """e^{iθ}."""
+    return complex(math.cos(angle), math.sin(angle))
+
+
+@njit(**OPTIONS)
+def second_angle(family: int, x: Real, ratio: float, theta: float) -> float:
+    """The angle that stands beside the crank's in the loop: of the ground line, the slide, or the geared output."""
+    angle: float = ratio * theta + x[8] if family == GEARED_FIVEBAR else x[2]
+    return angle
+
+
+@njit(**OPTIONS)
+def two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool, complex]:
+    """Whether two bars close the loop over a base away from a toggle, and the first one's unit vector."""
+    square = base.real * base.real + base.imag * base.imag
+    half = 0.5 * (square + (b - c) * (b + c))
+    under = b * b * square - half * half
+    if not under > FLAT * FLAT * b * b * c * c:
+        return False, 1.0 + 0j
+    return True, base * complex(half, sign * math.sqrt(under)) * (1.0 / (square * b))
+
+
+@njit(**OPTIONS)
+def _coupler(
+    family: int, x: Real, lengths: Real, sign: float, crank: complex, second: complex
+) -> tuple[bool, complex, complex]:
+    """Whether the loop closes, P, and the coupler's unit vector, from those of the crank and of the second angle."""
+    o2 = complex(x[0], x[1])
+    if family <= FOURBAR:
+        pin = lengths[1] * crank
+        closes, along = two_bars(lengths[0] * second - pin, lengths[2], lengths[3], sign)
+        return closes, o2 + pin + complex(x[7], x[8]) * along, along
+    pin = lengths[0] * crank
+    if family == GEARED_FIVEBAR:
+        base = complex(x[2] - x[0], x[3] - x[1]) + lengths[3] * second - pin
+        closes, along = two_bars(base, lengths[1], lengths[2], sign)
+        return closes, o2 + pin + complex(x[9], x[10]) * along, along
+    across = (lengths[2] - (pin * second.conjugate()).imag) / lengths[1]
+    under = 1.0 - across * across
+    if not under > 0.0:
+        return False, 0j, 1.0 + 0j
+    along = second * complex(sign * math.sqrt(under), across)
+    return True, o2 + pin + complex(x[6], x[7]) * along, along
+
+
+@njit(**OPTIONS)
+def place(
+    family: int, x: Real, lengths: Real, sign: float, ratio: float, theta: float
+) -> tuple[bool, complex, complex]:
+    """Whether the linkage closes with the crank at θ, P, and the coupler's unit vector (from A)."""
+    second = unit(second_angle(family, x, ratio, theta))
+    found: tuple[bool, complex, complex] = _coupler(family, x, lengths, sign, unit(theta), second)
+    return found
+
+
+@njit(**OPTIONS)
+def _turn(f: complex, change: complex, per_turn: float) -> float:
+    """The coupler's turn that keeps |F| while F changes otherwise."""
+    return -(f.real * change.real + f.imag * change.imag) / per_turn
+
+
+@njit(**OPTIONS)
+def fourbar_velocity(x: Real, lengths: Real, sign: float, theta: float) -> tuple[bool, complex, complex]:
+    """Whether a fourbar closes, P, and P's derivative by θ alone."""
+    crank, ground = unit(theta), unit(x[2])
+    closes, z, along = _coupler(FOURBAR, x, lengths, sign, crank, ground)
+    f = lengths[1] * crank + lengths[2] * along - lengths[0] * ground
+    g = 1j * lengths[2] * along
+    moved = 1j * lengths[1] * crank
+    swing = 1j * complex(x[7], x[8]) * along
+    return closes, z, moved + swing * _turn(f, moved, f.real * g.real + f.imag * g.imag)
+
+
+@njit(**OPTIONS)
+def place_with_slopes(
+    family: int,
+    x: Real,
+    lengths: Real,
+    chart: Real,
+    sign: float,
+    ratio: float,
+    theta: float,
+    slopes: Complex,
+) -> tuple[bool, complex]:
+    """Whether it closes, P, and into ``slopes`` (m + 1) P's derivatives in the unknowns and, last, in θ."""
+    crank, second = unit(theta), unit(second_angle(family, x, ratio, theta))
+    closes, z, along = _coupler(family, x, lengths, sign, crank, second)
+    if not closes:
+        return False, z
+    m = len(slopes) - 1
+    swing = 1j * complex(x[m - 2], x[m - 1]) * along
+    slopes[0], slopes[1] = 1.0 + 0j, 1j
+    slopes[m - 2], slopes[m - 1] = along, 1j * along
+    if family <= FOURBAR:
+        d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]
+        f = a * crank + b * along - d * second
+        g = 1j * b * along
+        per = f.real * g.real + f.imag * g.imag
+        slopes[2] = swing * _turn(f, -1j * d * second, per)
+        raw_d = swing * _turn(f, -second, per)
+        raw_a = crank + swing * _turn(f, crank, per)
+        raw_b = swing * _turn(f, along, per)
+        raw_c = swing * (c / per)
+        for k in range(4):
+            slopes[3 + k] = raw_d * chart[0, k] + raw_a * chart[1, k] + raw_b * chart[2, k] + raw_c * chart[3, k]
+        slopes[m] = 1j * a * crank + swing * _turn(f, 1j * a * crank, per)
+        return True, z
+    if family == GEARED_FIVEBAR:
+        a, b, c, e = lengths[0], lengths[1], lengths[2], lengths[3]
+        f = a * crank + b * along - complex(x[2] - x[0], x[3] - x[1]) - e * second
+        g = 1j * b * along
+        per = f.real * g.real + f.imag * g.imag
+        # O5 moves the far end, O2 the near one.
+        for k in range(2):
+            one = 1.0 + 0j if k == 0 else 1j
+            slopes[k] = one + swing * _turn(f, one, per)
+            slopes[2 + k] = swing * _turn(f, -one, per)
+        raw_a = crank + swing * _turn(f, crank, per)
+        raw_b = swing * _turn(f, along, per)
+        raw_c = swing * (c / per)
+        raw_e = swing * _turn(f, -second, per)
+        for k in range(4):
+            slopes[4 + k] = raw_a * chart[0, k] + raw_b * chart[1, k] + raw_c * chart[2, k] + raw_e * chart[3, k]
+        slopes[8] = swing * _turn(f, -1j * e * second, per)
+        moved = 1j * a * crank
+        slopes[m] = moved + swing * _turn(f, moved - ratio * 1j * e * second, per)
+        return True, z
+    a, b = lengths[0], lengths[1]
+    local, bent = crank * second.conjugate(), along * second.conjugate()
+    reach = b * bent.real
+    raw_a = crank + swing * (-local.imag / reach)
+    raw_b = swing * (-bent.imag / reach)
+    raw_c = swing / reach
+    slopes[2] = swing * (1.0 + a * local.real / reach)
+    for k in range(3):
+        slopes[3 + k] = raw_a * chart[0, k] + raw_b * chart[1, k] + raw_c * chart[2, k]
+    slopes[m] = 1j * a * crank + swing * (-a * local.real / reach)
+    return True, z
+
+
+@njit(**OPTIONS)
+def sweep(
+    family: int,
+    x: Real,
+    sign: Real,
+    ratio: float,
+    begin: Real,
+    end: Real,
+    ring: NDArray[np.bool_],
+    curves: Complex,
+    theta: Real,
+    good: NDArray[np.bool_],
+) -> None:
+    """P and θ over equal steps of the crank, shape (n, steps), from begin to end; not good where the linkage jams.
+
+    Where the range is a ring its end is its beginning and is left out.
+    """
+    n, steps = curves.shape
+    lengths, chart = np.empty(4), np.empty((4, 4))
+    for i in range(n):
+        natural(family, x[i], lengths, chart)
+        good[i] = True
+        step = (end[i] - begin[i]) / (steps if ring[i] else steps - 1)
+        crank, onward = unit(begin[i]), unit(step)
+        second = unit(second_angle(family, x[i], ratio, begin[i]))
+        turning = unit(ratio * step) if family == GEARED_FIVEBAR else 1.0 + 0j
+        for k in range(steps):
+            theta[i, k] = begin[i] + step * k
+            closes, curves[i, k], _ = _coupler(family, x[i], lengths, sign[i], crank, second)
+            if not closes:
+                good[i] = False
+                break
+            crank *= onward
+            second *= turning
+
+
+@njit(**OPTIONS)
+def crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
+    """Least and greatest |φ| at which the loop closes: 0 and π for a crank; the greatest below the least for none."""
+    low, high = 0.0, math.pi
+    near, far = abs(b - c), b + c
+    if abs(d - a) < near:
+        if d + a <= near:
+            return 1.0, 0.0
+        low = 2.0 * math.atan(math.sqrt((near * near - (d - a) ** 2) / ((d + a) ** 2 - near * near)))
+    if d + a > far:
+        if abs(d - a) >= far:
+            return 1.0, 0.0
+        high = 2.0 * math.atan(math.sqrt((far * far - (d - a) ** 2) / ((d + a) ** 2 - far * far)))
+    return low, high

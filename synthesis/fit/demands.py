@@ -1,0 +1,199 @@
+"""Demands on a fourbar as margins over its chart: what must not be negative, or must be zero, with its derivatives.
+
+A demand is a smooth function g ≥ 0, or h = 0, of the unknowns (:mod:`synthesis.fit.chart`). It is written once, here,
+and every fit that appends :func:`margins` to its residuals is steered by it, by the multipliers of
+:mod:`synthesis.numerics.augmented_lagrangian`. What is not demanded has an infinite margin, and costs nothing.
+
+=================== ==== ==========================================================
+demand              g, h margin
+=================== ==== ==========================================================
+link lengths        g    ln(l / least), ln(most / l), so that short and long weigh alike
+link ratio          g    ln(ratio · lᵢ / lₖ)
+pivot regions       g    distance from each side of a box
+coupler point       g    distance from each side of a box in the coupler's frame
+transmission angle  g    cos γ_least ∓ cos γ, cos γ = (b² + c² − d² − a² + 2 a d cos φ) / 2bc
+Grashof             g    ln(sₖ / least share of all links): away from change points
+given pivots        h    distance along each axis
+=================== ==== ==========================================================
+
+Between two passages of the crank over the ground line cos γ is monotonic: it is held at the ends of the used range, and
+at φ = 0 and φ = π where they are used.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import FOURBAR, LENGTHS, OPTIONS, POINT
+
+Real = NDArray[np.float64]
+
+FAMILY, SIGN, WHOLE = range(3)
+"""Places in a setting: the chart's family, the assembly sign, and whether the crank turns through."""
+
+LINKS, RATIO, BOXES, POINT_BOX, COSINE, CHANGE_POINT, GIVEN = 3, 5, 6, 14, 18, 19, 20
+"""Places of demands in a setting: least and most length, link ratio, boxes (x from, to, y from, to) of O2 and O4, of P
+on the coupler, cosine of the least transmission angle, least of s₁, s₂, s₃ as a share of all links together, given
+coordinates (O2, O4; NaN where open). Infinite where nothing is demanded; 0 for a least length or share."""
+
+DEMANDS = 24
+"""Numbers of a setting that are demands; a fit's own stand behind them."""
+
+EQUATIONS = 4
+"""Margins, the last, that must be zero: coordinates of given pivots."""
+
+LIMITS = 8 + 12 + 8 + 4 + 8 + 3 + EQUATIONS
+"""Margins: lengths, pairs of them, sides of the pivots' boxes and of P's, transmission, Grashof, given pivots."""
+
+
+@njit(**OPTIONS)
+def margins(x: Real, lengths: Real, slopes: Real, ends: Real, setting: Real, values: Real, gradients: Real) -> None:
+    """The margins of a fourbar's demands, and their derivatives by the unknowns.
+
+    Parameters
+    ----------
+    x : float64, shape (n,)
+        Unknowns of the chart, 9, and others of the fit behind them.
+    lengths, slopes : float64, shapes (4,) and (4, 4)
+        Of :func:`synthesis.fit.chart.natural`.
+    ends : float64, shape (2,)
+        Crank angles from the ground line at the ends of the used range, which do not move with x.
+    setting : float64, shape (DEMANDS or more,)
+        See :data:`LINKS`.
+    values, gradients : float64, shapes (LIMITS,) and (LIMITS, n)
+        Written; gradients only where the value is finite.
+    """
+    values[:] = np.inf
+    first = _lengths(lengths, slopes, setting, values, gradients, 0)
+    first = _ratios(lengths, slopes, setting, values, gradients, first)
+    first = _pivots(x, lengths, slopes, setting, values, gradients, first)
+    first = _coupler_point(x, setting, values, gradients, first)
+    first = _transmission(lengths, slopes, ends, setting, values, gradients, first)
+    if setting[FAMILY] < FOURBAR and setting[CHANGE_POINT] > 0.0:
+        around = lengths.sum()
+        for k in range(3):
+            values[first + k] = x[LENGTHS + 1 + k] - math.log(setting[CHANGE_POINT] * around)
+            row = gradients[first + k]
+            row[:] = 0.0
+            for j in range(4):
+                row[LENGTHS + j] = (1.0 if j == k + 1 else 0.0) - slopes[:, j].sum() / around
+
+
+@njit(**OPTIONS)
+def _lengths(lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    for i in range(4):
+        for side in range(2):
+            limit = setting[LINKS + side]
+            if 0.0 < limit < np.inf:
+                toward = 1.0 if side == 0 else -1.0
+                values[number] = toward * math.log(lengths[i] / limit)
+                row = gradients[number]
+                row[:] = 0.0
+                for j in range(4):
+                    row[LENGTHS + j] = toward * slopes[i, j] / lengths[i]
+            number += 1
+    return number
+
+
+@njit(**OPTIONS)
+def _ratios(lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    if setting[RATIO] == np.inf:
+        return number + 12
+    for i in range(4):
+        for k in range(4):
+            if i == k:
+                continue
+            values[number] = math.log(setting[RATIO] * lengths[i] / lengths[k])
+            row = gradients[number]
+            row[:] = 0.0
+            for j in range(4):
+                row[LENGTHS + j] = slopes[i, j] / lengths[i] - slopes[k, j] / lengths[k]
+            number += 1
+    return number
+
+
+@njit(**OPTIONS)
+def _pivots(x: Real, lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    """Sides of the boxes of O2 and O4, and, as the last margins of all, their given coordinates."""
+    for pivot in range(2):
+        for axis in range(2):
+            for side in range(2):
+                limit = setting[BOXES + 4 * pivot + 2 * axis + side]
+                if abs(limit) < np.inf:
+                    toward = 1.0 if side == 0 else -1.0
+                    place = _coordinate(x, lengths, slopes, pivot, axis, toward, gradients[number])
+                    values[number] = toward * (place - limit)
+                number += 1
+            given = setting[GIVEN + 2 * pivot + axis]
+            if not math.isnan(given):
+                at = LIMITS - EQUATIONS + 2 * pivot + axis
+                values[at] = _coordinate(x, lengths, slopes, pivot, axis, 1.0, gradients[at]) - given
+    return number
+
+
+@njit(**OPTIONS)
+def _coordinate(x: Real, lengths: Real, slopes: Real, pivot: int, axis: int, toward: float, row: Real) -> float:
+    """A coordinate of O2 (pivot 0) or O4 (1); ``row`` gets its derivatives, with the sign ``toward``."""
+    row[:] = 0.0
+    row[axis] = toward
+    place: float = x[axis]
+    if pivot == 1:
+        cosine, sine = math.cos(x[2]), math.sin(x[2])
+        direction, turned = (cosine, -sine) if axis == 0 else (sine, cosine)
+        place += lengths[0] * direction
+        row[2] = toward * lengths[0] * turned
+        for j in range(4):
+            row[LENGTHS + j] = toward * slopes[0, j] * direction
+    return place
+
+
+@njit(**OPTIONS)
+def _coupler_point(x: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    for axis in range(2):
+        for side in range(2):
+            limit = setting[POINT_BOX + 2 * axis + side]
+            if abs(limit) < np.inf:
+                toward = 1.0 if side == 0 else -1.0
+                values[number] = toward * (x[POINT + axis] - limit)
+                gradients[number] = 0.0
+                gradients[number, POINT + axis] = toward
+            number += 1
+    return number
+
+
+@njit(**OPTIONS)
+def _transmission(
+    lengths: Real, slopes: Real, ends: Real, setting: Real, values: Real, gradients: Real, number: int
+) -> int:
+    if setting[COSINE] == np.inf:
+        return number + 8
+    d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]
+    by = np.empty(4)
+    low, high = min(ends[0], ends[1]), max(ends[0], ends[1])
+    for k in range(4):
+        used = True
+        if k < 2:
+            # The multiple of a half turn, even or odd, that lies in the range.
+            first = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
+            used = setting[WHOLE] > 0.0 or first <= high
+            cosine = 1.0 - 2.0 * k
+        else:
+            cosine = math.cos(ends[k - 2])
+        ratio = (b * b + c * c - d * d - a * a + 2.0 * a * d * cosine) / (2.0 * b * c)
+        by[0], by[1] = (a * cosine - d) / (b * c), (d * cosine - a) / (b * c)
+        by[2], by[3] = 1.0 / c - ratio / b, 1.0 / b - ratio / c
+        for side in range(2):
+            if used:
+                toward = 1.0 if side == 0 else -1.0
+                values[number] = setting[COSINE] - toward * ratio
+                row = gradients[number]
+                row[:] = 0.0
+                for j in range(4):
+                    for i in range(4):
+                        row[LENGTHS + j] -= toward * by[i] * slopes[i, j]
+            number += 1
+    return number
