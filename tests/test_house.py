@@ -1,0 +1,90 @@
+"""The house is built as docs/adding-a-kind.md says, where the contracts in pyproject.toml cannot say it."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from service.render import forms
+from synthesis.analyses import FAMILIES
+from synthesis.model.kind import Kind
+from synthesis.registry import KINDS
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = sorted(folder for folder in (ROOT / "synthesis" / "kinds").iterdir() if (folder / "__init__.py").exists())
+
+MOST_EDITED = 4
+"""Files outside its own folder that a new kind may take, documentation apart."""
+
+
+def imports(path: Path) -> set[str]:
+    """The modules and names that a file imports, wherever in it."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
+def test_every_kind_has_its_statement_answer_solver_proof_and_declaration(folder: Path) -> None:
+    assert {"problem.py", "design.py", "solver.py"} <= {path.name for path in folder.glob("*.py")}
+    assert [*folder.glob("verification*.py"), *folder.glob("verify_*.py")]
+    kind = KINDS[folder.name]
+    assert isinstance(kind, Kind)
+    assert kind.name == folder.name
+    assert kind.problem.__module__ == f"synthesis.kinds.{folder.name}.problem"
+    assert kind.result.__module__ == f"synthesis.kinds.{folder.name}.design"
+    assert kind.examples
+    assert all(statement["kind"] == kind.name for statement in kind.examples)
+
+
+def test_every_kind_is_offered() -> None:
+    assert sorted(KINDS) == [folder.name for folder in FOLDERS]
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=lambda kind: kind.name)
+def test_every_mechanism_is_drawn_and_analysed(kind: Kind) -> None:
+    """Those that no family knows are linkages, which are stated by dimensions or a skeleton."""
+    assert kind.mechanisms
+    for mechanism in kind.mechanisms:
+        assert "svg" in forms(kind.name, mechanism)
+        assert mechanism in FAMILIES or "skeleton" in str(kind.result.model_json_schema()["$defs"])
+
+
+def test_kinematics_knows_numpy_and_numba_only() -> None:
+    known = {*sys.stdlib_module_names, "numpy", "numba", "kinematics"}
+    foreign = {
+        (path.name, name)
+        for path in (ROOT / "kinematics").rglob("*.py")
+        for name in imports(path)
+        if name.split(".")[0] not in known
+    }
+    assert foreign == set()
+
+
+def test_kinds_are_known_by_name_where_they_are_listed_and_drawn_only() -> None:
+    """What goes over all kinds asks the registry."""
+    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/", "service/units.py", "synthesis/proof/")
+    files = [path for package in ("synthesis", "service") for path in (ROOT / package).rglob("*.py")]
+    knowing = {
+        place
+        for path in files
+        if not (place := path.relative_to(ROOT).as_posix()).startswith(allowed)
+        and any(name.startswith("synthesis.kinds") for name in imports(path))
+    }
+    assert knowing == set()
+
+
+def test_the_page_names_no_more_than_four_files_that_a_kind_edits() -> None:
+    page = (ROOT / "docs" / "adding-a-kind.md").read_text("utf-8")
+    table = page.split("## What is edited elsewhere")[1].split("\n\n")[1]
+    edited = re.findall(r"^\| `([^`]+)`", table, re.MULTILINE)
+    assert 0 < len(edited) <= MOST_EDITED
+    assert all((ROOT / file).is_file() for file in edited)
