@@ -1,8 +1,9 @@
-"""Settings that all tests share, and the engines that the service runs on while they run."""
+"""Settings that all tests share, the size of campaigns, and the engines that the service runs on while they run."""
 
 import pytest
 from hypothesis import settings
 
+from tests import campaign
 from tests.cluster import backend
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -16,10 +17,17 @@ def pytest_addoption(parser):
         default=backend.NAMES[0],
         help="what the service runs on: SQLite and workers of its own, or PostgreSQL, Celery and a broker",
     )
+    parser.addoption(
+        "--campaign-share",
+        type=float,
+        default=campaign.DEFAULT_SHARE,
+        help="the share of the random cases of each campaign that are tried; 1 for all",
+    )
 
 
 def pytest_configure(config):
     backend.choose(config.getoption("--backend"))
+    campaign.choose(config.getoption("--campaign-share"))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,4 +1,4 @@
-"""Laws and branches of random mechanisms by the thousand: what other tests show of a few, of 10 000 of each type."""
+"""Laws and branches of random mechanisms: what other tests show of a few, of up to 10 000 of each type."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from tests.campaign import sampled
 from tests.kinematics import mechanism_sampling as sampling
 from tests.kinematics.mechanism_sampling import EVERY, RATIOS, take
 from tests.kinematics.test_branches import ELIMINATED, TYPES, check, degenerate, same_branches
@@ -15,7 +16,7 @@ from tests.kinematics.test_mechanism_laws import closes, orders
 
 pytestmark = [pytest.mark.campaign, pytest.mark.timeout(600)]
 
-MANY = 10_000
+MANY = sampled(10_000)
 """Designs of each type whose closure, and whose derivatives, are measured."""
 
 ELIMINATIONS = 25

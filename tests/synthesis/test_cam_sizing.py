@@ -22,6 +22,7 @@ from synthesis.kinds.cam.sizing import (
     translating_flat,
     translating_roller,
 )
+from tests.campaign import sampled
 from tests.synthesis.cam_sampling import dense_motion, first_sound, oscillating, random_program, translating
 
 AGREES = 1e-6
@@ -124,7 +125,7 @@ def test_flat_faces_against_brute_force(seed):
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("block", range(50))
+@pytest.mark.parametrize("block", range(sampled(50)))
 def test_two_hundred_random_programs_and_followers(block):
     for seed in range(1000 + 4 * block, 1004 + 4 * block):
         (check_translating, check_translating, check_oscillating, check_flat)[seed % 4](seed)

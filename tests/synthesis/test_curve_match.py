@@ -33,6 +33,7 @@ from synthesis.kinds.path.curve_shapes import (
 from synthesis.kinds.path.verify_curve import verify_curve
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
+from tests.campaign import sampled
 
 CASES = {case["id"]: case for case in curve_cases()}
 EGG = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.5j)
@@ -273,7 +274,7 @@ def test_a_curve_on_its_pivots_is_recovered_from_few_points_and_nothing_far_is_o
 @pytest.mark.parametrize("given", [("input", "output"), ("input",), ("output",)])
 def test_curves_are_recovered_on_their_own_pivots(given):
     rng = np.random.default_rng(90)
-    for _ in range(4):
+    for _ in range(sampled(4)):
         while True:
             a, b, c, d = np.sort(rng.uniform(1.0, 5.0, 4))[[0, 2, 1, 3]]
             if a + d < 0.95 * (b + c) and a < 0.8 * c:

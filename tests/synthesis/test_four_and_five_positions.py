@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.registry import KINDS, parse_problem
+from tests.campaign import sampled
 from tests.cases import search_tasks
 from tests.synthesis.planted import Planted, PlantedDyad, plant
 from tests.synthesis.test_motion_search import confirm, run
@@ -148,7 +149,7 @@ def test_planted_linkages_are_found_every_time(n: int) -> None:
 @pytest.mark.parametrize("seed", range(1, 5))
 @pytest.mark.parametrize("n", [2, 3, 4, 5])
 def test_a_thousand_planted_linkages_are_found_every_time(n: int, seed: int) -> None:
-    find_planted(n, seed, 250)
+    find_planted(n, seed, sampled(250))
 
 
 def no_defect(n: int, seed: int, count: int) -> None:
@@ -177,7 +178,7 @@ def test_no_design_has_a_defect(n: int) -> None:
     ("n", "seed"), [(2, 1), (2, 2), (2, 3), (3, 1), (3, 2), (3, 3), (4, 1), (4, 2), (4, 3), (5, 1)]
 )
 def test_none_of_ten_thousand_designs_has_a_defect(n: int, seed: int) -> None:
-    no_defect(n, seed, 1000)
+    no_defect(n, seed, sampled(1000))
 
 
 def test_a_stated_coordinate_is_kept_and_the_rest_is_searched() -> None:

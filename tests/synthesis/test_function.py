@@ -22,6 +22,7 @@ from synthesis.kinds.function.precision import many_exact
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.solver import solve_function
 from synthesis.kinds.function.task import function_task
+from tests.campaign import sampled
 
 CASES = json.loads((Path(__file__).parents[1] / "cases" / "function_generation.json").read_text())
 NAMES = {
@@ -230,7 +231,7 @@ class TestOpenScales:
     @pytest.mark.parametrize("count", [6, 7])
     def test_a_hundred_planted_linkages_come_back(self, count):
         rng = np.random.default_rng(100 + count)
-        for n in range(100):
+        for n in range(sampled(100)):
             lengths, pairs = scaled_pairs(rng, planted_fourbar(rng, count))
             result = solved(pairs=pairs, constraints=UNBOUNDED, max_designs=50)
             assert holds(result, lengths, 1e-5), n

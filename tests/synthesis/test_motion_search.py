@@ -13,6 +13,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.registry import parse_problem
+from tests.campaign import sampled
 from tests.cases import search_tasks
 from tests.oracles.continuation import drive
 from tests.synthesis.planted import plant
@@ -291,7 +292,9 @@ def test_motions_past_a_toggle_on_demand() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.campaign) for seed in range(1, 4))])
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.campaign) for seed in range(1, 1 + sampled(3)))]
+)
 def test_random_tasks_by_independent_continuation(seed: int) -> None:
     """Some hundred random tasks, none of whose designs shows a defect when it is followed step by step."""
     rng = np.random.default_rng(seed)

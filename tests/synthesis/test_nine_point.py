@@ -20,6 +20,7 @@ from synthesis.kinds.path.nine_point_system import (
     residuals,
 )
 from synthesis.kinds.path.starts import nine_point_start
+from tests.campaign import sampled
 from tests.cases import HERE
 from tools.path_starts import nine_point_problem
 
@@ -160,7 +161,7 @@ def test_the_members_of_an_orbit_are_three():
 @pytest.mark.timeout(1200)
 def test_random_problems_end_with_all_orbits():
     rng = np.random.default_rng(13)
-    for n in range(12):
+    for n in range(sampled(12)):
         if n % 2:
             points = rng.normal(size=9) + 1j * rng.normal(size=9)
         else:

@@ -9,6 +9,7 @@ from benchmarks.path_fit import best_published, rows, statement
 from kinematics.linkage import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.campaign import sampled
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
 
 CRANK_ROCKER = Fourbar(1.0 - 2.0j, 7.0 + 1.0j, 2.0, 6.0, 5.0, 3.0 + 2.0j)
@@ -236,7 +237,7 @@ def test_the_literatures_problems(row):
 @pytest.mark.campaign
 def test_planted_timed_fits_are_recovered_every_time():
     rng = np.random.default_rng(11)
-    for _ in range(100):
+    for _ in range(sampled(100)):
         linkage = drawn(rng)
         angles = np.sort(rng.uniform(0.0, 360.0, int(rng.integers(6, 30))))
         points = positions(linkage, np.radians(angles) + rng.uniform(0.0, 6.0), OPEN).p

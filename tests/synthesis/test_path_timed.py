@@ -15,6 +15,7 @@ from synthesis.kinds.motion.task import MotionTask
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
+from tests.campaign import sampled
 from tests.cases import cases
 from tests.oracles.five_positions import real_dyads
 from tests.oracles.fourbar_sweep import coupler_points
@@ -134,9 +135,10 @@ def agree_with_many_starts(rng):
 @pytest.mark.campaign
 def test_a_hundred_planted_tasks_of_five_timed_points():
     rng = np.random.default_rng(2026)
-    agreed = sum(agree_with_many_starts(rng) for _ in range(100))
+    tasks = sampled(100)
+    agreed = sum(agree_with_many_starts(rng) for _ in range(tasks))
     # Where they differ, the many starts have missed one: ours hold all that those find.
-    assert agreed >= 90
+    assert agreed >= 0.9 * tasks
 
 
 @pytest.mark.parametrize(
