@@ -159,14 +159,21 @@ def test_an_acceleration_of_an_instant_is_not_called_met():
     assert "state one" in result.summary
 
 
-@pytest.mark.parametrize("lift", [pytest.param(0.05, marks=pytest.mark.campaign), 5.0])
-def test_two_hundred_short_segments(lift):
-    """1.8° each: points are put where they are needed, and the profile reproduces them all."""
+@pytest.mark.parametrize(
+    ("count", "lift"),
+    [
+        (60, 5.0),
+        pytest.param(200, 5.0, marks=pytest.mark.campaign),
+        pytest.param(200, 0.05, marks=pytest.mark.campaign),
+    ],
+)
+def test_many_short_segments(count, lift):
+    """1.8° each of 200: points are put where they are needed, and the profile reproduces them all."""
     moves = [
-        {"motion": "rise" if k % 2 == 0 else "fall", "angle": 1.8, "lift": lift, "law": "modified_sine"}
-        for k in range(200)
+        {"motion": "rise" if k % 2 == 0 else "fall", "angle": 360.0 / count, "lift": lift, "law": "modified_sine"}
+        for k in range(count)
     ]
     result = solve(parse_problem(copy.deepcopy(BASE) | {"segments": moves}), lambda fraction, message: None)
     (design,) = result.designs
     assert design.verification.passed
-    assert len(design.segments) == 200
+    assert len(design.segments) == count

@@ -71,7 +71,7 @@ def test_four_positions_alone_give_five_distinct_usable_linkages(task: dict[str,
     assert result.curves
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("task", search_tasks(4)[5:], ids=lambda task: task["id"])
 def test_more_tasks_of_four_positions(task: dict[str, Any]) -> None:
     result = run(positions=task["positions"])
