@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -19,6 +20,9 @@ FOLDERS = sorted(folder for folder in (ROOT / "synthesis" / "kinds").iterdir() i
 
 MOST_EDITED = 4
 """Files outside its own folder that a new kind may take, documentation apart."""
+
+
+HEAVY = {"numba", "scipy", "cvxpy", "highspy", "ezdxf", "PIL"}
 
 
 def imports(path: Path) -> set[str]:
@@ -88,3 +92,11 @@ def test_the_page_names_no_more_than_four_files_that_a_kind_edits() -> None:
     edited = re.findall(r"^\| `([^`]+)`", table, re.MULTILINE)
     assert 0 < len(edited) <= MOST_EDITED
     assert all((ROOT / file).is_file() for file in edited)
+
+
+@pytest.mark.parametrize("module", ["synthesis.registry", "service.app"])
+def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
+    """Compiled kernels and solvers are imported by those who solve, in processes of their own."""
+    program = f"import sys, {module}; print(*({HEAVY} & set(sys.modules)))"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert run.stdout.split() == []
