@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Literal, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Literal, NamedTuple, TypeVar
 
 from kinematics.linkage import CROSSED, OPEN, Fourbar
 from synthesis.model.answer import Point
@@ -17,6 +18,7 @@ from synthesis.model.linkage_answer import (
     FixedPivots,
     FourbarLinks,
     FourbarMechanism,
+    GearPair,
     InvertedLinks,
     InvertedSliderCrankMechanism,
     Line,
@@ -39,6 +41,10 @@ class FourbarConfiguration(NamedTuple):
     p: complex
 
 
+FOURBAR_LINKS = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")}
+"""The joints on each link of a fourbar."""
+
+
 def to_point(z: complex) -> Point:
     """The pair (x, y) of a complex number."""
     return (float(z.real), float(z.imag))
@@ -49,6 +55,49 @@ def to_complex(point: tuple[float, float]) -> complex:
     return complex(*point)
 
 
+def skeleton(
+    joints: Mapping[str, complex],
+    links: Mapping[str, Sequence[str]],
+    *,
+    slides: Sequence[Slide] = (),
+    gears: Sequence[GearPair] = (),
+    input_link: str = "input",
+) -> Skeleton:
+    """The skeleton whose joints stand as given at the first target, by the joints on each link."""
+    return Skeleton(
+        joints={name: to_point(z) for name, z in joints.items()},
+        links=[Link(name=name, joints=list(listed)) for name, listed in links.items()],
+        slides=list(slides),
+        gears=list(gears),
+        input_link=input_link,
+    )
+
+
+def slide(joint: str, link: str, point: complex, angle: float) -> Slide:
+    """A joint that stays on the line through a point at an angle, radians, fixed in a link."""
+    return Slide(joint=joint, link=link, point=to_point(point), angle=math.degrees(angle))
+
+
+def coupler_point(a: complex, b: complex, p: complex) -> CouplerPoint:
+    """P by its distance from A and its angle from the line A → B."""
+    point = (p - a) / ((b - a) / abs(b - a))
+    return CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point)))
+
+
+Pinned = TypeVar("Pinned", FourbarMechanism, SliderCrankMechanism)
+
+
+def without_coupler_point(mechanism: Pinned) -> Pinned:
+    """A mechanism that guides no point: P is no joint of its skeleton."""
+    bare = skeleton(
+        {name: to_complex(place) for name, place in mechanism.skeleton.joints.items() if name != "P"},
+        {link.name: [joint for joint in link.joints if joint != "P"] for link in mechanism.skeleton.links},
+        slides=mechanism.skeleton.slides,
+        input_link=mechanism.skeleton.input_link,
+    )
+    return mechanism.model_copy(update={"skeleton": bare})
+
+
 def fourbar_mechanism(joints: FourbarConfiguration, body_angle: float | None = None) -> FourbarMechanism:
     """Dimensions of the fourbar whose joints stand as given at the first target.
 
@@ -57,24 +106,14 @@ def fourbar_mechanism(joints: FourbarConfiguration, body_angle: float | None = N
     """
     o2, a, b, o4, p = joints
     crank, coupler, output, diagonal = a - o2, b - a, b - o4, o4 - a
-    point = (p - a) / (coupler / abs(coupler))
     return FourbarMechanism(
         fixed_pivots=FixedPivots(input=to_point(o2), output=to_point(o4)),
         links=FourbarLinks(ground=abs(o4 - o2), input=abs(crank), coupler=abs(coupler), output=abs(output)),
-        coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point))),
+        coupler_point=coupler_point(a, b, p),
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(crank)),
         reference_body_angle=body_angle,
-        skeleton=Skeleton(
-            joints={"O2": to_point(o2), "O4": to_point(o4), "A": to_point(a), "B": to_point(b), "P": to_point(p)},
-            links=[
-                Link(name="ground", joints=["O2", "O4"]),
-                Link(name="input", joints=["O2", "A"]),
-                Link(name="coupler", joints=["A", "B", "P"]),
-                Link(name="output", joints=["O4", "B"]),
-            ],
-            input_link="input",
-        ),
+        skeleton=skeleton({"O2": o2, "O4": o4, "A": a, "B": b, "P": p}, FOURBAR_LINKS),
     )
 
 
@@ -94,26 +133,21 @@ def slider_crank_mechanism(
     as open.
     """
     crank, coupler, along = a - o2, b - a, cmath.exp(1j * slide_angle)
-    point = (p - a) / (coupler / abs(coupler))
     line = Line(point=to_point(b), angle=math.degrees(slide_angle))
     return SliderCrankMechanism(
         fixed_pivot=to_point(o2),
         links=SliderCrankLinks(crank=abs(crank), coupler=abs(coupler)),
         slide=line,
         offset=((o2 - b) * along.conjugate()).imag,
-        coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point))),
+        coupler_point=coupler_point(a, b, p),
         assembly="open" if (coupler * along.conjugate()).real >= 0.0 else "crossed",
         driven_by=driven_by,
         reference_input_angle=math.degrees(cmath.phase(crank)),
         reference_body_angle=body_angle,
-        skeleton=Skeleton(
-            joints={"O2": to_point(o2), "A": to_point(a), "B": to_point(b), "P": to_point(p)},
-            links=[
-                Link(name="ground", joints=["O2"]),
-                Link(name="crank", joints=["O2", "A"]),
-                Link(name="coupler", joints=["A", "B", "P"]),
-            ],
-            slides=[Slide(joint="B", link="ground", point=line.point, angle=line.angle)],
+        skeleton=skeleton(
+            {"O2": o2, "A": a, "B": b, "P": p},
+            {"ground": ["O2"], "crank": ["O2", "A"], "coupler": ["A", "B", "P"]},
+            slides=[slide("B", "ground", b, slide_angle)],
             input_link="crank" if driven_by == "crank" else "B",
         ),
     )
@@ -142,15 +176,10 @@ def inverted_slider_crank_mechanism(
         assembly="open" if (along.conjugate() * reach).real >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(crank)),
         reference_body_angle=body_angle,
-        skeleton=Skeleton(
-            joints={"O2": to_point(o2), "O4": to_point(o4), "A": to_point(a), "P": to_point(p)},
-            links=[
-                Link(name="ground", joints=["O2", "O4"]),
-                Link(name="input", joints=["O2", "A"]),
-                Link(name="coupler", joints=["A", "P"]),
-            ],
-            slides=[Slide(joint="O4", link="coupler", point=to_point(o4), angle=math.degrees(line_angle))],
-            input_link="input",
+        skeleton=skeleton(
+            {"O2": o2, "O4": o4, "A": a, "P": p},
+            {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "P"]},
+            slides=[slide("O4", "coupler", o4, line_angle)],
         ),
     )
 

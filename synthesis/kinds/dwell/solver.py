@@ -33,11 +33,9 @@ from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     CouplerPoint,
-    Link,
-    Skeleton,
     Slide,
 )
-from synthesis.model.linkages import to_point
+from synthesis.model.linkages import skeleton, slide, to_point
 from synthesis.numerics.narrowing import narrowest
 
 Real = NDArray[np.float64]
@@ -259,8 +257,7 @@ def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
     if sixbar.kind == "slider":
         kind = "dwell_slider"
         links.append(("link_5", ["P", "D"]))
-        angle = math.degrees(float(sixbar.shape[7]))
-        slides.append(Slide(joint="D", link="ground", point=to_point(joints["D"]), angle=angle))
+        slides.append(slide("D", "ground", joints["D"], float(sixbar.shape[7])))
     else:
         links[0][1].append("O6")
         if sixbar.kind == "rocker":
@@ -268,8 +265,7 @@ def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
         else:
             kind = "dwell_slot"
             links.append(("output", ["O6", "C"]))
-            angle = math.degrees(cmath.phase(joints["P"] - joints["O6"]))
-            slides.append(Slide(joint="P", link="output", point=to_point(joints["O6"]), angle=angle))
+            slides.append(slide("P", "output", joints["O6"], cmath.phase(joints["P"] - joints["O6"])))
     point = (own["P"] - own["A"]) / ((own["B"] - own["A"]) / abs(own["B"] - own["A"]))
     return DwellMechanism(
         type=kind,
@@ -277,12 +273,7 @@ def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
         links={name: abs(joints[listed[1]] - joints[listed[0]]) for name, listed in links},
         coupler_point=CouplerPoint(distance=scale * abs(point), angle=math.degrees(cmath.phase(point))),
         reference_input_angle=math.degrees(cmath.phase(own["A"])),
-        skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in joints.items()},
-            links=[Link(name=name, joints=listed) for name, listed in links],
-            slides=slides,
-            input_link="input",
-        ),
+        skeleton=skeleton(joints, dict(links), slides=slides),
     )
 
 

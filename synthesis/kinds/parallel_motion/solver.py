@@ -26,14 +26,13 @@ from synthesis.mechanisms import GivenFourbar, MechanismError
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
-    CouplerPoint,
     FourbarMechanism,
-    Link,
-    Skeleton,
 )
 from synthesis.model.linkages import (
     FourbarConfiguration,
+    coupler_point,
     driven_fourbar,
+    skeleton,
     to_point,
 )
 from synthesis.model.statement import Contradiction, ContradictionError
@@ -190,20 +189,15 @@ def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
         "guide": ["C", "Q"],
         "body": ["P", "Q"],
     }
-    point = (p - a) / ((b - a) / abs(b - a))
     return ParallelMotionMechanism(
         fixed_pivots={name: to_point(places[name]) for name in links["ground"]},
         links={
             **{name: abs(places[listed[1]] - places[listed[0]]) for name, listed in links.items()},
             "input_arm": abs(places["C"] - o2),
         },
-        coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point))),
+        coupler_point=coupler_point(a, b, p),
         reference_input_angle=math.degrees(angle),
-        skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in places.items()},
-            links=[Link(name=name, joints=listed) for name, listed in links.items()],
-            input_link="input",
-        ),
+        skeleton=skeleton(places, links),
     )
 
 

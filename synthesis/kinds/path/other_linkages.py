@@ -46,12 +46,11 @@ from synthesis.model.linkage_answer import (
     FixedPivots,
     GearedFivebarMechanism,
     GearPair,
-    Link,
-    Skeleton,
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import (
     FourbarConfiguration,
+    skeleton,
     slider_crank_mechanism,
     to_complex,
     to_point,
@@ -192,17 +191,16 @@ def geared_fivebar_mechanism(
         coupler_point=CouplerPoint(distance=abs(point), angle=math.degrees(cmath.phase(point)) if point else 0.0),
         assembly="open" if ((b - a).conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(input_angle),
-        skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in joints.items()},
-            links=[
-                Link(name="ground", joints=["O2", "O5"]),
-                Link(name="input", joints=["O2", "A"]),
-                Link(name="coupler_1", joints=["A", "C", "P"]),
-                Link(name="coupler_2", joints=["B", "C"]),
-                Link(name="output", joints=["O5", "B"]),
-            ],
+        skeleton=skeleton(
+            joints,
+            {
+                "ground": ["O2", "O5"],
+                "input": ["O2", "A"],
+                "coupler_1": ["A", "C", "P"],
+                "coupler_2": ["B", "C"],
+                "output": ["O5", "B"],
+            },
             gears=[GearPair(links=("input", "output"), ratio=ratio)],
-            input_link="input",
         ),
     )
 

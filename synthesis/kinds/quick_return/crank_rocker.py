@@ -43,10 +43,8 @@ from synthesis.model.linkage_answer import (
     FixedPivots,
     FourbarLinks,
     FourbarMechanism,
-    Link,
-    Skeleton,
 )
-from synthesis.model.linkages import to_point
+from synthesis.model.linkages import skeleton, to_point
 
 LONG = 20.0
 """Link ratio above which a linkage is given only as far as it is needed to come near to the best transmission angle."""
@@ -232,14 +230,8 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
         assembly="open" if (diagonal.conjugate() * coupler).imag >= 0.0 else "crossed",
         reference_input_angle=math.degrees(cmath.phase(place * at_a)),
         reference_body_angle=None if standing is None else standing.angle,
-        skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in (joints | body).items()},
-            links=[
-                Link(name="ground", joints=["O2", "O4"]),
-                Link(name="input", joints=["O2", "A"]),
-                Link(name="coupler", joints=["A", "B"]),
-                Link(name="output", joints=["O4", "B", *body]),
-            ],
-            input_link="input",
+        skeleton=skeleton(
+            joints | body,
+            {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B"], "output": ["O4", "B", *body]},
         ),
     )

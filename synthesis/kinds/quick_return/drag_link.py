@@ -25,12 +25,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from synthesis.kinds.quick_return.design import DragLinkMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
-from synthesis.model.linkage_answer import (
-    Link,
-    Skeleton,
-    Slide,
-)
-from synthesis.model.linkages import to_point
+from synthesis.model.linkages import skeleton, slide, to_point
 
 RATIOS = (10.0, 6.0, 4.0, 3.0, 2.0)
 """Longest over shortest link of the drag links that are looked for."""
@@ -283,19 +278,14 @@ def _mechanism(
         links.append(("output", ["O6", "C"]))
         lengths |= {"output": abs(c_pin - o6), "output_ground": abs(o6 - 1.0)}
         fixed.append("O6")
-    joints = {name: to_point(o2 + scale * turn * z) for name, z in local.items()}
-    slide = math.degrees(cmath.phase(turn) + drag.start)
+    joints = {name: o2 + scale * turn * z for name, z in local.items()}
     return DragLinkMechanism(
         type="drag_link_slider" if o6 is None else "drag_link_rocker",
-        fixed_pivots={name: joints[name] for name in fixed},
+        fixed_pivots={name: to_point(joints[name]) for name in fixed},
         links={name: scale * length for name, length in lengths.items()},
-        skeleton=Skeleton(
-            joints=joints,
-            links=[
-                Link(name="ground", joints=fixed),
-                *(Link(name=name, joints=listed) for name, listed in links),
-            ],
-            slides=[Slide(joint="C", link="ground", point=joints["O4"], angle=slide)] if o6 is None else [],
-            input_link="input",
+        skeleton=skeleton(
+            joints,
+            {"ground": fixed, **dict(links)},
+            slides=[slide("C", "ground", joints["O4"], cmath.phase(turn) + drag.start)] if o6 is None else [],
         ),
     )

@@ -25,8 +25,8 @@ from scipy.optimize import brentq
 
 from synthesis.kinds.quick_return.design import RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
-from synthesis.model.linkage_answer import Link, SliderCrankMechanism
-from synthesis.model.linkages import slider_crank_mechanism
+from synthesis.model.linkage_answer import SliderCrankMechanism
+from synthesis.model.linkages import slider_crank_mechanism, without_coupler_point
 
 LONG = 20.0
 """Coupler over crank above which a design is given only where the demanded transmission angle needs it."""
@@ -103,7 +103,4 @@ def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMe
     o2 = problem.o2
     far = complex(math.sqrt((a + b - e) * (a + b + e)), e) * along
     pin_a = o2 + a * far / abs(far)
-    made = slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.ground_angle), pin_a)
-    joints = {name: z for name, z in made.skeleton.joints.items() if name != "P"}
-    links = [Link(name=link.name, joints=[j for j in link.joints if j != "P"]) for link in made.skeleton.links]
-    return made.model_copy(update={"skeleton": made.skeleton.model_copy(update={"joints": joints, "links": links})})
+    return without_coupler_point(slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.ground_angle), pin_a))

@@ -28,11 +28,8 @@ from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.model.linkage_answer import (
     FixedPivots,
     Line,
-    Link,
-    Skeleton,
-    Slide,
 )
-from synthesis.model.linkages import to_point
+from synthesis.model.linkages import skeleton, slide, to_point
 
 REACH = 0.9
 """How far out the crank pin comes on the slotted link, as a share of its arm to C: the block stays clear of the pin."""
@@ -112,7 +109,6 @@ def _mechanism(
     o4 = o2 - ground * up
     line = o4 + height * up
     made = quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
-    joints = {name: to_point(complex(z)) for name, z in made.joints.items()}
     return QuickReturnMechanism.model_validate(
         {
             "type": kind,
@@ -121,19 +117,10 @@ def _mechanism(
             "slide": Line(point=to_point(line), angle=problem.ground_angle),
             "assembly": "open",
             "reference_input_angle": math.degrees(crank_angle) + problem.ground_angle,
-            "skeleton": Skeleton(
-                joints=joints,
-                links=[Link(name=name, joints=list(listed)) for name, listed in made.links.items()],
-                slides=[
-                    Slide(
-                        joint=slide.joint,
-                        link=slide.link,
-                        point=to_point(complex(slide.point)),
-                        angle=math.degrees(float(slide.angle)),
-                    )
-                    for slide in made.slides
-                ],
-                input_link="input",
+            "skeleton": skeleton(
+                {name: complex(z) for name, z in made.joints.items()},
+                made.links,
+                slides=[slide(at.joint, at.link, complex(at.point), float(at.angle)) for at in made.slides],
             ),
         }
     )

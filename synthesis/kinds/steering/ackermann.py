@@ -16,8 +16,8 @@ from scipy.optimize import minimize_scalar
 
 from kinematics.linkage.steering import outer_angle
 from synthesis.kinds.steering.problem import SteeringProblem
-from synthesis.model.linkage_answer import FourbarMechanism, Link
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, without_coupler_point
 
 Real = NDArray[np.float64]
 
@@ -104,7 +104,4 @@ def _mechanism(problem: SteeringProblem, arm: float, lean: float, side: Side) ->
     half, sense = 0.5 * problem.pivot_distance, 1.0 if side == "behind" else -1.0
     left = arm * problem.pivot_distance * sense * complex(math.sin(lean), -math.cos(lean))
     a, b = -half + left, half - left.conjugate()
-    made = fourbar_mechanism(FourbarConfiguration(complex(-half), a, b, complex(half), a))
-    joints = {name: place for name, place in made.skeleton.joints.items() if name != "P"}
-    links = [Link(name=link.name, joints=[j for j in link.joints if j != "P"]) for link in made.skeleton.links]
-    return made.model_copy(update={"skeleton": made.skeleton.model_copy(update={"joints": joints, "links": links})})
+    return without_coupler_point(fourbar_mechanism(FourbarConfiguration(complex(-half), a, b, complex(half), a)))

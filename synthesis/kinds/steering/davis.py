@@ -13,12 +13,7 @@ import math
 from kinematics.linkage.steering import davis_arm_angle, outer_angle
 from synthesis.kinds.steering.design import DavisMechanism
 from synthesis.kinds.steering.problem import SteeringProblem
-from synthesis.model.linkage_answer import (
-    Link,
-    Skeleton,
-    Slide,
-)
-from synthesis.model.linkages import to_point
+from synthesis.model.linkages import skeleton, slide, to_point
 
 BEYOND = 1.1
 """Length of the slotted arms over what they need at the lock."""
@@ -46,24 +41,17 @@ def _mechanism(problem: SteeringProblem, ahead: float) -> DavisMechanism:
         "C": -half + slot,
         "D": half - slot.conjugate(),
     }
-    joints = {name: to_point(z) for name, z in places.items()}
-    left, right = (math.degrees(cmath.phase(z)) for z in (arm, -arm.conjugate()))
     return DavisMechanism(
-        fixed_pivots={name: joints[name] for name in ("O2", "O4")},
+        fixed_pivots={name: to_point(places[name]) for name in ("O2", "O4")},
         links={"ground": 2.0 * half, "bar": abs(places["B"] - places["A"])},
-        skeleton=Skeleton(
-            joints=joints,
-            links=[
-                Link(name="ground", joints=["O2", "O4"]),
-                Link(name="bar", joints=["A", "B"]),
-                Link(name="left_arm", joints=["O2", "C"]),
-                Link(name="right_arm", joints=["O4", "D"]),
-            ],
+        skeleton=skeleton(
+            places,
+            {"ground": ["O2", "O4"], "bar": ["A", "B"], "left_arm": ["O2", "C"], "right_arm": ["O4", "D"]},
             slides=[
-                Slide(joint="A", link="ground", point=joints["A"], angle=0.0),
-                Slide(joint="B", link="ground", point=joints["A"], angle=0.0),
-                Slide(joint="A", link="left_arm", point=joints["O2"], angle=left),
-                Slide(joint="B", link="right_arm", point=joints["O4"], angle=right),
+                slide("A", "ground", places["A"], 0.0),
+                slide("B", "ground", places["A"], 0.0),
+                slide("A", "left_arm", places["O2"], cmath.phase(arm)),
+                slide("B", "right_arm", places["O4"], cmath.phase(-arm.conjugate())),
             ],
             input_link="A",
         ),

@@ -38,13 +38,12 @@ from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
-    Link,
-    Skeleton,
-    Slide,
 )
 from synthesis.model.linkages import (
     FourbarConfiguration,
     fourbar_mechanism,
+    skeleton,
+    slide,
     to_point,
 )
 from synthesis.numerics.narrowing import merits, narrowest
@@ -289,21 +288,16 @@ def _mechanism(
         return fourbar_mechanism(FourbarConfiguration(*(joints[name] for name in ("O2", "A", "B", "O4", "P"))))
     made = candidate.exact.mechanism
     slides = []
-    for slide in made.slides:
+    for given in made.slides:
         # The slides pass through joints, and their lines along +y in the frame of P's line.
-        turned = float(slide.angle) - 0.5 * math.pi
-        angle = math.degrees((-turned if mirrored else turned) + math.radians(problem.direction))
-        slides.append(Slide(joint=slide.joint, link=slide.link, point=to_point(joints[slide.joint]), angle=angle))
+        turned = float(given.angle) - 0.5 * math.pi
+        angle = (-turned if mirrored else turned) + math.radians(problem.direction)
+        slides.append(slide(given.joint, given.link, joints[given.joint], angle))
     return ExactLineMechanism(
         type=candidate.family,
         fixed_pivots={name: to_point(joints[name]) for name in made.links[GROUND]},
         links=candidate.exact.links,
-        skeleton=Skeleton(
-            joints={name: to_point(z) for name, z in joints.items()},
-            links=[Link(name=name, joints=list(listed)) for name, listed in made.links.items()],
-            slides=slides,
-            input_link=made.input,
-        ),
+        skeleton=skeleton(joints, made.links, slides=slides, input_link=made.input),
     )
 
 
