@@ -7,16 +7,16 @@ small for its task, and whether its links can be built together. docs/ranking.md
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.outcome.sifting import Verified
 
-Ranked = TypeVar("Ranked", bound=LinkageDesign)
+Ranked = TypeVar("Ranked", bound=Verified)
 
 BULKY = 3.0
 """A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
@@ -61,6 +61,16 @@ def distinct(joints: NDArray[np.complex128], count: int, apart: float) -> list[i
     return [int(k) for k in _distinct(np.ascontiguousarray(joints), count, apart)]
 
 
+def widest_apart(joints: NDArray[np.complex128], count: int, aparts: Iterable[float]) -> list[int]:
+    """As :func:`distinct`, with the first of ``aparts`` at which there are ``count``, else with the last."""
+    chosen: list[int] = []
+    for apart in aparts:
+        chosen = distinct(joints, count, float(apart))
+        if len(chosen) >= min(count, len(joints)):
+            break
+    return chosen
+
+
 @njit(cache=True, nogil=True)
 def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArray[np.int64]:
     chosen = np.empty(min(count, len(joints)), np.int64)
@@ -82,21 +92,58 @@ def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArr
     return chosen[:found]
 
 
-_KEYS: dict[str, Callable[[LinkageDesign], float]] = {
-    "quality": lambda design: -design.metrics.quality,
-    "accuracy": lambda design: max(target.residual for target in design.targets),
+ROUNDING = 1e-12
+"""Residuals below this, in task sizes, are rounding."""
+
+
+def _decade(residual: float) -> float:
+    """The order of magnitude of a residual: within one, and at the level of rounding, residuals are alike."""
+    return math.floor(math.log10(max(residual, ROUNDING)))
+
+
+def by_quality(design: Any) -> float:
+    """The better of two designs first."""
+    return -float(design.metrics.quality)
+
+
+Key = Callable[[Any], float]
+
+KEYS: Mapping[str, Key] = {
+    "quality": by_quality,
+    "accuracy": lambda design: _decade(max(target.residual for target in design.targets)),
     "size": lambda design: design.metrics.size,
     "transmission_angle": lambda design: -design.metrics.min_transmission_angle,
 }
+"""What designs are ordered by, least first, for each value of ``rank_by``; a kind states its own where it measures
+otherwise."""
 
 
-def ranked(designs: Sequence[Ranked], rank_by: str) -> list[Ranked]:
-    """Designs in the order asked for, those that break a check after all others; ties by quality."""
+def ranked(
+    designs: Sequence[Ranked],
+    rank_by: str,
+    own: Mapping[str, Callable[[Ranked], float]] | None = None,
+    *,
+    group: Callable[[Ranked], float] | None = None,
+    ties: Callable[[Ranked], float] = by_quality,
+) -> list[Ranked]:
+    """Designs in the order asked for, those that break a check after all others.
 
-    def key(design: Ranked) -> tuple[bool, float, float]:
-        value = _KEYS[rank_by](design)
-        if rank_by == "accuracy":
-            value = math.floor(math.log10(max(value, 1e-12)))  # residuals at rounding level are all alike
-        return (not design.verification.passed, value, -design.metrics.quality)
+    Parameters
+    ----------
+    designs : sequence
+        Verified designs.
+    rank_by : str
+        Name of the key.
+    own : mapping, optional
+        Keys of the kind, in place of those in :data:`KEYS`.
+    group : callable, optional
+        What goes before the key: designs of a lower value stand first whatever is asked for.
+    ties : callable
+        What decides among designs with the same key: the quality, where a kind has one.
+    """
+    key = {**KEYS, **(own or {})}[rank_by]
 
-    return sorted(designs, key=key)
+    def place(design: Ranked) -> tuple[bool, float, float, float]:
+        return not design.verification.passed, group(design) if group else 0.0, key(design), ties(design)
+
+    return sorted(designs, key=place)

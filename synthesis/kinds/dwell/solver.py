@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
 from functools import partial
 from typing import Literal, NamedTuple
 
@@ -29,7 +28,6 @@ from synthesis.kinds.dwell.outputs import (
 )
 from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
 from synthesis.kinds.dwell.verification import GRID, verify_dwell
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     CouplerPoint,
@@ -37,6 +35,8 @@ from synthesis.model.linkage_answer import (
 )
 from synthesis.model.linkages import skeleton, slide, to_point
 from synthesis.numerics.narrowing import narrowest
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -84,48 +84,26 @@ class _Sixbar(NamedTuple):
 def solve_dwell(problem: DwellProblem, progress: Progress) -> DwellResult:
     """Solve a problem of dwells."""
     rng = np.random.default_rng(problem.seed)
-    found: list[DwellDesign] = []
-    failed: list[DwellDesign] = []
-    rejected: Counter[str] = Counter()
+    sifting = Sifting[DwellDesign](problem, undriven="crank_does_not_turn")
     types = problem.types
-    candidates = 0
     for n, name in enumerate(types):
         kind = KINDS[name, problem.output.type]
         progress(n / len(types), f"driving outputs on coupler curves ({name.replace('_', ' ')})")
         way = math.nan if kind == "slider" else math.radians(problem.way)
         begun = starts(kind, problem.count, math.radians(problem.dwell_angle), way, _transmission(problem), rng, STARTS)
-        enough = len(found) + ENOUGH
-        for k, start in enumerate(begun):
-            if len(found) == enough:
-                break
-            progress((n + (k + 1) / (len(begun) + 1)) / len(types), f"refining {k + 1} of at most {len(begun)}")
-            candidates += 1
-            sixbar = _refined(problem, kind, start)
-            if sixbar is None:
-                rejected["not_at_rest"] += 1
-                continue
-            design = verify_dwell(problem, _mechanism(problem, sixbar))
-            if design is None:
-                rejected["crank_does_not_turn"] += 1
-            elif design.verification.passed:
-                found.append(design)
-            else:
-                failed.append(design)
-                rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+        span = (n + 1.0 / (len(begun) + 1)) / len(types), (n + 1.0) / len(types)
+        sifting.sift(
+            reported(begun, progress, span, "refining {next} of at most {all}"),
+            partial(_driven, problem, kind),
+            enough=len(sifting.passed) + ENOUGH,
+        )
     progress(1.0, "verified")
-    key = partial(_key, problem)
-    designs = sorted(found, key=key) + (sorted(failed, key=key) if problem.include_failed else [])
     return DwellResult(
-        designs=designs[: problem.max_designs],
-        search=Search(
-            method="coupler curves drawn at random, outputs on their arcs and lines, sequential linear programming",
-            complete=False,
-            candidates=candidates,
-            accepted=len(found),
-            rejected=dict(rejected),
-            seed=problem.seed,
+        designs=sifting.designs(partial(_ranked, problem)),
+        search=sifting.search(
+            "coupler curves drawn at random, outputs on their arcs and lines, sequential linear programming"
         ),
-        summary=_summary(problem, sorted(found, key=key), rejected),
+        summary=_summary(problem, sifting),
     )
 
 
@@ -141,15 +119,14 @@ def _transmission(problem: DwellProblem) -> float:
     return math.radians(TRANSMISSION if stated is None else min(stated + MARGIN, 89.0))
 
 
-def _key(problem: DwellProblem, design: DwellDesign) -> tuple[float, float]:
-    metrics = design.metrics
-    by = {
-        "quality": -metrics.quality,
-        "accuracy": metrics.jitter,
-        "size": metrics.size,
-        "transmission_angle": -metrics.min_transmission_angle,
-    }[problem.rank_by]
-    return by, -metrics.quality
+def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesign]:
+    return ranked(designs, problem.rank_by, {"accuracy": lambda design: design.metrics.jitter})
+
+
+def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | str | None:
+    """The verified design that a start leads to."""
+    sixbar = _refined(problem, kind, start)
+    return "not_at_rest" if sixbar is None else verify_dwell(problem, _mechanism(problem, sixbar))
 
 
 def _refined(problem: DwellProblem, kind: Kind, start: Start) -> _Sixbar | None:
@@ -277,14 +254,14 @@ def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
     )
 
 
-def _summary(problem: DwellProblem, found: list[DwellDesign], rejected: Counter[str]) -> str:
+def _summary(problem: DwellProblem, sifting: Sifting[DwellDesign]) -> str:
     unit = problem.length_unit if problem.output.type == "slider" else "°"
-    if not found:
-        reasons = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items()) or "no curve rests it"
+    if not sifting.passed:
+        reasons = sifting.listed() or "no curve rests it"
         return f"No dwell sixbar was found that meets every demand ({reasons}); that none exists is not proven."
-    best = found[0]
+    best, count = _ranked(problem, sifting.passed)[0], len(sifting.passed)
     widths = " and ".join(f"{rest.width:.1f}°" for rest in best.targets)
-    many = f"{len(found)} dwell sixbars" if len(found) > 1 else "One dwell sixbar"
+    many = f"{count} dwell sixbars" if count > 1 else "One dwell sixbar"
     return (
         f"{many}; in the first the output moves by {best.metrics.jitter:.2g} {unit} at most while it rests, and keeps "
         f"within {problem.allowed:.3g} {unit} over {widths} of the crank."

@@ -30,6 +30,7 @@ from synthesis.kinds.gear_train.task import (
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting
 
 
 def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
@@ -45,34 +46,20 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
         met = {_gears(task, train) for train in hunting.trains}
         trains = [train for train in trains if _gears(task, train) not in met]
         trains = order(task, [*trains, *hunting.trains], set(hunting.trains))[: problem.max_designs]
-    accepted: list[GearTrainDesign] = []
-    failed: list[GearTrainDesign] = []
-    rejected: Counter[str] = Counter()
+    sifting = Sifting[GearTrainDesign](problem, undriven="gears")
     for train in trains:
         mechanism = _mechanism(problem, task, train)
-        design = None if mechanism is None else verify(problem, mechanism)
-        if design is None:
-            rejected["idler" if mechanism is None else "gears"] += 1
-        elif design.verification.passed:
-            accepted.append(design)
-        else:
-            failed.append(design)
-            rejected.update(next([c.name] for c in design.verification.checks if not c.passed))
+        sifting.add("idler" if mechanism is None else verify(problem, mechanism))
     progress(1.0, "verified")
     return GearTrainResult(
-        designs=[*accepted, *(failed if problem.include_failed else [])],
+        designs=sifting.designs(list),
         search=GearTrainSearch(
-            method="exhaustive",
-            complete=not rejected,
-            candidates=len(accepted) + rejected.total(),
-            accepted=len(accepted),
-            rejected=dict(rejected),
-            seed=problem.seed,
+            **dict(sifting.search("exhaustive", complete=not sifting.rejected)),
             combinations=outcome.combinations,
             ties=outcome.ties,
             least_error=_least_error(task, outcome),
         ),
-        summary=_summary(problem, task, outcome, accepted),
+        summary=_summary(problem, task, outcome, sifting.passed),
         pareto=[
             ParetoTrain(
                 size=train.size(task.largest),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import NamedTuple
 
 from kinematics.gear.gearbox import preferred_numbers
@@ -32,7 +33,7 @@ from synthesis.kinds.gearbox.structures import (
 from synthesis.kinds.gearbox.verification import measure, verify
 from synthesis.model.gear_answer import GearPairTeeth
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import sifted
+from synthesis.outcome.sifting import OUTRANKED, Sifting
 
 FIXED = Group(1, 1)
 """A stage of one pair."""
@@ -81,14 +82,15 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
         orders = [structure for structure in tried if tuple(sorted(structure)) == groups]
         made += [_ordered(choice, groups, orders) for choice in front]
     made.sort(key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque))
-    designs = [_design(problem, one) for one in made[: problem.max_designs]]
     unsearched = _unsearched(problem, tried)
-    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)}, complete=not unsearched)
+    sifting = Sifting[GearboxDesign](problem)
+    sifting.reject(OUTRANKED, covered - len(made[: problem.max_designs]))
+    sifting.sift(made[: problem.max_designs], partial(_design, problem))
     progress(1.0, "done")
     return GearboxResult(
-        designs=found.returned,
-        search=found.search,
-        summary=_summary(problem, tried, found.passed, covered) + unsearched,
+        designs=sifting.designs(list),
+        search=sifting.search("exhaustive", complete=not unsearched and not sifting.failed),
+        summary=_summary(problem, tried, sifting.passed, covered) + unsearched,
         progression_ratio=ratio,
         structures=[_verdict(structure, choices[tuple(sorted(structure))]) for structure in tried],
     )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ from synthesis.kinds.layshaft_gearbox.verification import (
 from synthesis.model.gear_answer import GearPairTeeth, Ratio
 from synthesis.model.kind import Progress
 from synthesis.model.mesh_limits import external_sound
-from synthesis.outcome.sifting import sifted
+from synthesis.outcome.sifting import OUTRANKED, Sifting
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -90,13 +91,14 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
     limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
     ranked = boxes if problem.rank_by == "error" else best
     chosen = [box for box in ranked if limit is None or box.error <= limit][: problem.max_designs]
-    designs = [_design(problem, box) for box in chosen]
-    found = sifted(problem, designs, covered, {"outranked": covered - len(designs)})
+    sifting = Sifting[LayshaftDesign](problem)
+    sifting.reject(OUTRANKED, covered - len(chosen))
+    sifting.sift(chosen, partial(_design, problem))
     progress(1.0, "done")
     return LayshaftResult(
-        designs=found.returned,
-        search=found.search,
-        summary=_summary(problem, found.passed, boxes, covered),
+        designs=sifting.designs(list),
+        search=sifting.search("exhaustive", complete=not sifting.failed),
+        summary=_summary(problem, sifting.passed, boxes, covered),
         pareto=_front(best),
     )
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,7 @@ from synthesis.outcome.ranking import (
     UNEVEN,
     ranked,
 )
+from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -93,44 +95,29 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
     """The fourbars of a result, each with a driver dyad, verified as sixbars."""
     wanted = problem.driver
     assert wanted is not None
-    passed: list[LinkageDesign] = []
-    poor: list[LinkageDesign] = []
-    failed: list[LinkageDesign] = []
-    tried = without = 0
-    for n, design in enumerate(result.designs):
-        progress(0.9 + 0.1 * n / len(result.designs), "adding driver dyads")
-        if len(passed) == problem.max_designs:
+    sifting = Sifting[LinkageDesign](problem)
+    sifting.rejected.update(result.search.rejected)
+    sifting.reject(OUTRANKED, result.search.accepted)
+    usable: list[LinkageDesign] = []
+    tried = 0
+    for design in reported(result.designs, progress, (0.9, 1.0), "adding driver dyads"):
+        if len(usable) == problem.max_designs:
             break
         tried += 1
         best = _driven(problem, design, wanted)
-        if best is None or not best.verification.passed:
-            without += 1
-            failed += [] if best is None else [best]
-        elif best.metrics.min_transmission_angle < USABLE and problem.constraints.min_transmission_angle is None:
-            poor.append(best)
-        else:
-            passed.append(best)
+        # Of a linkage that can be driven from either side both ways are looked at, but it was accepted once.
+        sifting.rejected[OUTRANKED] -= sifting.rejected[OUTRANKED] > 0
+        sifting.count("driver_dyad" if sifting.keep(best) else "")
+        if best is not None and _sound(problem, best):
+            usable.append(best)
     # Designs that transmit badly are offered where there are no others.
-    accepted = passed or poor
-    shown = [*accepted, *(failed if problem.include_failed else [])]
-    rejected = dict(result.search.rejected)
-    left = result.search.accepted - len(accepted) - without
-    rejected["outranked"] = rejected.get("outranked", 0) + left
-    rejected["driver_dyad"] = without
-    search = result.search.model_copy(
-        update={
-            "method": f"{result.search.method}, driver_dyad",
-            "accepted": len(accepted),
-            "rejected": {name: count for name, count in rejected.items() if count},
-            "complete": False,
-        }
-    )
-    text = f"{len(accepted)} of {tried} fourbars were given a driver dyad whose crank turns through. {result.summary}"
+    sifting.withdraw(usable or sifting.passed, OUTRANKED)
+    given = f"{sifting.accepted} of {tried} fourbars were given a driver dyad whose crank turns through."
     return result.model_copy(
         update={
-            "designs": ranked(shown, problem.rank_by)[: problem.max_designs],
-            "search": search,
-            "summary": text,
+            "designs": sifting.designs(partial(ranked, rank_by=problem.rank_by)),
+            "search": sifting.search(f"{result.search.method}, driver_dyad"),
+            "summary": f"{given} {result.summary}",
         }
     )
 

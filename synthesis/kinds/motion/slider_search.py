@@ -14,8 +14,8 @@ Both dyads carry the same body, so all joints at the targets are known, as for f
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -38,26 +38,16 @@ from synthesis.kinds.motion.task import (
     motion_task,
 )
 from synthesis.kinds.motion.verification import verify
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
 from synthesis.outcome.ranking import (
     BULKY,
     UNEVEN,
-    distinct,
     ranked,
+    widest_apart,
 )
-
-REASONS = {
-    "reaches_targets": "residual",
-    "same_circuit": "circuit_defect",
-    "same_branch": "branch_defect",
-    "visits_in_order": "order_defect",
-    "shortest_link": "link_length",
-    "longest_link": "link_length",
-}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting, reported
 
 USABLE_TRANSMISSION_ANGLE = 30.0
 """Degrees; where the client sets no limit, pairs below this are tried only if none reaches it."""
@@ -68,8 +58,8 @@ SHORTEST_LINK = 1e-3
 LEAST_ATTEMPTS = 40
 """Pairs driven at least before the search gives up; at most three for each design wanted."""
 
-APART = 0.25
-"""Distinct designs move some joint by at least this share of the task's size, or by half of it, and so on."""
+APART = 0.25 * 0.5 ** np.arange(5)
+"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
 
 REJECTED = (
     "sound",
@@ -95,9 +85,6 @@ LINKS, SLIDERS = 500, 160
 
 ALONE = 6000
 """Dyads of a side that is drawn where the other is determined."""
-
-_OPEN = {"degenerate", "residual", "cannot_be_driven", "outranked"}
-"""Reasons that say what was not shown of a pair, not what cannot be."""
 
 
 def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: Progress) -> MotionResult:
@@ -155,19 +142,14 @@ def beside_sliders(
     if not met:
         return result
     missing = {kind for kind in kinds if not met.get(kind, True)}
-    rejected = Counter(result.search.rejected)
-    for part in parts:
-        rejected.update(part.search.rejected)
-    designs = [*result.designs, *(design for part in parts for design in part.designs)]
-    accepted = sum(part.search.accepted for part in parts)
-    search = result.search.model_copy(
-        update={
-            "method": f"{result.search.method}, slider_search",
-            "complete": result.search.complete and not missing and not _OPEN & rejected.keys(),
-            "candidates": result.search.candidates + sum(part.search.candidates for part in parts),
-            "accepted": result.search.accepted + accepted,
-            "rejected": dict(rejected),
-        }
+    sifting = Sifting[LinkageDesign](problem)
+    for part in (result, *parts):
+        sifting.join(part.search)
+    designs = [design for part in (result, *parts) for design in part.designs]
+    accepted = sifting.accepted - result.search.accepted
+    open_questions = missing or {*NUMERICAL, OUTRANKED} & sifting.rejected.keys()
+    search = sifting.search(
+        f"{result.search.method}, slider_search", complete=result.search.complete and not open_questions
     )
     noun = "linkage with a slider carries" if accepted == 1 else "linkages with a slider carry"
     text = f"{result.summary} {accepted or 'No'} {noun} the body through all positions."
@@ -199,7 +181,7 @@ def _inside(problem: MotionProblem, task: MotionTask, found: Sliders, kind: str)
 
 def _none(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResult:
     """The answer where one side has no dyad at all."""
-    search = Search(method="slider_search", complete=complete, candidates=0, accepted=0, rejected={}, seed=problem.seed)
+    search = Sifting[LinkageDesign](problem).search("slider_search", complete=complete)
     return MotionResult(designs=[], search=search, summary=reason)
 
 
@@ -218,46 +200,29 @@ def slider_linkages(
     screened = _screen(problem, task, links, sliders, kind, driving, wanted)
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
+    sifting = Sifting[LinkageDesign](problem, DEFECTS | LENGTHS)
     counts = np.bincount(screened.verdict.ravel(), minlength=len(REJECTED))
-    rejected = Counter({name: int(n) for name, n in zip(REJECTED, counts, strict=True) if n and name != "sound"})
-    passed: list[LinkageDesign] = []
-    failed: list[LinkageDesign] = []
-    chosen = _best(task, links, sliders, screened, max(3 * problem.max_designs, LEAST_ATTEMPTS))
-    tried = 0
-    for i, j in chosen:
-        progress(0.5 + 0.5 * tried / len(chosen), "driving the best pairs")
-        tried += 1
-        design = verify(problem, _mechanism(problem, task, links, sliders, kind, driving, i, j))
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            passed.append(design)
-        else:
-            failed.append(design)
-            name = next(check.name for check in design.verification.checks if not check.passed)
-            rejected[REASONS.get(name, name)] += 1
-        if len(passed) == problem.max_designs:
-            break
-    sound = int(np.count_nonzero(screened.score))
-    if sound > tried:
-        rejected["outranked"] = sound - tried
-    progress(1.0, "verified")
-    shown = [*passed, *(failed if problem.include_failed else [])]
-    word = "slider-crank" if kind == "PR" else "inverted slider-crank"
-    text = f"{len(passed)} distinct {word}s were driven and verified, of {screened.verdict.size} pairs of dyads."
-    if not passed:
-        listed = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
-        text = f"No {word} was found that satisfies all demands (rejected: {listed or 'none'})."
-    return MotionResult(
-        designs=ranked(shown, problem.rank_by)[: problem.max_designs],
-        search=Search(
-            method="slider_search",
-            complete=False,
-            candidates=screened.verdict.size,
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
+    for name, count in zip(REJECTED[1:], counts[1:].tolist(), strict=True):
+        sifting.reject(name, count)
+    driven = sifting.sift(
+        reported(
+            _best(task, links, sliders, screened, max(3 * problem.max_designs, LEAST_ATTEMPTS)),
+            progress,
+            (0.5, 1.0),
+            "driving the best pairs",
         ),
+        lambda pair: verify(problem, _mechanism(problem, task, links, sliders, kind, driving, *pair)),
+        enough=problem.max_designs,
+    )
+    sifting.reject(OUTRANKED, int(np.count_nonzero(screened.score)) - driven)
+    progress(1.0, "verified")
+    word = "slider-crank" if kind == "PR" else "inverted slider-crank"
+    text = f"{sifting.accepted} distinct {word}s were driven and verified, of {sifting.candidates} pairs of dyads."
+    if not sifting.accepted:
+        text = f"No {word} was found that satisfies all demands (rejected: {sifting.listed() or 'none'})."
+    return MotionResult(
+        designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
+        search=sifting.search("slider_search"),
         summary=text,
     )
 
@@ -390,12 +355,7 @@ def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened,
     order = order[score[order] > 0.0]
     i, j = np.unravel_index(order, screened.score.shape)
     joints = np.stack([links.fixed[i], links.moving[i], sliders.points[j], np.exp(2j * sliders.angles[j])], axis=1)
-    chosen: list[int] = []
-    for apart in APART * 0.5 ** np.arange(5):
-        chosen = distinct(joints, count, float(apart))
-        if len(chosen) >= min(count, len(order)):
-            break
-    return [(int(i[k]), int(j[k])) for k in chosen]
+    return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
 
 
 def _mechanism(

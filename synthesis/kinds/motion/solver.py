@@ -12,8 +12,8 @@ may be driven from either side. It counts as one candidate; each way of driving 
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from synthesis.kinds.motion.burmester import (
     burmester_curve,
 )
 from synthesis.kinds.motion.choices import Cloud, side_dyads
-from synthesis.kinds.motion.demanded import demanded
+from synthesis.kinds.motion.demanded import Demanded, demanded
 from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
 from synthesis.kinds.motion.driver_dyad import undriven, with_driver_dyads
 from synthesis.kinds.motion.dyads import DyadConditions, Dyads
@@ -39,6 +39,7 @@ from synthesis.kinds.motion.screening import (
     demands,
     screen,
 )
+from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.slider_search import (
     beside_sliders,
     solve_sliders,
@@ -55,7 +56,8 @@ from synthesis.model.linkages import (
     fourbar_mechanism,
     to_point,
 )
-from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.ranking import ranked, widest_apart
+from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting
 
 USABLE_TRANSMISSION_ANGLES = 30.0, 20.0, 10.0, 0.0
 """Degrees. Where the client sets no limit, a search offers linkages below each of these only if it met none that
@@ -88,19 +90,6 @@ ATTEMPTS = 5
 LEAST_ATTEMPTS = 100
 """Pairs tried at least before a search gives up."""
 
-_REASONS = {
-    "reaches_targets": "residual",
-    "same_circuit": "circuit_defect",
-    "same_branch": "branch_defect",
-    "visits_in_order": "order_defect",
-    "shortest_link": "link_length",
-    "longest_link": "link_length",
-}
-"""Why a design was rejected, by the check it failed; other checks go by their own name."""
-
-_NUMERICAL = {"degenerate", "residual", "cannot_be_driven"}
-"""Reasons that say what could not be shown, not what cannot be; a search with one of them proves nothing."""
-
 _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 """Reasons that hold whichever side drives."""
 
@@ -114,134 +103,82 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
         return solve_least_squares(problem, progress)
     if problem.slider is not None:
         return solve_sliders(problem, problem.slider, progress)
-    result = _solve_fourbars(problem, progress)
+    progress(0.0, "finding dyads")
+    pairs = _pairs(problem)
+    if pairs.lacking is not None:
+        result = _without_dyads(pairs, *pairs.lacking)
+    elif pairs.sampled:
+        result = _searched(pairs, progress)
+    else:
+        result = _determined(pairs, progress)
+        if pairs.sliders:
+            result = beside_sliders(problem, result, pairs.sliders, progress)
     return result if result.designs else with_sliders(problem, result, progress)
 
 
-def _solve_fourbars(problem: MotionProblem, progress: Progress) -> MotionResult:
-    """Fourbars for two to five positions."""
-    task = motion_task(problem)
-    rng = np.random.default_rng(problem.seed)
-    progress(0.0, "finding dyads")
-    sides = problem.input_side, problem.output_side
-    pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
-    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
-    alike = sides[0] == sides[1]
-    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
-    for k in (0, 1):
-        if clouds[k].sampled and not clouds[1 - k].sampled:
-            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
-    pairs = _Pairs(problem, task, *clouds)
-    for name, cloud in zip(("input", "output"), clouds, strict=True):
-        if not len(cloud.dyads.fixed):
-            return pairs.none(cloud, name)
-    if pairs.sampled:
-        return pairs.searched(progress)
-    result = pairs.determined(progress)
-    return beside_sliders(problem, result, pairs.sliders, progress) if pairs.sliders else result
-
-
+@dataclass(frozen=True)
 class _Pairs:
-    """The pairs of input and output dyads of one problem, and what becomes of them."""
+    """The pairs of input and output dyads of one problem."""
 
-    def __init__(self, problem: MotionProblem, task: MotionTask, inputs: Cloud, outputs: Cloud) -> None:
-        self.problem, self.task, self.demanded = problem, task, demanded(problem)
-        self.inputs, self.outputs = inputs.dyads, outputs.dyads
-        self.sampled = inputs.sampled or outputs.sampled
-        self.complete = inputs.complete and outputs.complete
-        self.alike = inputs is outputs
-        self.sliders = inputs.sliders + outputs.sliders
-        self.remarks = _remarks(problem, inputs, outputs)
-        self.accepted = 0
-        self.passed: list[LinkageDesign] = []
-        self.failed: list[LinkageDesign] = []
-        self.rejected: Counter[str] = Counter()
+    problem: MotionProblem
+    task: MotionTask
+    clouds: tuple[Cloud, Cloud]
 
-    def determined(self, progress: Progress) -> MotionResult:
-        """Verify every pair of a few determined dyads; of two that serve either side, both ways of driving."""
-        count = 0
-        for i in range(len(self.inputs.fixed)):
-            for j in range(i + 1 if self.alike else 0, len(self.outputs.fixed)):
-                verdicts = [self._verify(i, j)]
-                if self.alike and verdicts[0] not in _EITHER_WAY:
-                    verdicts.append(self._verify(j, i))
-                self._count(verdicts)
-                count += 1
-        progress(1.0, "verified")
-        complete = self.complete and not _NUMERICAL & self.rejected.keys()
-        return self._result("exact", complete, count, self._summary_of_determined(count, complete))
+    @property
+    def inputs(self) -> Dyads:
+        """Dyads of the input side."""
+        return self.clouds[0].dyads
 
-    def searched(self, progress: Progress) -> MotionResult:
-        """Screen all pairs and verify the best distinct ones."""
-        count = len(self.inputs.fixed) * len(self.outputs.fixed)
-        progress(0.1, f"screening {count} pairs of dyads")
-        limit = self.problem.constraints.min_transmission_angle
-        for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
-            screening = self._screened(self.problem.constraints, least)
-            if screening.score.any() or "transmission_angle" not in screening.rejected():
-                break
-        sound = int(np.count_nonzero(screening.score))
-        progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
-        self.rejected.update(screening.rejected())
-        tried = 0
-        for i, j in self._best(screening):
-            tried += 1
-            self._count([self._verify(i, j)])
-            if len(self.passed) == self.problem.max_designs:
-                break
-        if sound > tried:
-            self.rejected["outranked"] = sound - tried
-        if self.problem.include_failed and len(self.passed) < self.problem.max_designs:
-            self._add_failed()
-        progress(1.0, "verified")
-        return self._result("dyad_search", False, count, self._summary_of_search(count, sound))
+    @property
+    def outputs(self) -> Dyads:
+        """Dyads of the output side."""
+        return self.clouds[1].dyads
 
-    def none(self, cloud: Cloud, side: str) -> MotionResult:
-        """The answer when one side has no dyad at all, with the reason."""
-        method = "dyad_search" if self.sampled else "exact"
-        return self._result(method, cloud.complete, 0, cloud.reason.replace("the side", f"the {side} side"))
+    @property
+    def alike(self) -> bool:
+        """Whether both sides have the same dyads, of which each may drive."""
+        return self.clouds[0] is self.clouds[1]
 
-    def _count(self, verdicts: list[str]) -> None:
-        """Count a candidate by the verdicts on the ways in which it can be driven: accepted if one passes."""
-        if "" in verdicts:
-            self.accepted += 1
-        else:
-            self.rejected[verdicts[0]] += 1
+    @property
+    def sampled(self) -> bool:
+        """Whether some dyads are drawn from families."""
+        return any(cloud.sampled for cloud in self.clouds)
 
-    def _verify(self, i: int, j: int) -> str:
-        """Drive the linkage of an input and an output dyad, and put it where it belongs.
+    @property
+    def sliders(self) -> tuple[SliderDyad, ...]:
+        """Sliders among the dyads of sides that are determined."""
+        return self.clouds[0].sliders + self.clouds[1].sliders
 
-        The answer is why it was rejected; empty where it passed.
-        """
-        o2, a = self._pivots(self.problem.input_side, self.inputs, i)
-        o4, b = self._pivots(self.problem.output_side, self.outputs, j)
+    @property
+    def lacking(self) -> tuple[str, Cloud] | None:
+        """The first side without any dyad."""
+        named = zip(("input", "output"), self.clouds, strict=True)
+        return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
+
+    def verified(self, target: Demanded, pair: tuple[int, int]) -> LinkageDesign | str | None:
+        """The linkage of an input and an output dyad, driven."""
+        o2, a = self._pivots(self.problem.input_side, self.inputs, pair[0])
+        o4, b = self._pivots(self.problem.output_side, self.outputs, pair[1])
         lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
         if min(lengths) <= SHORTEST_LINK * max(lengths):
             return "degenerate"
         mechanism = fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin))
-        design = verify(self.problem, mechanism, self.demanded)
-        if design is None:
-            return "cannot_be_driven"
-        if design.verification.passed:
-            self.passed.append(design)
-            return ""
-        self.failed.append(design)
-        name = next(check.name for check in design.verification.checks if not check.passed)
-        return _REASONS.get(name, name)
+        return verify(self.problem, mechanism, target)
 
     def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
         """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
         stated = side.fixed_pivot, side.moving_pivot
-        found = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
+        computed = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
         wholes = map(whole_point, stated)
-        fixed, moving = (f if s is None else s for s, f in zip(wholes, found, strict=True))
+        fixed, moving = (z if whole is None else whole for whole, z in zip(wholes, computed, strict=True))
         return fixed, moving
 
-    def _screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
+    def screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
+        """Verdicts on all pairs."""
         wanted = demands(constraints, self.task, least_transmission_angle, self.problem.rank_by)
         return screen(self.task, self.inputs, self.outputs, wanted)
 
-    def _best(self, screening: Screening) -> list[tuple[int, int]]:
+    def best(self, screening: Screening) -> list[tuple[int, int]]:
         """The best-scored pairs that differ from one another, best first."""
         count = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
         score = screening.score.ravel()
@@ -252,82 +189,126 @@ class _Pairs:
         joints = np.stack(
             [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]], axis=1
         )
-        chosen: list[int] = []
-        for apart in APART:
-            chosen = distinct(joints, count, float(apart))
-            if len(chosen) >= min(count, len(joints)):
-                break
-        return [(int(i[k]), int(j[k])) for k in chosen]
+        return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
 
-    def _add_failed(self) -> None:
-        """Add the best linkages that move as the task demands but break a limit of the client's."""
-        demanded = self.problem.constraints
-        motion_alone = Constraints(same_branch=demanded.same_branch, in_order=demanded.in_order)
-        for i, j in self._best(self._screened(motion_alone, 0.0))[: self.problem.max_designs]:
-            passed = len(self.passed)
-            self._verify(i, j)
-            del self.passed[passed:]  # what passes was met by the search already
 
-    def _result(self, method: str, complete: bool, candidates: int, summary: str) -> MotionResult:
-        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
-        designs = ranked(shown, self.problem.rank_by)[: self.problem.max_designs]
-        return MotionResult(
-            designs=designs,
-            curves=_curves(self.task, designs),
-            search=Search(
-                method=method,
-                complete=complete,
-                candidates=candidates,
-                accepted=self.accepted,
-                rejected=dict(self.rejected),
-                seed=self.problem.seed,
-            ),
-            summary=" ".join([summary, *self.remarks]),
+def _pairs(problem: MotionProblem) -> _Pairs:
+    """The dyads of both sides; a side that alone is open gets more of them."""
+    task = motion_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    sides = problem.input_side, problem.output_side
+    pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
+    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
+    alike = sides[0] == sides[1]
+    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
+    for k in (0, 1):
+        if clouds[k].sampled and not clouds[1 - k].sampled:
+            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
+    return _Pairs(problem, task, (clouds[0], clouds[1]))
+
+
+def _without_dyads(pairs: _Pairs, side: str, cloud: Cloud) -> MotionResult:
+    """The answer when one side has no dyad at all, with the reason."""
+    method = "dyad_search" if pairs.sampled else "exact"
+    search = Sifting[LinkageDesign](pairs.problem).search(method, complete=cloud.complete)
+    return _result(pairs, [], search, cloud.reason.replace("the side", f"the {side} side"))
+
+
+def _determined(pairs: _Pairs, progress: Progress) -> MotionResult:
+    """Verify every pair of a few determined dyads; of two that serve either side, both ways of driving."""
+    sifting = Sifting[LinkageDesign](pairs.problem, DEFECTS | LENGTHS)
+    target = demanded(pairs.problem)
+    for i in range(len(pairs.inputs.fixed)):
+        for j in range(i + 1 if pairs.alike else 0, len(pairs.outputs.fixed)):
+            reasons = [sifting.keep(pairs.verified(target, (i, j)))]
+            if pairs.alike and reasons[0] not in _EITHER_WAY:
+                reasons.append(sifting.keep(pairs.verified(target, (j, i))))
+            sifting.count("" if "" in reasons else reasons[0])
+    progress(1.0, "verified")
+    complete = all(cloud.complete for cloud in pairs.clouds) and not NUMERICAL & sifting.rejected.keys()
+    designs = sifting.designs(partial(ranked, rank_by=pairs.problem.rank_by))
+    summary = _summary_of_determined(pairs, sifting, complete=complete)
+    return _result(pairs, designs, sifting.search("exact", complete=complete), summary)
+
+
+def _searched(pairs: _Pairs, progress: Progress) -> MotionResult:
+    """Screen all pairs and verify the best distinct ones."""
+    problem, target = pairs.problem, demanded(pairs.problem)
+    count = len(pairs.inputs.fixed) * len(pairs.outputs.fixed)
+    progress(0.1, f"screening {count} pairs of dyads")
+    limit = problem.constraints.min_transmission_angle
+    for least in USABLE_TRANSMISSION_ANGLES if limit is None else (limit,):
+        screening = pairs.screened(problem.constraints, least)
+        if screening.score.any() or "transmission_angle" not in screening.rejected():
+            break
+    sound = int(np.count_nonzero(screening.score))
+    progress(0.8, f"verifying the best of {sound} pairs that passed the screening")
+    sifting = Sifting[LinkageDesign](problem, DEFECTS | LENGTHS)
+    sifting.rejected.update(screening.rejected())
+    driven = sifting.sift(pairs.best(screening), partial(pairs.verified, target), enough=problem.max_designs)
+    sifting.reject(OUTRANKED, sound - driven)
+    if problem.include_failed and len(sifting.passed) < problem.max_designs:
+        # The best linkages that move as is demanded but break a limit; those that break none are met already.
+        stated = problem.constraints
+        motion_alone = Constraints(same_branch=stated.same_branch, in_order=stated.in_order)
+        passed = list(sifting.passed)
+        for pair in pairs.best(pairs.screened(motion_alone, 0.0))[: problem.max_designs]:
+            sifting.keep(pairs.verified(target, pair))
+        sifting.passed = passed
+    progress(1.0, "verified")
+    designs = sifting.designs(partial(ranked, rank_by=problem.rank_by))
+    return _result(pairs, designs, sifting.search("dyad_search"), _summary_of_search(sifting, sound))
+
+
+def _result(pairs: _Pairs, designs: list[LinkageDesign], search: Search, summary: str) -> MotionResult:
+    return MotionResult(
+        designs=designs,
+        curves=_curves(pairs.task, designs),
+        search=search,
+        summary=" ".join([summary, *_remarks(pairs)]),
+    )
+
+
+def _summary_of_determined(pairs: _Pairs, sifting: Sifting[LinkageDesign], *, complete: bool) -> str:
+    count, accepted = sifting.candidates, sifting.accepted
+    verb = "carries" if accepted == 1 else "carry"
+    noun = "linkage" if count == 1 else "linkages"
+    if pairs.alike:
+        dyads = len(pairs.inputs.fixed)
+        text = f"{dyads} dyad{'s' * (dyads > 1)} with two pins {'make' if dyads > 1 else 'makes'} {count} {noun}"
+        text += f", of which {accepted} {verb} the body through all positions." if count else "."
+        if accepted and len(sifting.passed) > accepted:
+            text += f" {len(sifting.passed) - accepted} can be driven from either side."
+    else:
+        text = f"{accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
+    if sifting.rejected:
+        text += f" Rejected: {sifting.listed()}."
+    if not sifting.passed:
+        text += " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
+    return text
+
+
+def _summary_of_search(sifting: Sifting[LinkageDesign], sound: int) -> str:
+    if not sifting.passed:
+        return (
+            f"None of the {sifting.candidates} pairs of dyads that were tried makes a linkage that satisfies all "
+            f"demands (rejected: {sifting.listed(OUTRANKED)}). A linkage may exist that the search did not meet."
         )
-
-    def _summary_of_determined(self, count: int, complete: bool) -> str:
-        verb = "carries" if self.accepted == 1 else "carry"
-        noun = "linkage" if count == 1 else "linkages"
-        if self.alike:
-            dyads = len(self.inputs.fixed)
-            text = f"{dyads} dyad{'s' * (dyads > 1)} with two pins {'make' if dyads > 1 else 'makes'} {count} {noun}"
-            text += f", of which {self.accepted} {verb} the body through all positions." if count else "."
-            if self.accepted and len(self.passed) > self.accepted:
-                text += f" {len(self.passed) - self.accepted} can be driven from either side."
-        else:
-            text = f"{self.accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
-        if self.rejected:
-            text += f" Rejected: {_listed(self.rejected)}."
-        if not self.passed:
-            text += " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
-        return text
-
-    def _summary_of_search(self, count: int, sound: int) -> str:
-        if not self.passed:
-            reasons = {name: n for name, n in self.rejected.items() if name != "outranked"}
-            return (
-                f"None of the {count} pairs of dyads that were tried makes a linkage that satisfies all demands "
-                f"(rejected: {_listed(reasons)}). A linkage may exist that the search did not meet."
-            )
-        best = max(design.metrics.min_transmission_angle for design in self.passed)
-        text = (
-            f"{sound} of {count} pairs of dyads passed the screening; the best {len(self.passed)} distinct ones were "
-            f"driven and verified, with a least transmission angle of up to {best:.1f}°."
-        )
-        if best < USABLE_TRANSMISSION_ANGLES[0]:
-            text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
-        return text
+    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
+    text = (
+        f"{sound} of {sifting.candidates} pairs of dyads passed the screening; the best {len(sifting.passed)} distinct "
+        f"ones were driven and verified, with a least transmission angle of up to {best:.1f}°."
+    )
+    if best < USABLE_TRANSMISSION_ANGLES[0]:
+        text += f" None that was found reaches {USABLE_TRANSMISSION_ANGLES[0]:.0f}°."
+    return text
 
 
-def _listed(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items())
-
-
-def _remarks(problem: MotionProblem, inputs: Cloud, outputs: Cloud) -> list[str]:
+def _remarks(pairs: _Pairs) -> list[str]:
     """What a client should know of the dyads beside the linkages."""
     remarks = []
-    clouds = {"side": inputs} if inputs is outputs else {"input side": inputs, "output side": outputs}
-    for name, cloud in clouds.items():
+    names = ("side",) if pairs.alike else ("input side", "output side")
+    for name, cloud in zip(names, pairs.clouds, strict=False):
         if cloud.remark:
             remarks.append(cloud.remark.replace("the side", f"the {name}").strip())
         if cloud.sliders:

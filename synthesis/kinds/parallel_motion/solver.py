@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from typing import Literal, NamedTuple
 
 from kinematics.linkage import (
@@ -23,7 +23,6 @@ from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, Sourc
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
@@ -36,6 +35,8 @@ from synthesis.model.linkages import (
     to_point,
 )
 from synthesis.model.statement import Contradiction, ContradictionError
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import Sifting, reported
 
 Base = Literal["source", "left_cognate", "right_cognate", "path"]
 InputSide = Literal["input", "output"]
@@ -61,35 +62,16 @@ def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) ->
     else:
         assert problem.linkage is not None
         fourbars = list(_of_linkage(problem.linkage, cognates_too=problem.include_cognates))
-    passed: list[ParallelMotionDesign] = []
-    failed: list[ParallelMotionDesign] = []
-    rejected: Counter[str] = Counter()
-    for n, fourbar in enumerate(fourbars):
-        progress(PATH_SHARE + (1.0 - PATH_SHARE) * n / len(fourbars), "driving sixbars")
-        mechanism = _sixbar(fourbar.joints)
-        design = verify_parallel_motion(problem, mechanism, fourbar.base, fourbar.input_side)
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            passed.append(design)
-        else:
-            failed.append(design)
-            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    sifting = Sifting[ParallelMotionDesign](problem)
+    sifting.sift(
+        reported(fourbars, progress, (PATH_SHARE, 1.0), "driving sixbars"),
+        lambda fourbar: verify_parallel_motion(problem, _sixbar(fourbar.joints), fourbar.base, fourbar.input_side),
+    )
     progress(1.0, "verified")
-    designs = sorted(passed, key=lambda design: _key(problem, design))
-    if problem.include_failed:
-        designs += sorted(failed, key=lambda design: _key(problem, design))
     return ParallelMotionResult(
-        designs=designs[: problem.max_designs],
-        search=Search(
-            method="cognates, one of them moved to the other's pivot",
-            complete=False,
-            candidates=len(fourbars),
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=_summary(len(fourbars), designs[: len(passed)], rejected),
+        designs=sifting.designs(partial(_ranked, problem.rank_by)),
+        search=sifting.search("cognates, one of them moved to the other's pivot"),
+        summary=_summary(problem, sifting),
     )
 
 
@@ -102,16 +84,14 @@ def warm_up() -> None:
     solve_parallel_motion(ParallelMotionProblem.model_validate(examples[0]), lambda fraction, message: None)
 
 
-def _key(problem: ParallelMotionProblem, design: ParallelMotionDesign) -> tuple[bool, float]:
-    metrics = design.metrics
-    by = {
-        "quality": -metrics.quality,
-        "accuracy": metrics.rms_residual,
-        "size": metrics.size,
-        "transmission_angle": -metrics.min_transmission_angle,
-    }[problem.rank_by]
-    # A crank goes all along the curve, a rocker along a part of it.
-    return not metrics.full_rotation, by
+def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
+    """A crank goes all along the curve, a rocker along a part of it."""
+    return ranked(
+        designs,
+        rank_by,
+        {"accuracy": lambda design: design.metrics.rms_residual},
+        group=lambda design: not design.metrics.full_rotation,
+    )
 
 
 def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
@@ -201,13 +181,13 @@ def _sixbar(joints: FourbarConfiguration) -> ParallelMotionMechanism:
     )
 
 
-def _summary(candidates: int, passed: list[ParallelMotionDesign], rejected: Counter[str]) -> str:
-    if not passed:
-        reasons = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items()) or "no fourbar"
-        return f"None of {candidates} sixbars carries the body along the curve ({reasons})."
-    best = passed[0].metrics
+def _summary(problem: ParallelMotionProblem, sifting: Sifting[ParallelMotionDesign]) -> str:
+    if not sifting.passed:
+        reasons = sifting.listed() or "no fourbar"
+        return f"None of {sifting.candidates} sixbars carries the body along the curve ({reasons})."
+    best, passed = _ranked(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
     return (
-        f"{len(passed)} of {candidates} sixbars carry the body along the curve without turning it; the first transmits "
-        f"force at {best.min_transmission_angle:.1f}° at least, from Q at ({best.translation[0]:.6g}, "
+        f"{passed} of {sifting.candidates} sixbars carry the body along the curve without turning it; the first "
+        f"transmits force at {best.min_transmission_angle:.1f}° at least, from Q at ({best.translation[0]:.6g}, "
         f"{best.translation[1]:.6g}) of P."
     )

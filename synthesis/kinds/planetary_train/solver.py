@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
@@ -37,7 +38,7 @@ from synthesis.kinds.planetary_train.verification import measure, verify
 from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import sifted
+from synthesis.outcome.sifting import OUTRANKED, Sifting
 
 
 def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
@@ -95,8 +96,8 @@ class _Found:
         self._best: list[Candidate] = []
         self._by_size: dict[int, Candidate] = {}
         self._ties: Counter[Fraction] = Counter()
-        self._combinations = self._sound = self._idle = 0
-        self._rejected: Counter[str] = Counter()
+        self._sound = self._idle = 0
+        self._sifting = Sifting[PlanetaryDesign](problem)
 
     def take(self, numbers: list[ToothNumbers], nearest: Nearest | None) -> None:
         """Note the best trains of one choice of members; None where a planet set takes no part in it."""
@@ -114,13 +115,12 @@ class _Found:
 
     def _count(self, numbers: list[ToothNumbers]) -> None:
         """Note the combinations of one choice of members: those of its planet sets with each other."""
-        self._combinations += math.prod(each.combinations for each in numbers)
         self._sound += math.prod(each.count for each in numbers)
         before, after = 1, math.prod(each.combinations for each in numbers)
         for each in numbers:
             after //= max(each.combinations, 1)
             for reason, fallen in each.rejected.items():
-                self._rejected[reason] += before * fallen * after
+                self._sifting.reject(reason, before * fallen * after)
             before *= each.count
 
     def result(self) -> PlanetaryResult:
@@ -129,13 +129,13 @@ class _Found:
         limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
         ranked = self._best if problem.rank_by == "error" else [self._by_size[size] for size in sorted(self._by_size)]
         chosen = [c for c in ranked if limit is None or c.error <= limit][: problem.max_designs]
-        designs = [_design(problem, candidate) for candidate in chosen]
-        rejected = {**self._rejected, "outranked": self._sound - len(designs)}
-        found = sifted(problem, designs, self._combinations, rejected)
+        sifting = self._sifting
+        sifting.reject(OUTRANKED, self._sound - len(chosen))
+        sifting.sift(chosen, partial(_design, problem))
         return PlanetaryResult(
-            designs=found.returned,
-            search=found.search,
-            summary=self._summary(found.passed),
+            designs=sifting.designs(list),
+            search=sifting.search("exhaustive", complete=not sifting.failed),
+            summary=self._summary(),
             ties=self._ties[self._best[0].error] if self._best else 0,
             pareto=[_pareto(problem, candidate) for candidate in self._front() if _holds(problem, candidate)],
         )
@@ -148,20 +148,20 @@ class _Found:
                 front.append(self._by_size[size])
         return front
 
-    def _summary(self, passed: list[PlanetaryDesign]) -> str:
-        problem = self._problem
-        covered = f"{self._combinations:,} combinations of tooth numbers and members covered"
-        if passed:
-            first = passed[0]
+    def _summary(self) -> str:
+        problem, sifting = self._problem, self._sifting
+        covered = f"{sifting.candidates:,} combinations of tooth numbers and members covered"
+        if sifting.passed:
+            first = sifting.passed[0]
             ties = self._ties[self._best[0].error]
             exact = "exactly" if first.metrics.error == 0 else f"with an error of {100.0 * first.metrics.error:.4g} %"
             alike = f"; {ties:,} trains have the least error" if problem.rank_by == "error" and ties > 1 else ""
             return f"{first.mechanism.arrangement} reaches {problem.ratio} {exact}; {covered}{alike}."
-        if self._idle and not self._combinations:
+        if self._idle and not sifting.candidates:
             return "With these members a planet set takes no part in the ratio; state a simpler arrangement."
         if not self._sound:
             reasons = ", ".join(
-                f"{reason.replace('_', ' ')} {count:,}" for reason, count in self._rejected.most_common()
+                f"{reason.replace('_', ' ')} {count:,}" for reason, count in sifting.rejected.most_common()
             )
             return f"No train fits within the limits: {covered} ({reasons or 'the limits leave none'})."
         if not self._best:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from synthesis.kinds.quick_return import (
@@ -24,8 +25,9 @@ from synthesis.kinds.quick_return.design import (
 )
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import LENGTHS, Sifting
 
 
 class _Type(NamedTuple):
@@ -46,16 +48,12 @@ TYPES: dict[str, _Type] = {
 }
 """Every type by its name."""
 
-_REASONS = {"shortest_link": "link_length", "longest_link": "link_length"}
-"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
-
 
 def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> QuickReturnResult:
     """Solve a problem of quick return."""
-    ranges, passed, failed = [], [], []
+    ranges: list[RatioRange] = []
     short: list[str] = []
-    rejected: Counter[str] = Counter()
-    candidates = 0
+    sifting = Sifting[QuickReturnDesign](problem, LENGTHS)
     names = problem.types
     for n, name in enumerate(names):
         progress(n / len(names), f"designing: {name.replace('_', ' ')}")
@@ -64,36 +62,16 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
         ranges.append(reach)
         if not reach.reaches:
             continue
-        made = of_type.candidates(problem)
-        if not made:
+        candidates = of_type.candidates(problem)
+        if not candidates:
             short.append(name)
-        for mechanism in made:
-            candidates += 1
-            design = verify_quick_return(problem, mechanism)
-            if design is None:
-                rejected["cannot_be_driven"] += 1
-            elif design.verification.passed:
-                passed.append(design)
-            else:
-                failed.append(design)
-                check = next(check.name for check in design.verification.checks if not check.passed)
-                rejected[_REASONS.get(check, check)] += 1
+        sifting.sift(candidates, partial(verify_quick_return, problem))
     progress(1.0, "verified")
-    shown = _of_each_type(_ranked(passed, problem.rank_by), -(-problem.max_designs // len(names)))
-    if problem.include_failed:
-        shown += _ranked(failed, problem.rank_by)
-    complete = all(not reach.reaches or TYPES[reach.type].proven for reach in ranges) and _as_derived(rejected)
+    complete = all(not reach.reaches or TYPES[reach.type].proven for reach in ranges) and _as_derived(sifting.rejected)
     return QuickReturnResult(
-        designs=shown[: problem.max_designs],
-        search=Search(
-            method="quick_return",
-            complete=complete,
-            candidates=candidates,
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=_summary(problem, ranges, passed, rejected, short, complete=complete),
+        designs=sifting.designs(partial(_ordered, problem)),
+        search=sifting.search("quick_return", complete=complete),
+        summary=_summary(problem, ranges, sifting, short, complete=complete),
         reachable=ranges,
     )
 
@@ -104,25 +82,19 @@ def _as_derived(rejected: Counter[str]) -> bool:
 
 
 _KEYS: dict[str, Callable[[QuickReturnDesign], float]] = {
-    "quality": lambda design: -design.metrics.quality,
     "accuracy": lambda design: 0.0,  # all are exact
-    "size": lambda design: design.metrics.size,
     "transmission_angle": lambda design: -round(design.metrics.min_transmission_angle, 6),
 }
 
 
-def _ranked(designs: list[QuickReturnDesign], rank_by: str) -> list[QuickReturnDesign]:
-    """Designs in the order asked for; ties by quality."""
-    return sorted(designs, key=lambda design: (_KEYS[rank_by](design), -design.metrics.quality))
-
-
-def _of_each_type(designs: list[QuickReturnDesign], count: int) -> list[QuickReturnDesign]:
-    """The first designs of each type, so many at most, in their order."""
-    seen: Counter[str] = Counter()
+def _ordered(problem: QuickReturnProblem, designs: list[QuickReturnDesign]) -> list[QuickReturnDesign]:
+    """Designs in the order asked for; of those that passed no type takes more than its share of the answer."""
+    share = -(-problem.max_designs // len(problem.types))
+    of_type: Counter[str] = Counter()
     chosen = []
-    for design in designs:
-        seen[design.mechanism.type] += 1
-        if seen[design.mechanism.type] <= count:
+    for design in ranked(designs, problem.rank_by, _KEYS):
+        of_type[design.mechanism.type] += 1
+        if of_type[design.mechanism.type] <= share or not design.verification.passed:
             chosen.append(design)
     return chosen
 
@@ -130,8 +102,7 @@ def _of_each_type(designs: list[QuickReturnDesign], count: int) -> list[QuickRet
 def _summary(
     problem: QuickReturnProblem,
     ranges: list[RatioRange],
-    passed: list[QuickReturnDesign],
-    rejected: Counter[str],
+    sifting: Sifting[QuickReturnDesign],
     short: list[str],
     *,
     complete: bool,
@@ -144,18 +115,17 @@ def _summary(
     lines += [
         f"There is no {name}{within}." if TYPES[name].proven else f"No {name}{within} was found." for name in short
     ]
-    if passed:
-        best = max(passed, key=lambda design: design.metrics.min_transmission_angle)
+    if sifting.passed:
+        best = max(sifting.passed, key=lambda design: design.metrics.min_transmission_angle)
         lines.insert(
             0,
-            f"{len(passed)} designs have a measured time ratio of {problem.time_ratio:g}; the best transmission angle "
-            f"is {best.metrics.min_transmission_angle:.3f}°, of a {best.mechanism.type}.",
+            f"{len(sifting.passed)} designs have a measured time ratio of {problem.time_ratio:g}; the best "
+            f"transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a {best.mechanism.type}.",
         )
     else:
         lines.insert(0, "No design exists." if complete else "No design was found.")
-        if rejected:
-            counts = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
-            lines.append(f"Rejected: {counts}.")
+        if sifting.rejected:
+            lines.append(f"Rejected: {sifting.listed()}.")
     return " ".join(lines)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from functools import partial
 
 from synthesis.kinds.steering.ackermann import ackermann_linkages
 from synthesis.kinds.steering.davis import davis_gears
@@ -13,8 +13,9 @@ from synthesis.kinds.steering.design import (
 )
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import Sifting
 
 
 def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResult:
@@ -30,48 +31,35 @@ def solve_steering(problem: SteeringProblem, progress: Progress) -> SteeringResu
     progress(0.8, "verifying")
     if problem.mechanism in ("davis", "auto"):
         mechanisms += davis_gears(problem)
-    passed: list[SteeringDesign] = []
-    failed: list[SteeringDesign] = []
-    rejected: Counter[str] = Counter()
-    for mechanism in mechanisms:
-        design = verify_steering(problem, mechanism)
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            passed.append(design)
-        else:
-            failed.append(design)
-            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    sifting = Sifting[SteeringDesign](problem)
+    sifting.sift(mechanisms, partial(verify_steering, problem))
     progress(1.0, "verified")
-    shown = _ranked(passed, problem.rank_by) + (_ranked(failed, problem.rank_by) if problem.include_failed else [])
     # Davis's gear alone has one solution, and its reach is known; Ackermann's is an optimum found by search.
-    complete = problem.mechanism == "davis" and not rejected
+    complete = problem.mechanism == "davis" and not sifting.rejected
     return SteeringResult(
-        designs=shown[: problem.max_designs],
-        search=Search(
-            method="steering",
-            complete=complete,
-            candidates=len(mechanisms),
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=" ".join([_summary(passed, rejected, complete=complete), *said]),
+        designs=sifting.designs(partial(_ranked, problem.rank_by)),
+        search=sifting.search("steering", complete=complete),
+        summary=" ".join([_summary(sifting, complete=complete), *said]),
     )
 
 
-def _ranked(designs: list[SteeringDesign], rank_by: str) -> list[SteeringDesign]:
-    """Ackermann's linkages, which have no slides, come first; then by what is asked for, ties by the error."""
+def _ranked(rank_by: str, designs: list[SteeringDesign]) -> list[SteeringDesign]:
+    """Ackermann's linkages, which have no slides, come first; the steering error stands for quality and accuracy."""
+    return ranked(
+        designs,
+        rank_by,
+        {"quality": _steering_error, "accuracy": _steering_error},
+        group=lambda design: design.mechanism.type != "fourbar",
+        ties=_steering_error,
+    )
 
-    def key(design: SteeringDesign) -> tuple[bool, float, float]:
-        metrics = design.metrics
-        value = {"size": metrics.size, "transmission_angle": -metrics.min_transmission_angle}.get(rank_by, 0.0)
-        return design.mechanism.type != "fourbar", value, metrics.steering_error
 
-    return sorted(designs, key=key)
+def _steering_error(design: SteeringDesign) -> float:
+    return design.metrics.steering_error
 
 
-def _summary(passed: list[SteeringDesign], rejected: Counter[str], *, complete: bool) -> str:
+def _summary(sifting: Sifting[SteeringDesign], *, complete: bool) -> str:
+    passed = sifting.passed
     fourbars = [design.metrics.steering_error for design in passed if design.mechanism.type == "fourbar"]
     text = []
     if fourbars:
@@ -80,6 +68,6 @@ def _summary(passed: list[SteeringDesign], rejected: Counter[str], *, complete: 
         text.append("Davis's gear steers correctly at every angle.")
     if not passed:
         text.append("No design exists." if complete else "No design was found.")
-    if rejected:
-        text.append(f"Rejected: {', '.join(f'{name} {n}'.replace('_', ' ') for name, n in rejected.items())}.")
+    if sifting.rejected:
+        text.append(f"Rejected: {sifting.listed()}.")
     return " ".join(text)

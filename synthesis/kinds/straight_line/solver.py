@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -34,7 +34,6 @@ from synthesis.kinds.straight_line.families import (
 )
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.kinds.straight_line.verification import verify_straight_line
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
@@ -47,6 +46,8 @@ from synthesis.model.linkages import (
     to_point,
 )
 from synthesis.numerics.narrowing import merits, narrowest
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import Sifting
 
 Real = NDArray[np.float64]
 
@@ -76,6 +77,9 @@ SAME_DESIGN = 1e-4
 SLACK = 1e-6
 """Violation of a constraint with which a shape still counts as one; verification decides."""
 
+ROUNDING = 1e-9
+"""Straightness errors and velocity variations, per cent, below this are rounding."""
+
 EXACT = {"peaucellier": peaucellier, "hart": hart, "scott_russell": scott_russell}
 """Sizing of the exact types."""
 
@@ -96,42 +100,18 @@ class _Candidate(NamedTuple):
 
 def solve_straight_line(problem: StraightLineProblem, progress: Progress) -> StraightLineResult:
     """Solve a problem of a straight line."""
-    found: list[StraightLineDesign] = []
-    failed: list[StraightLineDesign] = []
-    rejected: Counter[str] = Counter()
-    candidates = 0
+    sifting = Sifting[StraightLineDesign](problem)
     types = problem.types
     for n, name in enumerate(types):
         progress(n / len(types), f"searching {name.replace('_', ' ')} linkages")
-        made = _exact(problem, name) if name in EXACT else _fourbars(problem, name)
-        if not made:
-            rejected["no_such_linkage"] += 1
-            candidates += 1
-        for candidate in made:
-            candidates += 1
-            design = _best_side(problem, candidate)
-            if design is None:
-                rejected["cannot_be_driven"] += 1
-            elif design.verification.passed:
-                found.append(design)
-            else:
-                failed.append(design)
-                rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+        candidates = _exact(problem, name) if name in EXACT else _fourbars(problem, name)
+        sifting.reject("no_such_linkage", not candidates)
+        sifting.sift(candidates, partial(_best_side, problem))
     progress(1.0, "verified")
-    designs = sorted(found, key=lambda design: _key(problem, design))
-    if problem.include_failed:
-        designs += sorted(failed, key=lambda design: _key(problem, design))
     return StraightLineResult(
-        designs=designs[: problem.max_designs],
-        search=Search(
-            method="sequential linear programming in each family; exact mechanisms by their dimensions",
-            complete=False,
-            candidates=candidates,
-            accepted=len(found),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=_summary(problem, found, rejected),
+        designs=sifting.designs(partial(_ranked, problem)),
+        search=sifting.search("sequential linear programming in each family; exact mechanisms by their dimensions"),
+        summary=_summary(problem, sifting),
     )
 
 
@@ -142,18 +122,18 @@ def warm_up() -> None:
         solve_straight_line(problem, lambda fraction, message: None)
 
 
-def _key(problem: StraightLineProblem, design: StraightLineDesign) -> tuple[float, float]:
-    metrics = design.metrics
-    own = metrics.straightness_error if problem.optimize == "straightness" else metrics.velocity_variation
-    # Widths at the level of rounding are all alike.
-    accuracy = max(own, 1e-9)
-    by = {
-        "quality": accuracy,
-        "accuracy": max(metrics.straightness_error, 1e-9),
-        "size": metrics.size,
-        "transmission_angle": -metrics.min_transmission_angle,
-    }[problem.rank_by]
-    return by, -metrics.quality
+def _ranked(problem: StraightLineProblem, designs: list[StraightLineDesign]) -> list[StraightLineDesign]:
+    """Quality is what was optimized: widths and variations at the level of rounding are all alike."""
+
+    def optimized(design: StraightLineDesign) -> float:
+        metrics = design.metrics
+        own = metrics.straightness_error if problem.optimize == "straightness" else metrics.velocity_variation
+        return max(own, ROUNDING)
+
+    def straightness(design: StraightLineDesign) -> float:
+        return max(design.metrics.straightness_error, ROUNDING)
+
+    return ranked(designs, problem.rank_by, {"quality": optimized, "accuracy": straightness})
 
 
 def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_Candidate]:
@@ -301,15 +281,15 @@ def _mechanism(
     )
 
 
-def _summary(problem: StraightLineProblem, found: list[StraightLineDesign], rejected: Counter[str]) -> str:
-    if not found:
-        reasons = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
+def _summary(problem: StraightLineProblem, sifting: Sifting[StraightLineDesign]) -> str:
+    if not sifting.passed:
         return (
-            f"No straight-line mechanism was found that meets every demand ({reasons}); that none exists is not proven."
+            f"No straight-line mechanism was found that meets every demand ({sifting.listed()}); that none exists is "
+            "not proven."
         )
-    best = min(found, key=lambda design: _key(problem, design)).metrics
+    best = _ranked(problem, sifting.passed)[0].metrics
     return (
-        f"{len(found)} straight-line mechanisms; the first, {best.family.replace('_', '-')}, keeps within "
+        f"{len(sifting.passed)} straight-line mechanisms; the first, {best.family.replace('_', '-')}, keeps within "
         f"{best.straightness_error:.3g} % of the length across the line, with a velocity that varies by "
         f"{best.velocity_variation:.3g} %."
     )

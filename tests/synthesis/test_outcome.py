@@ -1,0 +1,148 @@
+"""What becomes of candidates: the account always adds up, and designs come in one order."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import NamedTuple, cast
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from synthesis.model.answer import Check, Verification
+from synthesis.model.statement import StatedProblem
+from synthesis.outcome.ranking import KEYS, ranked
+from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting, reported
+
+
+class Metrics(NamedTuple):
+    """What designs are ranked by."""
+
+    quality: float
+    size: float
+    min_transmission_angle: float
+
+
+class Design(NamedTuple):
+    """The least that is sifted and ranked."""
+
+    verification: Verification
+    metrics: Metrics
+    targets: list[SimpleNamespace]
+
+
+def design(broken: tuple[str, ...] = (), quality: float = 0.5, size: float = 1.0, residual: float = 0.0) -> Design:
+    checks = [Check(name="drawn", passed=True), *(Check(name=name, passed=False) for name in broken)]
+    verification = Verification(passed=not broken, checks=checks)
+    return Design(verification, Metrics(quality, size, 90.0 * quality), [SimpleNamespace(residual=residual)])
+
+
+designs = st.builds(
+    design,
+    st.sampled_from([(), (), ("reaches_targets",), ("longest_link", "same_circuit"), ("same_circuit",)]),
+    st.floats(0.0, 1.0),
+    st.sampled_from([1.0, 2.0, 3.0]),
+    st.floats(0.0, 1.0),
+)
+verdicts = st.lists(st.one_of(designs, st.none(), st.sampled_from(["degenerate", "link_length"])), max_size=40)
+
+
+def problem(most: int = 10, *, include_failed: bool = False) -> StatedProblem:
+    return StatedProblem(kind="any", max_designs=most, include_failed=include_failed, seed=7)
+
+
+@given(verdicts, st.dictionaries(st.sampled_from(["branch_defect", OUTRANKED]), st.integers(0, 9)))
+def test_the_account_adds_up(met: list[Design | str | None], screened: dict[str, int]) -> None:
+    sifting = Sifting[Design](problem(), DEFECTS)
+    for reason, count in screened.items():
+        sifting.reject(reason, count)
+    sifting.sift(met, lambda verdict: verdict)
+    search = sifting.search("any")
+    assert search.candidates == len(met) + sum(screened.values())
+    assert search.candidates == search.accepted + sum(search.rejected.values())
+    assert search.accepted == len(sifting.passed)
+    assert all(search.rejected.values())
+    assert search.seed == 7
+    assert len(sifting.passed) + len(sifting.failed) == sum(isinstance(verdict, Design) for verdict in met)
+
+
+@given(verdicts, st.integers(0, 5))
+def test_what_is_withdrawn_counts_as_rejected(met: list[Design | str | None], kept: int) -> None:
+    sifting = Sifting[Design](problem())
+    sifting.sift(met, lambda verdict: verdict)
+    accepted = sifting.accepted
+    sifting.withdraw(sifting.passed[:kept], "far")
+    search = sifting.search("any")
+    assert search.candidates == len(met)
+    assert search.accepted == min(kept, accepted)
+    assert search.rejected.get("far", 0) == accepted - search.accepted
+
+
+@given(verdicts, st.integers(1, 4))
+def test_it_stops_when_enough_have_passed(met: list[Design | str | None], enough: int) -> None:
+    sifting = Sifting[Design](problem())
+    verified = sifting.sift(met, lambda verdict: verdict, enough)
+    assert verified == sifting.candidates
+    assert len(sifting.passed) <= enough
+    assert verified == len(met) or len(sifting.passed) == enough
+
+
+def test_reasons_are_those_of_the_first_broken_check() -> None:
+    sifting = Sifting[Design](problem(), DEFECTS, undriven="does_not_turn")
+    sifting.sift([design(("same_circuit", "longest_link")), design(("longest_link",)), None], lambda verdict: verdict)
+    assert sifting.rejected == {"circuit_defect": 1, "longest_link": 1, "does_not_turn": 1}
+    assert sifting.listed("does_not_turn") == "circuit defect 1, longest link 1"
+
+
+def test_a_candidate_driven_both_ways_counts_once() -> None:
+    sifting = Sifting[Design](problem())
+    reasons = [sifting.keep(design()), sifting.keep(design())]
+    sifting.count("" if "" in reasons else reasons[0])
+    assert sifting.candidates == sifting.accepted == 1
+    assert len(sifting.passed) == 2
+
+
+@given(st.lists(designs, max_size=30), st.integers(1, 12), st.booleans(), st.sampled_from(sorted(KEYS)))
+def test_designs_are_cut_and_those_that_failed_are_last(
+    met: list[Design], most: int, include_failed: bool, rank_by: str
+) -> None:
+    sifting = Sifting[Design](problem(most, include_failed=include_failed))
+    sifting.sift(met, lambda verdict: verdict)
+    returned = sifting.designs(lambda listed: ranked(listed, rank_by))
+    everything = ranked(met if include_failed else [d for d in met if d.verification.passed], rank_by)
+    assert returned == everything[:most]
+    passes = [one.verification.passed for one in returned]
+    assert passes == sorted(passes, reverse=True)
+    values = [KEYS[rank_by](one) for one in returned if one.verification.passed]
+    assert values == sorted(values)
+
+
+@given(st.lists(designs, max_size=20))
+def test_ties_go_by_quality_and_residuals_of_rounding_are_alike(met: list[Design]) -> None:
+    exact = [one._replace(targets=[SimpleNamespace(residual=1e-14 * n)]) for n, one in enumerate(met)]
+    order = ranked(exact, "accuracy")
+    for passed in (True, False):
+        qualities = [one.metrics.quality for one in order if one.verification.passed == passed]
+        assert qualities == sorted(qualities, reverse=True)
+
+
+def test_a_kind_states_its_own_key_and_group() -> None:
+    small, large, best = design(size=1.0), design(size=2.0), design(quality=0.9, size=3.0)
+    assert ranked([large, small, best], "quality", {"quality": lambda one: one.metrics.size}) == [small, large, best]
+    assert ranked([small, large, best], "size", group=lambda one: -one.metrics.quality) == [best, small, large]
+
+
+def test_progress_runs_over_its_span() -> None:
+    told: list[tuple[float, str]] = []
+    drawn = reported(["a", "b"], lambda share, message: told.append((share, message)), (0.5, 1.0), "{next} of {all}")
+    assert list(drawn) == ["a", "b"]
+    assert told == [(0.5, "1 of 2"), (0.75, "2 of 2")]
+
+
+def test_nothing_that_is_left_out_as_alike_takes_a_place() -> None:
+    sifting = Sifting[Design](problem(2))
+    first, same, second = design(quality=0.9), design(quality=0.9, size=2.0), design(quality=0.5)
+    sifting.sift([first, same, second], lambda verdict: cast("Design | None", verdict))
+    assert sifting.designs(lambda listed: ranked(listed, "quality"), lambda listed: [listed[0], listed[2]]) == [
+        first,
+        second,
+    ]
