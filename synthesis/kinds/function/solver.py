@@ -8,7 +8,7 @@ a grid of scales is searched. Every linkage is verified by driving it.
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,8 +34,9 @@ from synthesis.kinds.function.task import (
     function_task,
 )
 from synthesis.kinds.function.verification import verify_function
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 
 Real = NDArray[np.float64]
 
@@ -60,16 +61,7 @@ USABLE = math.sin(math.radians(30.0))
 UNCHANGED = 1e-7
 """Scales this near to 1 leave the pairs as they are."""
 
-_REASONS = {
-    "reaches_targets": "residual",
-    "same_circuit": "circuit_defect",
-    "covers_range": "branch_defect",
-    "same_branch": "branch_defect",
-    "visits_in_order": "order_defect",
-    "shortest_link": "link_length",
-    "longest_link": "link_length",
-    "dials": "reversed_link",
-}
+_REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
 """Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
 _NUMERICAL = {"residual", "cannot_be_driven"}
@@ -121,7 +113,7 @@ def _determined(task: FunctionTask, harvest: _Harvest) -> bool:
     for (k, _), (scale, _) in _choices(task):
         found = exact(task.closure, k * task.inputs, scale * task.outputs, task.zeros)
         proved &= found.proved
-        harvest.degenerate(found.degenerate)
+        harvest.reject("degenerate", found.degenerate)
         for dimensions in found.dimensions:
             harvest.polish_and_verify(np.concatenate([dimensions, [k, scale]]))
     return proved
@@ -135,7 +127,7 @@ def _with_one_scale(task: FunctionTask, harvest: _Harvest) -> bool:
     for choice in _choices(task):
         found = one_scale(pairs, choice[side], side, choice[1 - side][0])
         proved &= found.proved
-        harvest.degenerate(found.degenerate)
+        harvest.reject("degenerate", found.degenerate)
         for generator in found.dimensions:
             harvest.polish_and_verify(generator)
     return proved
@@ -165,11 +157,11 @@ def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, pro
     signs = task.points().signs(generators)
     one_assembly = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
     generators, signs = generators[one_assembly], signs[one_assembly, 0]
-    harvest.screened("circuit_defect", int(np.count_nonzero(~one_assembly)))
+    harvest.reject("circuit_defect", int(np.count_nonzero(~one_assembly)))
     sine = limits.transmission(generators)
     worth = _worth(task, limits, generators, signs, sine)
     sound = np.isfinite(worth)
-    harvest.screened("branch_defect", int(np.count_nonzero(~sound)))
+    harvest.reject("branch_defect", int(np.count_nonzero(~sound)))
     order = np.argsort(worth)
     order = order[np.isfinite(worth[order])]
     features = np.column_stack([np.log(np.abs(generators[:, :3]) + 1e-12), generators[:, 3:5]])
@@ -185,7 +177,7 @@ def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, pro
         tried += 1
         harvest.polish_and_verify(generators[j], scales_given=True)
         progress(0.3 + 0.6 * tried / most, "verifying")
-    harvest.screened("outranked", len(order) - tried)
+    harvest.reject(OUTRANKED, len(order) - tried)
 
 
 def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
@@ -239,27 +231,14 @@ def _within(scale: float, choices: list[tuple[float, float]]) -> bool:
     return any(low - 1e-9 * abs(low) <= scale <= high + 1e-9 * abs(high) for low, high in choices)
 
 
-class _Harvest:
+class _Harvest(Sifting[FunctionDesign]):
     """Linkages, verified, and what became of them."""
 
     def __init__(self, task: FunctionTask) -> None:
+        super().__init__(task.problem, _REASONS)
         self.task, self.problem = task, task.problem
         self.points = task.points()
-        self.passed: list[FunctionDesign] = []
-        self.failed: list[FunctionDesign] = []
-        self.rejected: Counter[str] = Counter()
-        self.candidates = 0
         self._seen: list[Real] = []
-
-    def degenerate(self, count: int) -> None:
-        """Count solutions that are no linkages."""
-        self.screened("degenerate", count)
-
-    def screened(self, reason: str, count: int) -> None:
-        """Count candidates that were not driven."""
-        if count:
-            self.candidates += count
-            self.rejected[reason] += count
 
     def polish_and_verify(self, generator: Real, *, scales_given: bool = False) -> None:
         """Bring a nearly exact generator to the last digits, and put it where it belongs; the same twice is one."""
@@ -276,20 +255,12 @@ class _Harvest:
 
     def verify(self, generator: Real, sign: float) -> None:
         """Drive a linkage, and put it where it belongs."""
-        self.candidates += 1
         try:
             mechanism, dials = built(self.task, generator, sign)
             design = verify_function(self.problem, mechanism, dials)
         except (ZeroDivisionError, OverflowError):
             design = None
-        if design is None:
-            self.rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            self.passed.append(design)
-        else:
-            self.failed.append(design)
-            name = next(check.name for check in design.verification.checks if not check.passed)
-            self.rejected[_REASONS.get(name, name)] += 1
+        self.add(design)
 
     def approximated(self, judged: int, improved: int) -> FunctionResult:
         """The answer of an approximation."""
@@ -322,48 +293,31 @@ class _Harvest:
         return self._result(method, False, text)
 
     def _why(self) -> str:
-        if not self.rejected:
-            return ""
-        listed = ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in self.rejected.items())
-        return f" Rejected: {listed}."
+        return f" Rejected: {self.listed()}." if self.rejected else ""
 
     def _error(self, design: FunctionDesign) -> float:
         error = design.structural_error.rms if self.problem.aim == "least_squares" else design.structural_error.max
         # With the output's range open errors are shares of it.
         return error / abs(design.metrics.output_range) if self.task.free[6] else error
 
-    def _key(self, design: FunctionDesign) -> tuple[bool, bool, float, float]:
-        metrics = design.metrics
-        by = self.problem.rank_by
+    def _ranked(self, designs: list[FunctionDesign]) -> list[FunctionDesign]:
+        """Pairs as they were stated come before pairs on other scales."""
         approximates = self.problem.aim != "precision"
-        if by == "transmission_angle":
-            value = -metrics.min_transmission_angle
-        elif by == "size":
-            value = metrics.size
-        elif by == "accuracy" or (by == "quality" and (self.problem.function is not None or approximates)):
-            value = self._error(design)
-        else:
-            value = -metrics.quality
-        if self.problem.pairs is not None and by == "accuracy" and not approximates:
-            value = 0.0  # all of them meet the pairs to rounding
-        # Pairs as they were stated come before pairs on other scales.
-        off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
-        rescaled = self.problem.pairs is not None and max(off) > UNCHANGED
-        return not design.verification.passed, rescaled, value, -metrics.quality
+        own: dict[str, Callable[[FunctionDesign], float]] = {"accuracy": self._error}
+        if approximates or self.problem.function is not None:
+            own["quality"] = self._error
+        if self.problem.pairs is not None and not approximates:
+            own["accuracy"] = lambda design: 0.0  # all of them meet the pairs to rounding
+
+        def rescaled(design: FunctionDesign) -> bool:
+            off = [abs(dial.scale - 1.0) for dial in (design.dials.input, design.dials.output)]
+            return self.problem.pairs is not None and max(off) > UNCHANGED
+
+        return ranked(designs, self.problem.rank_by, own, group=rescaled)
 
     def _result(self, method: str, complete: bool, summary: str) -> FunctionResult:
-        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
         return FunctionResult(
-            designs=sorted(shown, key=self._key)[: self.problem.max_designs],
-            search=Search(
-                method=method,
-                complete=complete,
-                candidates=self.candidates,
-                accepted=len(self.passed),
-                rejected=dict(self.rejected),
-                seed=self.problem.seed,
-            ),
-            summary=summary,
+            designs=self.designs(self._ranked), search=self.search(method, complete=complete), summary=summary
         )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,6 @@ from synthesis.kinds.motion.screening import SOUND, screen
 from synthesis.kinds.motion.screening import demands as screening_demands
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
-from synthesis.model.answer import Search
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import (
     FourbarConfiguration,
@@ -44,6 +44,7 @@ from synthesis.model.linkages import (
     slider_crank_mechanism,
 )
 from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting
 
 Progress = Callable[[float, str], None]
 Real = NDArray[np.float64]
@@ -85,8 +86,7 @@ LEAST_TRIED = 10
 SHORTEST_LINK = 1e-4
 """A link shorter than this share of the longest is none."""
 
-REASONS = {"reaches_targets": "residual", "within_tolerance": "tolerance", "same_circuit": "circuit_defect",
-           "same_branch": "branch_defect", "visits_in_order": "order_defect"}  # fmt: skip
+REASONS = DEFECTS | {"within_tolerance": "tolerance"}
 """Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
 
@@ -118,7 +118,7 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
         progress(0.35 + 0.3 * n / len(pairs), f"fitting pair {n + 1} of {len(pairs)}")
         ended = pair.problem.minimum(pair.point, tolerance=ROUGH, evaluations=ROUGHLY)
         if ended is None:
-            run.not_held()
+            run.reject("positions_not_held")
         elif math.isfinite(ended.cost):
             rough.append(pair._replace(point=ended.point, cost=ended.cost))
     rough.sort(key=lambda pair: pair.cost)
@@ -128,7 +128,7 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
         rough[n] = pair if ended is None else pair._replace(point=ended.point, cost=ended.cost)
     for n, pair in enumerate(sorted(rough, key=lambda pair: pair.cost)):
         progress(0.85 + 0.15 * n / len(rough), "driving what was fitted")
-        run.add(pair)
+        run.drive(pair)
     progress(1.0, "verified")
     return run.result()
 
@@ -249,23 +249,15 @@ def _sound(problem: MotionProblem, task: MotionTask, inputs: list[Start], output
     return np.asarray((verdict == SOUND) | sliders)
 
 
-class _Run:
+class _Run(Sifting[LinkageDesign]):
     """What becomes of the pairs."""
 
     def __init__(self, problem: MotionProblem, task: MotionTask, demands: Demands, *, alike: bool) -> None:
+        super().__init__(problem, REASONS)
         self.problem, self.task, self.demands, self.alike = problem, task, demands, alike
         self.seen: list[Real] = []
-        self.passed: list[LinkageDesign] = []
-        self.failed: list[LinkageDesign] = []
-        self.rejected: Counter[str] = Counter()
-        self.count = 0
 
-    def not_held(self) -> None:
-        """A pair could not hold the positions that are to be met exactly."""
-        self.count += 1
-        self.rejected["positions_not_held"] += 1
-
-    def add(self, pair: _Pair) -> None:
+    def drive(self, pair: _Pair) -> None:
         """Verify the linkage of a fitted pair, unless another pair has led to it."""
         one = pair.one._replace(numbers=pair.point[:5])
         other = pair.other._replace(numbers=pair.point[5:10])
@@ -275,9 +267,8 @@ class _Run:
         ):
             return
         self.seen.append(places)
-        self.count += 1
         if self.problem.fitted and len(self.passed) >= max(self.problem.max_designs, LEAST_TRIED):
-            self.rejected["outranked"] += 1
+            self.reject(OUTRANKED)
             return
         pose = pair.problem.poses(pair.point)[0]
         best: LinkageDesign | None = None
@@ -289,14 +280,7 @@ class _Run:
                 reason = "degenerate" if mechanism is None else reason
             elif best is None or _better(design, best):
                 best = design
-        if best is None:
-            self.rejected[reason] += 1
-        elif best.verification.passed:
-            self.passed.append(best)
-        else:
-            self.failed.append(best)
-            name = next(check.name for check in best.verification.checks if not check.passed)
-            self.rejected[REASONS.get(name, name)] += 1
+        self.add(reason if best is None else best)
 
     def _mechanism(self, one: Start, other: Start, pose: Real) -> LinkageMechanism | None:
         """The linkage of two fitted dyads with the body in its first pose; None where it has no size, or no input."""
@@ -340,37 +324,30 @@ class _Run:
 
     def result(self) -> MotionResult:
         """The answer."""
-        shown = [*self.passed, *(self.failed if self.problem.include_failed else [])]
-        designs = ranked(shown, self.problem.rank_by)
-        if self.problem.fitted and self.problem.rank_by == "quality":
-            # A fit without limits is asked to be near; among answers that are equally near, quality decides.
-            designs.sort(key=lambda d: (not d.verification.passed, d.metrics.rms_residual))
+        # A fit without limits is asked to be near; among answers that are equally near, quality decides.
+        near = {"quality": _residual} if self.problem.fitted else None
         return MotionResult(
-            designs=designs[: self.problem.max_designs],
-            search=Search(
-                method="least_squares",
-                complete=False,
-                candidates=self.count,
-                accepted=len(self.passed),
-                rejected=dict(self.rejected),
-                seed=self.problem.seed,
-            ),
+            designs=self.designs(partial(ranked, rank_by=self.problem.rank_by, own=near)),
+            search=self.search("least_squares"),
             summary=self._summary(),
         )
 
     def _summary(self) -> str:
         n = len(self.problem.positions)
         if self.passed:
-            best = min(self.passed, key=lambda d: d.metrics.rms_residual)
-            share = 100.0 * best.metrics.rms_residual
+            share = 100.0 * min(map(_residual, self.passed))
             text = (
-                f"{len(self.passed)} of {self.count} fitted linkages meet the demands of the {n} positions; the best "
-                f"has a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian)."
+                f"{len(self.passed)} of {self.candidates} fitted linkages meet the demands of the {n} positions; the "
+                f"best has a root-mean-square residual of {share:.3g} % of the task size (hundredths of a radian)."
             )
         else:
-            listed = ", ".join(f"{name.replace('_', ' ')} {k}" for name, k in self.rejected.items())
-            text = f"None of {self.count} fitted linkages satisfies all demands (rejected: {listed or 'none'})."
+            reasons = self.listed() or "none"
+            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {reasons})."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
+
+
+def _residual(design: LinkageDesign) -> float:
+    return design.metrics.rms_residual
 
 
 def _better(design: LinkageDesign, other: LinkageDesign) -> bool:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +49,7 @@ from synthesis.kinds.path.design import (
     PathDesign,
     PathResult,
 )
+from synthesis.kinds.path.harvest import that_differ
 from synthesis.kinds.path.point_fit import (
     configuration_of,
     fitted,
@@ -56,11 +57,11 @@ from synthesis.kinds.path.point_fit import (
 )
 from synthesis.kinds.path.problem import PathPoint, PathProblem
 from synthesis.kinds.path.verify_curve import distances, verify_curve
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_statement import LengthLimits
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct
+from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -140,9 +141,22 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     else:
         candidates, sweep = _alike(problem, target, limits, progress)
         linkages = [joints for candidate in candidates for joints in with_cognates(_joints(candidate))]
-    designs, rejected = _verified(problem, target, linkages, limits, progress)
+    sifting = Sifting[PathDesign](problem)
+    sifting.sift(
+        reported(linkages, progress, (0.8, 1.0), "{done} of {all} linkages verified"),
+        partial(_verified, problem, target, limits),
+    )
+    sifting.withdraw(near_the_nearest(sifting.passed, problem), "far_from_the_curve")
     progress(1.0, "verified")
-    return _result(problem, designs, rejected, sweep)
+    return PathResult(
+        designs=sifting.designs(
+            partial(ranked_by_nearness, problem=problem),
+            partial(that_differ, count=problem.max_designs, apart=SAME_DESIGN * problem.task_size),
+        ),
+        search=sifting.search("curve_match"),
+        summary=_summary(problem, sifting, sweep),
+        sweep=sweep,
+    )
 
 
 def _alike(
@@ -397,72 +411,43 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
 
 def _verified(
-    problem: PathProblem,
-    target: _Target,
-    linkages: list[FourbarConfiguration],
-    limits: Limits,
-    progress: Progress,
-) -> tuple[list[PathDesign], Counter[str]]:
-    """Linkages in the target's unit, driven and measured; and what those that fail were rejected for."""
-    designs, rejected = [], Counter[str]()
-    for n, joints in enumerate(linkages):
-        progress(0.8 + 0.2 * n / len(linkages), f"{n} of {len(linkages)} linkages verified")
-        links = (
-            abs(joints.a - joints.o2),
-            abs(joints.b - joints.a),
-            abs(joints.b - joints.o4),
-            abs(joints.o4 - joints.o2),
-        )
-        if min(links) < SHORTEST:
-            rejected["degenerate"] += 1
-            continue
-        if not limits.lengths_kept(links):
-            rejected["link_length"] += 1
-            continue
-        if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
-            rejected["full_rotation"] += 1
-            continue
-        drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
-        alpha, beta = placement_of(problem, drawn)
-        there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
-        at = stated(alpha, beta)
-        design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-            continue
-        designs.append(design if at is None else design.model_copy(update={"placement": at}))
-        if not design.verification.passed:
-            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
-    return designs, rejected
+    problem: PathProblem, target: _Target, limits: Limits, joints: FourbarConfiguration
+) -> PathDesign | str | None:
+    """A linkage in the target's unit, driven and measured; or why it is not driven."""
+    links = (
+        abs(joints.a - joints.o2),
+        abs(joints.b - joints.a),
+        abs(joints.b - joints.o4),
+        abs(joints.o4 - joints.o2),
+    )
+    if min(links) < SHORTEST:
+        return "degenerate"
+    if not limits.lengths_kept(links):
+        return "link_length"
+    if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
+        return "full_rotation"
+    drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
+    alpha, beta = placement_of(problem, drawn)
+    there = FourbarConfiguration(*(alpha * joint + beta for joint in drawn))
+    at = stated(alpha, beta)
+    design = verify_curve(problem if at is None else moved(problem, alpha, beta), fourbar_mechanism(there))
+    return design if design is None or at is None else design.model_copy(update={"placement": at})
 
 
-def _result(
-    problem: PathProblem, designs: list[PathDesign], rejected: Counter[str], sweep: CurveSweep | None
-) -> PathResult:
-    kept = [design for design in designs if design.verification.passed]
-    passed = ranked_by_nearness(near_the_nearest(kept, problem), problem)
-    if len(passed) < len(kept):
-        rejected = rejected + Counter(far_from_the_curve=len(kept) - len(passed))
-    shown = list(passed)
-    if problem.include_failed:
-        shown += ranked_by_nearness([design for design in designs if not design.verification.passed], problem)
-    if shown:
-        names = ("O2", "A", "B", "O4")
-        joints = np.array([[complex(*d.mechanism.skeleton.joints[name]) for name in names] for d in shown])
-        shown = [shown[k] for k in distinct(joints, problem.max_designs, SAME_DESIGN * problem.task_size)]
+def _summary(problem: PathProblem, sifting: Sifting[PathDesign], sweep: CurveSweep | None) -> str:
+    counts = f"{sifting.accepted} of {sifting.candidates}"
     if sweep is None:
         text = (
             "Linkages on the given pivots were fitted to points along the curve from many starts; "
-            f"{len(passed)} of {len(passed) + rejected.total()} satisfy all demands."
+            f"{counts} satisfy all demands."
         )
     else:
         text = (
             f"{sweep.curves} curves of {sweep.linkages} linkages were compared with the target, {sweep.refined} "
-            f"refined; {len(passed)} of {len(passed) + rejected.total()} designs, cognates included, satisfy all "
-            "demands."
+            f"refined; {counts} designs, cognates included, satisfy all demands."
         )
-    if passed:
-        best = passed[0].metrics
+    if sifting.passed:
+        best = ranked_by_nearness(sifting.passed, problem)[0].metrics
         unit = problem.length_unit
         text += f" The best draws it with an rms distance of {best.rms_distance:.3g} {unit}, "
         text += f"at most {best.max_distance:.3g}."
@@ -471,22 +456,7 @@ def _result(
                 " Cognates draw the same curve, and quality chose among them: pivots near the curve, force "
                 "transmission, even links."
             )
-    if rejected:
-        listed = (f"{name.replace('_', ' ')} {n}" for name, n in rejected.items())
-        text += f" Rejected: {', '.join(listed)}."
-    return PathResult(
-        designs=shown,
-        search=Search(
-            method="curve_match",
-            complete=False,
-            candidates=len(passed) + rejected.total(),
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
-        summary=text,
-        sweep=sweep,
-    )
+    return f"{text} Rejected: {sifting.listed()}." if sifting.rejected else text
 
 
 def error_of(design: PathDesign, problem: PathProblem) -> float:

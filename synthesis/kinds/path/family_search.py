@@ -10,7 +10,7 @@ angle, lengths, order) chooses among the members, all of which are driven.
 from __future__ import annotations
 
 import cmath
-from collections import Counter
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,11 +31,11 @@ from synthesis.kinds.path.design import (
 )
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_statement import Region
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -164,49 +164,33 @@ def _joints(family: int, x: Real, sign: float, theta: float) -> FourbarConfigura
 def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:
     """Drive the members, and put those first that are asked for."""
     size = problem.task_size
-    rejected: Counter[str] = Counter()
-    passed: list[PathDesign] = []
-    failed: list[PathDesign] = []
+
+    def verified(member: FourbarConfiguration) -> PathDesign | str | None:
+        o2, a, b, o4, _ = member
+        if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) < SHORTEST * size:
+            return "degenerate"
+        return verify_path(problem, fourbar_mechanism(member))
+
     members = (
         [found[k] for k in distinct(np.array([list(one) for one in found]), DRIVEN, SAME_DESIGN * size)]
         if found
         else []
     )
-    for n, member in enumerate(members):
-        progress(0.6 + 0.4 * n / len(members), f"{n} of {len(members)} linkages driven")
-        o2, a, b, o4, _ = member
-        if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) < SHORTEST * size:
-            rejected["degenerate"] += 1
-            continue
-        design = verify_path(problem, fourbar_mechanism(member))
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            passed.append(design)
-        else:
-            failed.append(design)
-            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
+    sifting = Sifting[PathDesign](problem)
+    sifting.sift(reported(members, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
     progress(1.0, "verified")
-    shown = ranked(passed, problem.rank_by) + (ranked(failed, problem.rank_by) if problem.include_failed else [])
     text = (
         f"{brought} linkages near a curve through the points were brought to them, {len(found)} of them exactly and "
-        f"with the pivots where they are asked for; {len(passed)} of {len(members)} that differ satisfy all demands."
+        f"with the pivots where they are asked for; {sifting.accepted} of {len(members)} that differ satisfy all "
+        "demands."
     )
-    if rejected:
-        listed = (f"{name.replace('_', ' ')} {count}" for name, count in rejected.items())
-        text += f" Rejected: {', '.join(listed)}."
-    if not passed:
+    if sifting.rejected:
+        text += f" Rejected: {sifting.listed()}."
+    if not sifting.accepted:
         text += " None was found; others may exist."
     return PathResult(
-        designs=shown[: problem.max_designs],
-        search=Search(
-            method="family_search",
-            complete=False,
-            candidates=len(members),
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
+        designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
+        search=sifting.search("family_search"),
         summary=text,
         family=FamilySearch(followed=brought, met=len(found)),
     )

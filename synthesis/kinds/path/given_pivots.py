@@ -41,7 +41,7 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
         progress(0.5 + 0.5 * n / len(solved.linkages), f"{n} of {len(solved.linkages)} real linkages verified")
         lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
         if min(lengths) <= SHORTEST_LINK * max(*lengths, abs(joints.o4 - joints.o2)):
-            harvest.degenerate()
+            harvest.reject("degenerate")
             continue
         design = verify_path(problem, fourbar_mechanism(joints))
         harvest.add(design)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections import Counter
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,6 @@ from synthesis.kinds.path.curve_shapes import (
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_traced import verify_traced
-from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import (
     CouplerPoint,
@@ -56,6 +55,7 @@ from synthesis.model.linkages import (
     to_point,
 )
 from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -288,44 +288,27 @@ def _different(found: list[tuple[float, Mechanism]], size: float) -> list[tuple[
 
 def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:
     """Drive the mechanisms, and rank what passes."""
-    passed: list[PathDesign] = []
-    failed: list[PathDesign] = []
-    rejected: Counter[str] = Counter()
-    for n, made in enumerate(mechanisms):
-        progress(0.7 + 0.3 * n / len(mechanisms), f"{n} of {len(mechanisms)} linkages driven")
-        design = verify_traced(problem, made)
-        if design is None:
-            rejected["cannot_be_driven"] += 1
-        elif design.verification.passed:
-            passed.append(design)
-        else:
-            failed.append(design)
-            rejected[next(check.name for check in design.verification.checks if not check.passed)] += 1
-    progress(1.0, "verified")
 
     def in_rank(designs: list[PathDesign]) -> list[PathDesign]:
         return ranked_by_nearness(designs, problem) if problem.fitted else ranked(designs, problem.rank_by)
 
-    shown = in_rank(passed) + (in_rank(failed) if problem.include_failed else [])
+    sifting = Sifting[PathDesign](problem)
+    sifting.sift(
+        reported(mechanisms, progress, (0.7, 1.0), "{done} of {all} linkages driven"), partial(verify_traced, problem)
+    )
+    progress(1.0, "verified")
     name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ") + "s"
-    text = f"{len(passed)} of {len(mechanisms)} {name} that were fitted satisfy all demands."
-    if passed and problem.fitted:
-        best = in_rank(passed)[0].metrics
+    text = f"{sifting.accepted} of {sifting.candidates} {name} that were fitted satisfy all demands."
+    if sifting.passed and problem.fitted:
+        best = in_rank(sifting.passed)[0].metrics
         text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."
-    if rejected:
-        listed = (f"{key.replace('_', ' ')} {count}" for key, count in rejected.items())
-        text += f" Rejected: {', '.join(listed)}."
-    if not passed:
+    if sifting.rejected:
+        text += f" Rejected: {sifting.listed()}."
+    if not sifting.passed:
         text += " None was found; others may exist."
+    method = "curve_match" if problem.matched else "least_squares" if problem.fitted else "family_search"
     return PathResult(
-        designs=shown[: problem.max_designs],
-        search=Search(
-            method="curve_match" if problem.matched else "least_squares" if problem.fitted else "family_search",
-            complete=False,
-            candidates=len(mechanisms),
-            accepted=len(passed),
-            rejected=dict(rejected),
-            seed=problem.seed,
-        ),
+        designs=sifting.designs(in_rank),
+        search=sifting.search(method),
         summary=text,
     )

@@ -49,7 +49,8 @@ from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
-from synthesis.outcome.ranking import distinct
+from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.sifting import reported
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -164,14 +165,18 @@ def families(problem: PathProblem) -> list[int]:
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     """Fit fourbars to the points of a problem."""
     task = point_task(problem)
-    fits = _Fits(problem)
-    found = fitted(problem, task, np.random.default_rng(problem.seed), progress)
-    for n, candidate in enumerate(found):
-        if len(fits.passed) >= max(2 * problem.max_designs, LEAST_DRIVEN):
-            break
-        progress(0.9 + 0.1 * n / len(found), f"driving linkage {n + 1} of {len(found)}")
+
+    def verified(candidate: Candidate) -> PathDesign | None:
         mechanism = mechanism_of(candidate, task)
-        fits.add(None if mechanism is None else verify_path(problem, mechanism))
+        return None if mechanism is None else verify_path(problem, mechanism)
+
+    fits = _Fits(problem)
+    minima = fitted(problem, task, np.random.default_rng(problem.seed), progress)
+    fits.sift(
+        reported(minima, progress, (0.9, 1.0), "driving linkage {next} of {all}"),
+        verified,
+        enough=max(2 * problem.max_designs, LEAST_DRIVEN),
+    )
     progress(1.0, "verified")
     return fits.result("least_squares", complete=False, summary=fits.summary())
 
@@ -446,12 +451,10 @@ def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | No
 class _Fits(Harvest):
     """What becomes of the fits."""
 
-    def shown(self) -> list[PathDesign]:
+    def different(self, designs: list[PathDesign]) -> list[PathDesign]:
         """Nearest first unless another order is asked for; among answers that are equally near, quality decides."""
-        designs = super().shown()
-        if self.problem.rank_by == "quality":
-            designs.sort(key=lambda d: (not d.verification.passed, max(d.metrics.rms_residual, AS_GOOD_AS_EXACT)))
-        return designs
+        nearest = {"quality": lambda design: max(design.metrics.rms_residual, AS_GOOD_AS_EXACT)}
+        return ranked(super().different(designs), self.problem.rank_by, nearest)
 
     def summary(self) -> str:
         """The answer in words."""

@@ -158,7 +158,7 @@ class _Triples(Harvest):
         """Put a design where it belongs; returns whether it has all points on one circuit."""
         lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
         if min(*lengths, abs(joints.o4 - joints.o2)) <= SHORTEST_LINK * max(lengths):
-            self.degenerate()
+            self.reject("degenerate")
             return False
         design = verify_path(self.problem, fourbar_mechanism(joints))
         self.add(design)

@@ -125,7 +125,7 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
             joints = FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0])))
             lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
             if min(lengths) <= SHORTEST_LINK * max(lengths):
-                harvest.degenerate()
+                harvest.reject("degenerate")
             else:
                 harvest.add(verify_path(problem, fourbar_mechanism(joints)))
     progress(1.0, "verified")
