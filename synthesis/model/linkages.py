@@ -40,6 +40,15 @@ class FourbarConfiguration(NamedTuple):
     o4: complex
     p: complex
 
+    @property
+    def lengths(self) -> tuple[float, float, float, float]:
+        """Input, coupler, output and ground."""
+        return abs(self.a - self.o2), abs(self.b - self.a), abs(self.b - self.o4), abs(self.o4 - self.o2)
+
+    def has_no_link_below(self, share: float) -> bool:
+        """Whether every link is longer than this share of the longest: else it is no linkage."""
+        return min(self.lengths) > share * max(self.lengths)
+
 
 FOURBAR_LINKS = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B", "P"), "output": ("O4", "B")}
 """The joints on each link of a fourbar."""

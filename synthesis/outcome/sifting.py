@@ -159,6 +159,10 @@ class Sifting(Generic[Design]):
         """The reasons in words with their numbers, but for those that are left out; empty where there is none."""
         return ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in self.rejected.items() if name not in left_out)
 
+    def reasons(self) -> str:
+        """The reasons as a sentence that is added to a summary."""
+        return f" Rejected: {self.listed()}." if self.rejected else ""
+
     def designs(
         self,
         ordered: Callable[[list[Design]], list[Design]],

@@ -276,24 +276,23 @@ class _Harvest(Sifting[FunctionDesign]):
                 text += f" (at most {error.max:.4g}{unit})"
             text += f", from {improved} of {judged} starts; no proof that none is better."
         else:
-            text = f"None of {improved} of {judged} starts came to a linkage that satisfies all demands.{self._why()}"
+            text = (
+                f"None of {improved} of {judged} starts came to a linkage that satisfies all demands.{self.reasons()}"
+            )
         return self._result(self.problem.aim, False, text)
 
     def determined(self, proved: bool, method: str) -> FunctionResult:
         """The answer where all linkages were computed."""
         complete = proved and not _NUMERICAL & self.rejected.keys()
-        text = f"{len(self.passed)} of {self.candidates} real linkages satisfy all demands.{self._why()}"
+        text = f"{len(self.passed)} of {self.candidates} real linkages satisfy all demands.{self.reasons()}"
         if not self.passed:
             text += " There are no others, so no design exists." if complete else " Others may exist."
         return self._result(method, complete, text)
 
     def searched(self, method: str) -> FunctionResult:
         """The answer where linkages were searched for."""
-        text = f"{len(self.passed)} linkages found among {self.candidates} candidates.{self._why()}"
+        text = f"{len(self.passed)} linkages found among {self.candidates} candidates.{self.reasons()}"
         return self._result(method, False, text)
-
-    def _why(self) -> str:
-        return f" Rejected: {self.listed()}." if self.rejected else ""
 
     def _error(self, design: FunctionDesign) -> float:
         error = design.structural_error.rms if self.problem.aim == "least_squares" else design.structural_error.max

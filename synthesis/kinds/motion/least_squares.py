@@ -305,10 +305,8 @@ class _Run(Sifting[LinkageDesign]):
         if other.dyad == "RR":
             fixed, moving = pivots_of(other.surface, other.numbers)
             o4, b = self.task.to_problem(fixed), body(moving)
-            lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
-            if min(lengths) <= SHORTEST_LINK * max(lengths):
-                return None
-            return fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, p), angle)
+            joints = FourbarConfiguration(o2, a, b, o4, p)
+            return fourbar_mechanism(joints, angle) if joints.has_no_link_below(SHORTEST_LINK) else None
         point, _, line = line_of(other.surface, other.numbers)
         if other.dyad == "PR":
             b = body(point)

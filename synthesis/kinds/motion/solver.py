@@ -159,11 +159,10 @@ class _Pairs:
         """The linkage of an input and an output dyad, driven."""
         o2, a = self._pivots(self.problem.input_side, self.inputs, pair[0])
         o4, b = self._pivots(self.problem.output_side, self.outputs, pair[1])
-        lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
-        if min(lengths) <= SHORTEST_LINK * max(lengths):
+        joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
+        if not joints.has_no_link_below(SHORTEST_LINK):
             return "degenerate"
-        mechanism = fourbar_mechanism(FourbarConfiguration(o2, a, b, o4, self.task.origin))
-        return verify(self.problem, mechanism, target)
+        return verify(self.problem, fourbar_mechanism(joints), target)
 
     def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
         """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
@@ -281,8 +280,7 @@ def _summary_of_determined(pairs: _Pairs, sifting: Sifting[LinkageDesign], *, co
             text += f" {len(sifting.passed) - accepted} can be driven from either side."
     else:
         text = f"{accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
-    if sifting.rejected:
-        text += f" Rejected: {sifting.listed()}."
+    text += sifting.reasons()
     if not sifting.passed:
         text += " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
     return text

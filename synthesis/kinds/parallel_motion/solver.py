@@ -91,6 +91,7 @@ def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelM
         rank_by,
         {"accuracy": lambda design: design.metrics.rms_residual},
         group=lambda design: not design.metrics.full_rotation,
+        ties=lambda design: 0.0,  # what is as good keeps its order: the given fourbar, then its cognates
     )
 
 

@@ -414,12 +414,7 @@ def _verified(
     problem: PathProblem, target: _Target, limits: Limits, joints: FourbarConfiguration
 ) -> PathDesign | str | None:
     """A linkage in the target's unit, driven and measured; or why it is not driven."""
-    links = (
-        abs(joints.a - joints.o2),
-        abs(joints.b - joints.a),
-        abs(joints.b - joints.o4),
-        abs(joints.o4 - joints.o2),
-    )
+    links = joints.lengths
     if min(links) < SHORTEST:
         return "degenerate"
     if not limits.lengths_kept(links):
@@ -456,7 +451,7 @@ def _summary(problem: PathProblem, sifting: Sifting[PathDesign], sweep: CurveSwe
                 " Cognates draw the same curve, and quality chose among them: pivots near the curve, force "
                 "transmission, even links."
             )
-    return f"{text} Rejected: {sifting.listed()}." if sifting.rejected else text
+    return text + sifting.reasons()
 
 
 def error_of(design: PathDesign, problem: PathProblem) -> float:

@@ -166,8 +166,7 @@ def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: in
     size = problem.task_size
 
     def verified(member: FourbarConfiguration) -> PathDesign | str | None:
-        o2, a, b, o4, _ = member
-        if min(abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)) < SHORTEST * size:
+        if min(member.lengths) < SHORTEST * size:
             return "degenerate"
         return verify_path(problem, fourbar_mechanism(member))
 
@@ -184,8 +183,7 @@ def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: in
         f"with the pivots where they are asked for; {sifting.accepted} of {len(members)} that differ satisfy all "
         "demands."
     )
-    if sifting.rejected:
-        text += f" Rejected: {sifting.listed()}."
+    text += sifting.reasons()
     if not sifting.accepted:
         text += " None was found; others may exist."
     return PathResult(

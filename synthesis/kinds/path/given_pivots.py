@@ -9,15 +9,12 @@ from synthesis.kinds.path.five_point_system import SOLUTIONS
 from synthesis.kinds.path.five_points import five_points
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress
-from synthesis.model.linkages import fourbar_mechanism, to_complex
+from synthesis.model.linkages import to_complex
+from synthesis.outcome.sifting import reported
 
 FIVE, BOTH_PIVOTS = 5, 4
 """Points, and given coordinates of fixed pivots, that leave no freedom and are solved completely."""
-
-SHORTEST_LINK = 1e-9
-"""Links shorter than this share of the longest are no links."""
 
 
 def all_are_found(problem: PathProblem) -> bool:
@@ -37,27 +34,15 @@ def solve_given_pivots(problem: PathProblem, progress: Progress) -> PathResult:
     solved = five_points(points, to_complex((x2, y2)), to_complex((x4, y4)), np.random.default_rng(problem.seed))
     harvest = Harvest(problem)
     on_one_circuit = 0
-    for n, joints in enumerate(solved.linkages):
-        progress(0.5 + 0.5 * n / len(solved.linkages), f"{n} of {len(solved.linkages)} real linkages verified")
-        lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
-        if min(lengths) <= SHORTEST_LINK * max(*lengths, abs(joints.o4 - joints.o2)):
-            harvest.reject("degenerate")
-            continue
-        design = verify_path(problem, fourbar_mechanism(joints))
-        harvest.add(design)
-        on_one_circuit += design is not None and all(
-            check.passed for check in design.verification.checks if check.name in ("reaches_targets", "same_circuit")
-        )
+    for joints in reported(solved.linkages, progress, (0.5, 1.0), "{done} of {all} real linkages verified"):
+        on_one_circuit += harvest.drive(joints)
     progress(1.0, "verified")
     complete = solved.complete and not harvest.unproven
     text = (
         f"{solved.found} of {SOLUTIONS} solutions on these pivots were computed; {len(solved.linkages)} are real, "
         f"{on_one_circuit} of these have all points on one circuit, and {len(harvest.passed)} satisfy all demands."
     )
-    if harvest.rejected:
-        text += f" Rejected: {harvest.listed()}."
-    if not harvest.passed:
-        text += " These are all fourbars, so no design exists." if complete else " Others may exist."
+    text += harvest.reasons() + harvest.proof(complete=complete)
     result = harvest.result("five_point_continuation", complete=complete, summary=text)
     counts = GivenPivotSolutions(
         computed=solved.found,

@@ -8,6 +8,8 @@ import numpy as np
 
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, Sifting
 
@@ -16,6 +18,9 @@ SAME_DESIGN = 1e-6
 
 APART = 0.05
 """The same where there is a family of them: nearer ones are variants of one design."""
+
+SHORTEST_LINK = 1e-9
+"""Links shorter than this share of the longest are no links."""
 
 _OF_DIMENSIONS = frozenset(
     (
@@ -46,6 +51,23 @@ class Harvest(Sifting[PathDesign]):
         if broken[0] == "reaches_targets":
             broken = [name for name in broken if name in _OF_DIMENSIONS] or broken
         return super().reason_of(broken)
+
+    def drive(self, joints: FourbarConfiguration) -> bool:
+        """Verify a fourbar; returns whether it has all points on one circuit."""
+        if not joints.has_no_link_below(SHORTEST_LINK):
+            self.reject("degenerate")
+            return False
+        design = verify_path(self.problem, fourbar_mechanism(joints))
+        self.add(design)
+        return design is not None and all(
+            check.passed for check in design.verification.checks if check.name in ("reaches_targets", "same_circuit")
+        )
+
+    def proof(self, *, complete: bool) -> str:
+        """What an empty answer means, as a sentence of the summary; empty where there are designs."""
+        if self.passed:
+            return ""
+        return " These are all fourbars, so no design exists." if complete else " Others may exist."
 
     def result(self, method: str, *, complete: bool, summary: str) -> PathResult:
         """The answer."""

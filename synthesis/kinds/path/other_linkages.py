@@ -302,8 +302,7 @@ def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progres
     if sifting.passed and problem.fitted:
         best = in_rank(sifting.passed)[0].metrics
         text += f" The best one's rms distance is {best.rms_distance:.3g} {problem.length_unit}."
-    if sifting.rejected:
-        text += f" Rejected: {sifting.listed()}."
+    text += sifting.reasons()
     if not sifting.passed:
         text += " None was found; others may exist."
     method = "curve_match" if problem.matched else "least_squares" if problem.fitted else "family_search"

@@ -32,10 +32,9 @@ from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
-from synthesis.kinds.path.verification import verify_path
 from synthesis.kinds.path.verify_cognates import with_cognates
 from synthesis.model.kind import Progress
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import follow, refine
 
 Complex = NDArray[np.complex128]
@@ -50,9 +49,6 @@ OFF_CURVE = 0.03
 
 FIRST_PART = 0.5
 """Share of the progress that the search near a smooth curve counts for, where others may follow it."""
-
-SHORTEST_LINK = 1e-9
-"""Links shorter than this share of the longest are no links."""
 
 
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
@@ -86,8 +82,9 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
     rng = np.random.default_rng(problem.seed)
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
-    harvest = _Triples(problem)
+    harvest = Harvest(problem)
     found: list[Triples] = []
+    on_one_circuit = 0
     for n in range(rounds):
 
         def told(share: float, n: int = n) -> None:
@@ -97,19 +94,24 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
 
         triples = all_triples(_nine(given, rng), rng, told, THREADS)
         found.append(triples)
-        harvest.gather(triples)
+        on_one_circuit += _gathered(harvest, triples)
     progress(1.0, "verified")
     complete = len(given) == NINE and found[0].complete and not harvest.unproven
     counts = CognateTriples(
         rounds=rounds,
         computed=sum(len(triples.y) for triples in found),
         real=sum(len(triples.real) for triples in found),
-        on_one_circuit=harvest.on_one_circuit,
+        on_one_circuit=on_one_circuit,
         largest_residual=max(triples.largest_residual for triples in found),
         closed_under_conjugation=all(triples.self_conjugate for triples in found),
     )
     method = "nine_point_continuation" if len(given) == NINE else "nine_point_family"
-    result = harvest.result(method, complete=complete, summary=harvest.summary(counts, complete=complete))
+    text = (
+        f"{counts.computed} of {ORBITS * rounds} triples of cognate fourbars were computed; {counts.real} are real, "
+        f"{on_one_circuit} of these have all points on one circuit, and {harvest.accepted} of {harvest.candidates} "
+        f"designs satisfy all demands.{harvest.reasons()}{harvest.proof(complete=complete)}"
+    )
+    result = harvest.result(method, complete=complete, summary=text)
     return result.model_copy(update={"triples": counts})
 
 
@@ -137,45 +139,14 @@ def _nine(given: Complex, rng: np.random.Generator) -> Complex:
     return np.concatenate([given, np.asarray(curve(drawn)) + off])
 
 
-class _Triples(Harvest):
-    """The designs of the real triples."""
-
-    def __init__(self, problem: PathProblem) -> None:
-        super().__init__(problem)
-        self.on_one_circuit = 0
-
-    def gather(self, triples: Triples) -> None:
-        """Verify all six designs of every triple."""
-        origin = self.problem.points[0].point
-        for triple in triples.real:
-            one_circuit = False
-            for o2, a, o4, b in triple:
-                for joints in ((o2, a, b, o4, origin), (o4, b, a, o2, origin)):
-                    one_circuit |= self._verify(FourbarConfiguration(*map(complex, joints)))
-            self.on_one_circuit += one_circuit
-
-    def _verify(self, joints: FourbarConfiguration) -> bool:
-        """Put a design where it belongs; returns whether it has all points on one circuit."""
-        lengths = abs(joints.a - joints.o2), abs(joints.b - joints.a), abs(joints.b - joints.o4)
-        if min(*lengths, abs(joints.o4 - joints.o2)) <= SHORTEST_LINK * max(lengths):
-            self.reject("degenerate")
-            return False
-        design = verify_path(self.problem, fourbar_mechanism(joints))
-        self.add(design)
-        return design is not None and all(
-            check.passed for check in design.verification.checks if check.name in ("reaches_targets", "same_circuit")
-        )
-
-    def summary(self, counts: CognateTriples, *, complete: bool) -> str:
-        """The answer in words."""
-        expected = ORBITS * counts.rounds
-        text = (
-            f"{counts.computed} of {expected} triples of cognate fourbars were computed; {counts.real} are real, "
-            f"{counts.on_one_circuit} of these have all points on one circuit, "
-            f"and {len(self.passed)} of {self.candidates} designs satisfy all demands."
-        )
-        if self.rejected:
-            text += f" Rejected: {self.listed()}."
-        if not self.passed:
-            text += " These are all fourbars, so no design exists." if complete else " Others may exist."
-        return text
+def _gathered(harvest: Harvest, triples: Triples) -> int:
+    """Verify all six designs of every triple; returns how many triples have all points on one circuit."""
+    origin = harvest.problem.points[0].point
+    on_one_circuit = 0
+    for triple in triples.real:
+        one_circuit = False
+        for o2, a, o4, b in triple:
+            for joints in ((o2, a, b, o4, origin), (o4, b, a, o2, origin)):
+                one_circuit |= harvest.drive(FourbarConfiguration(*map(complex, joints)))
+        on_one_circuit += one_circuit
+    return on_one_circuit

@@ -28,10 +28,9 @@ from synthesis.kinds.motion.sections import section
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.kinds.path.design import PathResult, TimedDyads
 from synthesis.kinds.path.exact_fit import exact_fits
-from synthesis.kinds.path.harvest import APART, Harvest
+from synthesis.kinds.path.harvest import APART, SHORTEST_LINK, Harvest
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkages import FourbarConfiguration
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -41,9 +40,6 @@ FIVE = 5
 
 SAME_DYAD = 1e-6
 """An output link with both pivots this near (task sizes, and shares of its own reach) to the input link's is that."""
-
-SHORTEST_LINK = 1e-9
-"""Links shorter than this share of the longest are no links."""
 
 
 class TimedFourbars(NamedTuple):
@@ -122,24 +118,17 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
         inputs, sliders, proved = inputs + found.inputs, sliders + found.sliders, proved and found.proved
         fourbars += len(found.joints)
         for o2, a, b, o4 in given[0] + size * found.joints:
-            joints = FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0])))
-            lengths = abs(a - o2), abs(b - a), abs(b - o4), abs(o4 - o2)
-            if min(lengths) <= SHORTEST_LINK * max(lengths):
-                harvest.reject("degenerate")
-            else:
-                harvest.add(verify_path(problem, fourbar_mechanism(joints)))
+            harvest.drive(FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0]))))
     progress(1.0, "verified")
     complete = proved and not harvest.unproven
     text = (
         f"{inputs} input dyads and {fourbars} fourbars pass the five points at their crank angles; "
         f"{len(harvest.passed)} of them satisfy all demands."
     )
-    if harvest.rejected:
-        text += f" Rejected: {harvest.listed()}."
+    text += harvest.reasons()
     if sliders:
         text += f" {sliders} more dyads have a pivot at infinity: sliders."
-    if not harvest.passed:
-        text += " These are all fourbars, so no design exists." if complete else " Others may exist."
+    text += harvest.proof(complete=complete)
     result = harvest.result("timed_dyads", complete=complete, summary=text)
     return result.model_copy(update={"timed": TimedDyads(inputs=inputs, fourbars=fourbars, sliders=sliders)})
 
@@ -149,6 +138,4 @@ def _summary_of_fewer(problem: PathProblem, harvest: Harvest) -> str:
         f"{len(harvest.passed)} of {harvest.candidates} linkages through the {len(problem.points)} points at their "
         "crank angles satisfy all demands; the points leave freedom, from which these are drawn."
     )
-    if harvest.rejected:
-        text += f" Rejected: {harvest.listed()}."
-    return text if harvest.passed else text + " Others may exist."
+    return text + harvest.reasons() + harvest.proof(complete=False)
