@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from kinematics.cam.dynamics import RunningCam
+from kinematics.cam.extremes import extremes
 from kinematics.cam.program import Program
 from synthesis.kinds.cam.composition import (
     Composition,
     arm_length,
     follower_load,
+    root_mean_square,
 )
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
@@ -32,6 +34,7 @@ from synthesis.kinds.cam.problem import (
     Move,
 )
 from synthesis.kinds.cam.sizing import Size
+from synthesis.outcome.sifting import Sifting
 
 SLOW = 10.0
 """Natural frequency over cam speed below which the follower's own vibration is worth a warning (Norton §15.4)."""
@@ -128,6 +131,20 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     )
 
 
+def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
+    """Metrics of the motion alone, whatever cam makes it."""
+    _, v, a, j = program.peaks
+    torque = extremes(lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks)
+    return {
+        "peak_velocity": v.largest,
+        "peak_acceleration": a.largest,
+        "peak_jerk": j.largest,
+        "rms_acceleration": root_mean_square(program, lambda motion: motion.a),
+        "peak_inertia_torque": torque.largest,
+        "forces": forces_of(problem, program),
+    }
+
+
 def result_of(
     problem: CamProblem,
     composed: Composition,
@@ -138,7 +155,8 @@ def result_of(
     """The result with its only candidate; ``radius`` is its name and value, for the summary."""
     passed = design.verification.passed
     failed = [check.name for check in design.verification.checks if not check.passed]
-    kept = passed or problem.include_failed
+    sifting = Sifting[CamDesign | BarrelCamDesign](problem)
+    sifting.add(design)
     name, length = radius
     if passed:
         summary = f"A cam of {name} radius {length:.6g} {problem.length_unit} carries the program."
@@ -156,16 +174,8 @@ def result_of(
     # With the laws given and the smallest cam proven, a limit on size is broken by every cam.
     proof = given and size.proven and failed == ["size"]
     return CamResult(
-        designs=[design] if kept else [],
-        search=CamSearch(
-            method=_method(composed, stated),
-            complete=proof,
-            candidates=1,
-            accepted=int(passed),
-            rejected={} if passed else {failed[0]: 1},
-            seed=problem.seed,
-            sizing_proven=size.proven,
-        ),
+        designs=sifting.designs(list),
+        search=CamSearch(**dict(sifting.search(_method(composed, stated), complete=proof)), sizing_proven=size.proven),
         summary=summary,
     )
 
@@ -177,16 +187,11 @@ def _method(composed: Composition, stated: bool) -> str:
 
 def none_of(problem: CamProblem, reason: str, proven: bool, cause: str) -> CamResult:
     """No design, and why."""
+    sifting = Sifting[CamDesign](problem)
+    sifting.reject(cause)
+    method = "convex_program" if cause == "motion_limits" else "exact sizing"
     return CamResult(
         designs=[],
-        search=CamSearch(
-            method="convex_program" if cause == "motion_limits" else "exact sizing",
-            complete=proven,
-            candidates=1,
-            accepted=0,
-            rejected={cause: 1},
-            seed=problem.seed,
-            sizing_proven=proven,
-        ),
+        search=CamSearch(**dict(sifting.search(method, complete=proven)), sizing_proven=proven),
         summary=f"None exists: {reason}." if proven else f"None found: {reason}.",
     )

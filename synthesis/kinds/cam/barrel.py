@@ -14,19 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.barrel import BarrelCam
-from kinematics.cam.extremes import extremes
 from kinematics.cam.pieces import Motion
 from kinematics.cam.program import Program
 from synthesis.kinds.cam.answer import (
-    forces_of,
     joints_of,
+    motion_metrics,
     none_of,
     optimality_of,
     result_of,
     segments_of,
 )
 from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barrel
-from synthesis.kinds.cam.composition import Composition, root_mean_square
+from synthesis.kinds.cam.composition import Composition
 from synthesis.kinds.cam.critical import smallest_allowed
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
@@ -40,6 +39,7 @@ from synthesis.kinds.cam.mechanism import (
     refined,
 )
 from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
+from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (
     LARGEST,
     MARGIN,
@@ -49,12 +49,6 @@ from synthesis.kinds.cam.verification import REPRODUCED
 from synthesis.model.kind import Progress
 
 Real = NDArray[np.float64]
-
-FINEST = 12_000
-"""Points of a wall at most."""
-
-REFINEMENTS = 8
-"""Times that points are put closer at most."""
 
 NO_UNDERCUT = 1.02
 """Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 a wall has a cusp."""
@@ -72,20 +66,9 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
 
     walls = partial(barrel.wall, side=-1), partial(barrel.wall, side=1)
     angle = max((profile_angles(program, wall, roller, problem.profile_points) for wall in walls), key=len)
-    mechanism = barrel_mechanism(barrel, problem.rotation, angle)
-    verification, measured = verify_barrel(problem, mechanism)
-    for _ in range(REFINEMENTS):
-        failed = {check.name for check in verification.checks if not check.passed}
-        lost = measured is None or not np.isfinite(measured.off).all() or "no_cusp" in failed
-        if measured is None or lost or not any("reproduces" in name for name in failed):
-            break
-        finer = refined(angle, measured.off, REPRODUCED)
-        if len(finer) > FINEST:
-            break
-        angle = finer
-        progress(0.8, f"verifying with {len(angle)} points")
-        mechanism = barrel_mechanism(barrel, problem.rotation, angle)
-        verification, measured = verify_barrel(problem, mechanism)
+    mechanism, verification, measured = resolved(
+        angle, partial(barrel_mechanism, barrel, problem.rotation), partial(verify_barrel, problem), _closer, progress
+    )
     if measured is None:
         reason = (
             f"the contact of a roller of radius {roller:.6g} in a groove on a cylinder of radius {size.radius:.6g} is "
@@ -102,6 +85,13 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
     )
     progress(1.0, "verified")
     return result_of(problem, composed, design, size, ("cylinder", size.radius))
+
+
+def _closer(angle: Real, measured: MeasuredBarrel, failed: set[str]) -> Real | None:
+    """Angles that stand closer where the walls' points are too few; None where more do not help."""
+    if "no_cusp" in failed or not any("reproduces" in name for name in failed):
+        return None
+    return refined(angle, measured.off, REPRODUCED)
 
 
 def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -> Size | None:
@@ -131,7 +121,6 @@ def _metrics(
     problem: CamProblem, program: Program, mechanism: BarrelCamMechanism, measured: MeasuredBarrel
 ) -> BarrelMetrics:
     roller = mechanism.follower.roller_radius
-    _, v, a, j = program.peaks
     least = min(measured.least_radius, 1e9)
     return BarrelMetrics(
         lift=program.lift,
@@ -141,12 +130,5 @@ def _metrics(
         max_pressure_angle_fall=measured.falling,
         min_radius=least,
         curvature_ratio=least / roller,
-        peak_velocity=v.largest,
-        peak_acceleration=a.largest,
-        peak_jerk=j.largest,
-        rms_acceleration=root_mean_square(program, lambda motion: motion.a),
-        peak_inertia_torque=extremes(
-            lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks
-        ).largest,
-        forces=forces_of(problem, program),
+        **motion_metrics(problem, program),
     )

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinematics.cam import follower as core
-from kinematics.cam.extremes import extremes
 from kinematics.cam.profile import Cam
 from kinematics.cam.program import Program
 from kinematics.errors import DimensionError
 from synthesis.kinds.cam.answer import (
-    forces_of,
     joints_of,
+    motion_metrics,
     none_of,
     optimality_of,
     result_of,
@@ -27,7 +28,6 @@ from synthesis.kinds.cam.composition import (
     compose,
     least_face_radius,
     roller_radius_range,
-    root_mean_square,
 )
 from synthesis.kinds.cam.design import (
     CamDesign,
@@ -49,6 +49,7 @@ from synthesis.kinds.cam.problem import (
     TranslatingFlat,
     TranslatingRoller,
 )
+from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (
     RollerLimits,
     Size,
@@ -69,18 +70,13 @@ from synthesis.kinds.cam.verification import (
 from synthesis.model.kind import Progress
 from synthesis.model.statement import Contradiction, ContradictionError
 
-FINEST = 12_000
-"""Points of a profile at most. Where a motion changes its acceleration within less than a step, points are put closer
-until the profile reproduces it; beyond this number the design fails its verification."""
+Real = NDArray[np.float64]
 
 SHAPE = {"curvature_ratio", "min_radius", "convex"}
 """Checks of curvature, which a profile of too few points can fail although its cam does not."""
 
 UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
 """Checks that more points do not mend."""
-
-REFINEMENTS = 8
-"""Times that points are put closer at most."""
 
 SMOOTHER = (6.0, 8.0, 11.0, 16.0)
 """Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
@@ -125,26 +121,13 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
     laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
     angle = max(laid, key=len)
-    mechanism = cam_mechanism(cam, angle, problem.closure == "form")
-    verification, measured = verify(problem, mechanism)
-    for _ in range(REFINEMENTS):
-        if measured is None or not np.isfinite(measured.off).all():
-            break
-        failed = {check.name for check in verification.checks if not check.passed}
-        if failed & UNSOUND:
-            break
-        if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
-            finer = refined(angle, measured.off, REPRODUCED)
-        elif failed & SHAPE and not _shape_fails(problem, cam):
-            finer = refined(angle, np.ones_like(angle), REPRODUCED)
-        else:
-            break
-        if len(finer) > FINEST:
-            break
-        angle = finer
-        progress(0.8, f"verifying with {len(angle)} points")
-        mechanism = cam_mechanism(cam, angle, problem.closure == "form")
-        verification, measured = verify(problem, mechanism)
+    mechanism, verification, measured = resolved(
+        angle,
+        partial(cam_mechanism, cam, groove=problem.closure == "form"),
+        partial(verify, problem),
+        partial(_closer, problem, cam),
+        progress,
+    )
     if measured is None:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
     design = CamDesign(
@@ -204,6 +187,17 @@ def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) ->
 def _radius(problem: CamProblem, composed: Composition) -> float:
     sized = _sized(problem, composed.program)
     return math.inf if sized is None else sized[0].size
+
+
+def _closer(problem: CamProblem, cam: Cam, angle: Real, measured: Measured, failed: set[str]) -> Real | None:
+    """Angles that stand closer where the profile's points are too few; None where more do not help."""
+    if failed & UNSOUND:
+        return None
+    if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
+        return refined(angle, measured.off, REPRODUCED)
+    if failed & SHAPE and not _shape_fails(problem, cam):
+        return refined(angle, np.ones_like(angle), REPRODUCED)
+    return None
 
 
 def _shape_fails(problem: CamProblem, cam: Cam) -> bool:
@@ -299,7 +293,6 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
 def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
     program = cam.program
     roller = cam.roller_radius
-    _, v, a, j = program.peaks
     angles = {}
     for name, where in (("rise", measured.rising), ("fall", ~measured.rising)):
         angles[name] = math.degrees(float(np.nanmax(measured.pressure_angle[where], initial=0.0))) if roller else None
@@ -312,12 +305,5 @@ def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
         min_concave_radius=None if math.isinf(measured.concave_radius) else measured.concave_radius,
         curvature_ratio=pitch_radius(measured, roller) / roller if roller else None,
         face_width=None if roller else measured.sweep,
-        peak_velocity=v.largest,
-        peak_acceleration=a.largest,
-        peak_jerk=j.largest,
-        rms_acceleration=root_mean_square(program, lambda motion: motion.a),
-        peak_inertia_torque=extremes(
-            lambda at: np.asarray(program.pieces.motion(at).v * program.pieces.motion(at).a), program.breaks
-        ).largest,
-        forces=forces_of(problem, program),
+        **motion_metrics(problem, program),
     )
