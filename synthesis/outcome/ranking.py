@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from synthesis.outcome.sifting import Verified
 
@@ -41,13 +41,13 @@ def quality(transmission_sine: float, reach: float, link_ratio: float) -> float:
     return transmission_sine / ((1.0 + (reach / BULKY) ** 2) * (1.0 + (link_ratio / UNEVEN) ** 2))
 
 
-def distinct(joints: NDArray[np.complex128], count: int, apart: float) -> list[int]:
+def distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:
     """Greedy choice of candidates that differ: each has some joint ``apart`` from where every one before has it.
 
     Parameters
     ----------
     joints : complex, shape (candidates, joints)
-        Joints in the first position, best candidate first.
+        Joints in the first position, best candidate first; there may be no candidates.
     count : int
         How many to choose at most.
     apart : float
@@ -58,7 +58,8 @@ def distinct(joints: NDArray[np.complex128], count: int, apart: float) -> list[i
     list of int
         Chosen rows, best first.
     """
-    return [int(k) for k in _distinct(np.ascontiguousarray(joints), count, apart)]
+    table = np.ascontiguousarray(joints, np.complex128)
+    return [int(k) for k in _distinct(table, count, apart)] if len(table) else []
 
 
 def widest_apart(joints: NDArray[np.complex128], count: int, aparts: Iterable[float]) -> list[int]:

@@ -1,9 +1,8 @@
 """Motion generation: dyads for both sides, all pairs screened, the best distinct ones verified.
 
 Where the positions and the client's choices determine both dyads there is one linkage, or a few, and each is verified.
-Where some freedom is left, that side is a cloud of dyads (:mod:`synthesis.kinds.motion.choices`), every pair is
-screened (:mod:`synthesis.kinds.motion.screening`), and the best that differ from one another are verified until enough
-have passed.
+Where some freedom is left all pairs (:mod:`synthesis.kinds.motion.pairs`) are screened, and the best that differ from
+one another are verified until enough have passed.
 
 Where both sides are stated alike they have the same dyads, as for five positions, and two of them make one fourbar that
 may be driven from either side. It counts as one candidate; each way of driving it that passes is an answer.
@@ -12,7 +11,6 @@ may be driven from either side. It counts as one candidate; each way of driving 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -22,73 +20,37 @@ from synthesis.kinds.motion.burmester import (
     branches,
     burmester_curve,
 )
-from synthesis.kinds.motion.choices import Cloud, side_dyads
-from synthesis.kinds.motion.demanded import Demanded, demanded
+from synthesis.kinds.motion.choices import Cloud
+from synthesis.kinds.motion.demanded import demanded
 from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
 from synthesis.kinds.motion.driver_dyad import undriven, with_driver_dyads
-from synthesis.kinds.motion.dyads import DyadConditions, Dyads
+from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.least_squares import solve_least_squares
-from synthesis.kinds.motion.problem import (
-    DyadChoices,
-    MotionProblem,
-    whole_point,
-)
-from synthesis.kinds.motion.screening import (
-    SHORTEST_LINK,
-    Screening,
-    demands,
-    screen,
-)
-from synthesis.kinds.motion.sections import SliderDyad
+from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.slider_search import (
     beside_sliders,
     solve_sliders,
     with_sliders,
 )
-from synthesis.kinds.motion.task import MotionTask, motion_task
-from synthesis.kinds.motion.verification import verify
+from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.linkage_statement import Constraints
-from synthesis.model.linkages import (
-    FourbarConfiguration,
-    fourbar_mechanism,
-    to_point,
-)
-from synthesis.outcome.ranking import ranked, widest_apart
+from synthesis.model.linkages import to_point
+from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting
 
 USABLE_TRANSMISSION_ANGLES = 30.0, 20.0, 10.0, 0.0
 """Degrees. Where the client sets no limit, a search offers linkages below each of these only if it met none that
 reaches it; practice wants 30 to 40 at least (Norton, Sec. 4.10)."""
 
-CLOUD_PAIR = 1200
-"""Dyads a side when both sides are open: 1.4 million pairs."""
-
-CLOUD_SINGLE = 40_000
-"""Dyads of an open side when the other is determined."""
-
-CURVE_PAIR, CURVE_SINGLE = 1600, 8000
-"""The same for dyads of Burmester's curve, which has one dimension to fill but reaches far."""
-
 CURVES_REACH = 4.0
 """Burmester's curves are returned up to this many task sizes from the body, or half as far again as designs reach."""
 
 CURVES_SAMPLES = 400
 """Samples of Burmester's curves that are returned, all branches together."""
-
-SHORTLIST = 4000
-"""Best-scored pairs from which distinct ones are chosen."""
-
-APART = 0.25 * 0.5 ** np.arange(6)
-"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
-
-ATTEMPTS = 5
-"""Pairs verified at most, for each design wanted: verification seldom refuses what screening has passed."""
-
-LEAST_ATTEMPTS = 100
-"""Pairs tried at least before a search gives up."""
 
 _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 """Reasons that hold whichever side drives."""
@@ -104,7 +66,7 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     if problem.slider is not None:
         return solve_sliders(problem, problem.slider, progress)
     progress(0.0, "finding dyads")
-    pairs = _pairs(problem)
+    pairs = pairs_of_dyads(problem)
     if pairs.lacking is not None:
         result = _without_dyads(pairs, *pairs.lacking)
     elif pairs.sampled:
@@ -116,104 +78,14 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     return result if result.designs else with_sliders(problem, result, progress)
 
 
-@dataclass(frozen=True)
-class _Pairs:
-    """The pairs of input and output dyads of one problem."""
-
-    problem: MotionProblem
-    task: MotionTask
-    clouds: tuple[Cloud, Cloud]
-
-    @property
-    def inputs(self) -> Dyads:
-        """Dyads of the input side."""
-        return self.clouds[0].dyads
-
-    @property
-    def outputs(self) -> Dyads:
-        """Dyads of the output side."""
-        return self.clouds[1].dyads
-
-    @property
-    def alike(self) -> bool:
-        """Whether both sides have the same dyads, of which each may drive."""
-        return self.clouds[0] is self.clouds[1]
-
-    @property
-    def sampled(self) -> bool:
-        """Whether some dyads are drawn from families."""
-        return any(cloud.sampled for cloud in self.clouds)
-
-    @property
-    def sliders(self) -> tuple[SliderDyad, ...]:
-        """Sliders among the dyads of sides that are determined."""
-        return self.clouds[0].sliders + self.clouds[1].sliders
-
-    @property
-    def lacking(self) -> tuple[str, Cloud] | None:
-        """The first side without any dyad."""
-        named = zip(("input", "output"), self.clouds, strict=True)
-        return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
-
-    def verified(self, target: Demanded, pair: tuple[int, int]) -> LinkageDesign | str | None:
-        """The linkage of an input and an output dyad, driven."""
-        o2, a = self._pivots(self.problem.input_side, self.inputs, pair[0])
-        o4, b = self._pivots(self.problem.output_side, self.outputs, pair[1])
-        joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
-        if not joints.has_no_link_below(SHORTEST_LINK):
-            return "degenerate"
-        return verify(self.problem, fourbar_mechanism(joints), target)
-
-    def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
-        """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
-        stated = side.fixed_pivot, side.moving_pivot
-        computed = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
-        wholes = map(whole_point, stated)
-        fixed, moving = (z if whole is None else whole for whole, z in zip(wholes, computed, strict=True))
-        return fixed, moving
-
-    def screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
-        """Verdicts on all pairs."""
-        wanted = demands(constraints, self.task, least_transmission_angle, self.problem.rank_by)
-        return screen(self.task, self.inputs, self.outputs, wanted)
-
-    def best(self, screening: Screening) -> list[tuple[int, int]]:
-        """The best-scored pairs that differ from one another, best first."""
-        count = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
-        score = screening.score.ravel()
-        shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
-        shortlist = shortlist[score[shortlist] > 0.0]
-        shortlist = shortlist[np.lexsort((shortlist, -score[shortlist]))]
-        i, j = np.unravel_index(shortlist, screening.score.shape)
-        joints = np.stack(
-            [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]], axis=1
-        )
-        return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
-
-
-def _pairs(problem: MotionProblem) -> _Pairs:
-    """The dyads of both sides; a side that alone is open gets more of them."""
-    task = motion_task(problem)
-    rng = np.random.default_rng(problem.seed)
-    sides = problem.input_side, problem.output_side
-    pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
-    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
-    alike = sides[0] == sides[1]
-    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
-    for k in (0, 1):
-        if clouds[k].sampled and not clouds[1 - k].sampled:
-            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
-    return _Pairs(problem, task, (clouds[0], clouds[1]))
-
-
-def _without_dyads(pairs: _Pairs, side: str, cloud: Cloud) -> MotionResult:
+def _without_dyads(pairs: Pairs, side: str, cloud: Cloud) -> MotionResult:
     """The answer when one side has no dyad at all, with the reason."""
     method = "dyad_search" if pairs.sampled else "exact"
     search = Sifting[LinkageDesign](pairs.problem).search(method, complete=cloud.complete)
     return _result(pairs, [], search, cloud.reason.replace("the side", f"the {side} side"))
 
 
-def _determined(pairs: _Pairs, progress: Progress) -> MotionResult:
+def _determined(pairs: Pairs, progress: Progress) -> MotionResult:
     """Verify every pair of a few determined dyads; of two that serve either side, both ways of driving."""
     sifting = Sifting[LinkageDesign](pairs.problem, DEFECTS | LENGTHS)
     target = demanded(pairs.problem)
@@ -230,7 +102,7 @@ def _determined(pairs: _Pairs, progress: Progress) -> MotionResult:
     return _result(pairs, designs, sifting.search("exact", complete=complete), summary)
 
 
-def _searched(pairs: _Pairs, progress: Progress) -> MotionResult:
+def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
     """Screen all pairs and verify the best distinct ones."""
     problem, target = pairs.problem, demanded(pairs.problem)
     count = len(pairs.inputs.fixed) * len(pairs.outputs.fixed)
@@ -259,7 +131,7 @@ def _searched(pairs: _Pairs, progress: Progress) -> MotionResult:
     return _result(pairs, designs, sifting.search("dyad_search"), _summary_of_search(sifting, sound))
 
 
-def _result(pairs: _Pairs, designs: list[LinkageDesign], search: Search, summary: str) -> MotionResult:
+def _result(pairs: Pairs, designs: list[LinkageDesign], search: Search, summary: str) -> MotionResult:
     return MotionResult(
         designs=designs,
         curves=_curves(pairs.task, designs),
@@ -268,7 +140,7 @@ def _result(pairs: _Pairs, designs: list[LinkageDesign], search: Search, summary
     )
 
 
-def _summary_of_determined(pairs: _Pairs, sifting: Sifting[LinkageDesign], *, complete: bool) -> str:
+def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign], *, complete: bool) -> str:
     count, accepted = sifting.candidates, sifting.accepted
     verb = "carries" if accepted == 1 else "carry"
     noun = "linkage" if count == 1 else "linkages"
@@ -302,7 +174,7 @@ def _summary_of_search(sifting: Sifting[LinkageDesign], sound: int) -> str:
     return text
 
 
-def _remarks(pairs: _Pairs) -> list[str]:
+def _remarks(pairs: Pairs) -> list[str]:
     """What a client should know of the dyads beside the linkages."""
     remarks = []
     names = ("side",) if pairs.alike else ("input side", "output side")

@@ -365,9 +365,7 @@ def _candidate(target: _Target, family: int, x: Real, sign: float, theta: Real) 
 
 def _distinct(candidates: list[_Candidate], count: int) -> list[int]:
     """Rows of candidates that differ, in their order."""
-    if not candidates:
-        return []
-    return distinct(np.array([list(_joints(candidate)) for candidate in candidates]), count, SAME_DESIGN)
+    return distinct([_joints(candidate) for candidate in candidates], count, SAME_DESIGN)
 
 
 def _running(candidates: list[_Candidate]) -> list[_Candidate]:

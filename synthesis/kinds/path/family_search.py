@@ -170,11 +170,7 @@ def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: in
             return "degenerate"
         return verify_path(problem, fourbar_mechanism(member))
 
-    members = (
-        [found[k] for k in distinct(np.array([list(one) for one in found]), DRIVEN, SAME_DESIGN * size)]
-        if found
-        else []
-    )
+    members = [found[k] for k in distinct(found, DRIVEN, SAME_DESIGN * size)]
     sifting = Sifting[PathDesign](problem)
     sifting.sift(reported(members, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
     progress(1.0, "verified")

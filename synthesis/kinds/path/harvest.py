@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
@@ -88,8 +86,6 @@ class Harvest(Sifting[PathDesign]):
 
 def that_differ(designs: list[PathDesign], count: int, apart: float) -> list[PathDesign]:
     """The first designs, at most ``count``, of which each has some joint ``apart`` from where all before have it."""
-    if not designs:
-        return []
     names = ("O2", "A", "B", "O4")
-    joints = np.array([[complex(*design.mechanism.skeleton.joints[name]) for name in names] for design in designs])
+    joints = [[complex(*design.mechanism.skeleton.joints[name]) for name in names] for design in designs]
     return [designs[n] for n in distinct(joints, count, apart)]

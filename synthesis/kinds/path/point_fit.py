@@ -397,10 +397,7 @@ def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: fl
 
 def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
     """The best candidates that differ."""
-    if not pool:
-        return []
-    joints = np.array([_joints(candidate) for candidate in pool])
-    return [pool[n] for n in distinct(joints, count, SAME_FIT)]
+    return [pool[n] for n in distinct([_joints(candidate) for candidate in pool], count, SAME_FIT)]
 
 
 def _joints(candidate: Candidate) -> Complex:

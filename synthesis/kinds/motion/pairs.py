@@ -1,0 +1,136 @@
+"""Pairs of an input and an output dyad: from clouds of dyads to the fourbars that are worth driving.
+
+A side whose dyads are determined has a few; one with some freedom left is a cloud, drawn from its families
+(:mod:`synthesis.kinds.motion.choices`). All pairs are screened (:mod:`synthesis.kinds.motion.screening`), and the best
+that differ from one another are driven.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from synthesis.kinds.motion.choices import Cloud, side_dyads
+from synthesis.kinds.motion.demanded import Demanded
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
+from synthesis.kinds.motion.sections import SliderDyad
+from synthesis.kinds.motion.task import MotionTask, motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage_statement import Constraints
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import widest_apart
+
+CLOUD_PAIR = 1200
+"""Dyads a side when both sides are open: 1.4 million pairs."""
+
+CLOUD_SINGLE = 40_000
+"""Dyads of an open side when the other is determined."""
+
+CURVE_PAIR, CURVE_SINGLE = 1600, 8000
+"""The same for dyads of Burmester's curve, which has one dimension to fill but reaches far."""
+
+SHORTLIST = 4000
+"""Best-scored pairs from which distinct ones are chosen."""
+
+APART = 0.25 * 0.5 ** np.arange(6)
+"""Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
+
+ATTEMPTS = 5
+"""Pairs verified at most, for each design wanted: verification seldom refuses what screening has passed."""
+
+LEAST_ATTEMPTS = 100
+"""Pairs tried at least before a search gives up."""
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """The pairs of input and output dyads of one problem."""
+
+    problem: MotionProblem
+    task: MotionTask
+    clouds: tuple[Cloud, Cloud]
+
+    @property
+    def inputs(self) -> Dyads:
+        """Dyads of the input side."""
+        return self.clouds[0].dyads
+
+    @property
+    def outputs(self) -> Dyads:
+        """Dyads of the output side."""
+        return self.clouds[1].dyads
+
+    @property
+    def alike(self) -> bool:
+        """Whether both sides have the same dyads, of which each may drive."""
+        return self.clouds[0] is self.clouds[1]
+
+    @property
+    def sampled(self) -> bool:
+        """Whether some dyads are drawn from families."""
+        return any(cloud.sampled for cloud in self.clouds)
+
+    @property
+    def sliders(self) -> tuple[SliderDyad, ...]:
+        """Sliders among the dyads of sides that are determined."""
+        return self.clouds[0].sliders + self.clouds[1].sliders
+
+    @property
+    def lacking(self) -> tuple[str, Cloud] | None:
+        """The first side without any dyad."""
+        named = zip(("input", "output"), self.clouds, strict=True)
+        return next(((name, cloud) for name, cloud in named if not len(cloud.dyads.fixed)), None)
+
+    def verified(self, target: Demanded, pair: tuple[int, int]) -> LinkageDesign | str | None:
+        """The linkage of an input and an output dyad, driven."""
+        o2, a = self._pivots(self.problem.input_side, self.inputs, pair[0])
+        o4, b = self._pivots(self.problem.output_side, self.outputs, pair[1])
+        joints = FourbarConfiguration(o2, a, b, o4, self.task.origin)
+        if not joints.has_no_link_below(SHORTEST_LINK):
+            return "degenerate"
+        return verify(self.problem, fourbar_mechanism(joints), target)
+
+    def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
+        """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
+        stated = side.fixed_pivot, side.moving_pivot
+        computed = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
+        wholes = map(whole_point, stated)
+        fixed, moving = (z if whole is None else whole for whole, z in zip(wholes, computed, strict=True))
+        return fixed, moving
+
+    def screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
+        """Verdicts on all pairs."""
+        wanted = demands(constraints, self.task, least_transmission_angle, self.problem.rank_by)
+        return screen(self.task, self.inputs, self.outputs, wanted)
+
+    def best(self, screening: Screening) -> list[tuple[int, int]]:
+        """The best-scored pairs that differ from one another, best first."""
+        count = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
+        score = screening.score.ravel()
+        shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
+        shortlist = shortlist[score[shortlist] > 0.0]
+        shortlist = shortlist[np.lexsort((shortlist, -score[shortlist]))]
+        i, j = np.unravel_index(shortlist, screening.score.shape)
+        joints = np.stack(
+            [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]], axis=1
+        )
+        return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
+
+
+def pairs_of_dyads(problem: MotionProblem) -> Pairs:
+    """The pairs of the dyads of both sides; a side that alone is open gets more of them."""
+    task = motion_task(problem)
+    rng = np.random.default_rng(problem.seed)
+    sides = problem.input_side, problem.output_side
+    pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
+    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
+    alike = sides[0] == sides[1]
+    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
+    for k in (0, 1):
+        if clouds[k].sampled and not clouds[1 - k].sampled:
+            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
+    return Pairs(problem, task, (clouds[0], clouds[1]))
