@@ -13,6 +13,12 @@ from synthesis.model.statement import StatedProblem
 Progress = Callable[[float, str], None]
 """Called with the fraction done, 0 to 1, and a short message."""
 
+
+def part_of(progress: Progress, begin: float, end: float) -> Progress:
+    """The progress of a part of the work, which begins and ends at these shares of the whole."""
+    return lambda share, message: progress(begin + (end - begin) * share, message)
+
+
 P = TypeVar("P", bound=StatedProblem)
 R = TypeVar("R", bound=Result[Any])
 

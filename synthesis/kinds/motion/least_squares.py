@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -36,6 +35,7 @@ from synthesis.kinds.motion.screening import SOUND, screen
 from synthesis.kinds.motion.screening import demands as screening_demands
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
+from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import (
     FourbarConfiguration,
@@ -46,7 +46,6 @@ from synthesis.model.linkages import (
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting
 
-Progress = Callable[[float, str], None]
 Real = NDArray[np.float64]
 
 SINGLES = 40

@@ -35,7 +35,7 @@ from synthesis.kinds.motion.slider_search import (
 )
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.linkage_statement import Constraints
 from synthesis.model.linkages import to_point
@@ -59,7 +59,7 @@ _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Solve a motion-generation problem, each way of asking by its own method."""
     if problem.driver is not None:
-        bare = solve_motion(undriven(problem), lambda fraction, message: progress(0.8 * fraction, message))
+        bare = solve_motion(undriven(problem), part_of(progress, 0.0, 0.8))
         return with_driver_dyads(problem, bare, progress)
     if problem.approximate:
         return solve_least_squares(problem, progress)

@@ -23,7 +23,7 @@ from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, Sourc
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import (
     FourbarMechanism,
 )
@@ -56,7 +56,7 @@ class _Fourbar(NamedTuple):
 def solve_parallel_motion(problem: ParallelMotionProblem, progress: Progress) -> ParallelMotionResult:
     """Solve a problem of parallel motion."""
     if problem.path is not None:
-        found = solve_path(problem.path, lambda share, words: progress(PATH_SHARE * share, words))
+        found = solve_path(problem.path, part_of(progress, 0.0, PATH_SHARE))
         mechanisms = [design.mechanism for design in found.designs]
         fourbars = list(_of_path([one for one in mechanisms if isinstance(one, FourbarMechanism)]))
     else:

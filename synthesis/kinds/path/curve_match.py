@@ -57,7 +57,7 @@ from synthesis.kinds.path.point_fit import (
 )
 from synthesis.kinds.path.problem import PathPoint, PathProblem
 from synthesis.kinds.path.verify_curve import distances, verify_curve
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LengthLimits
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct
@@ -204,14 +204,11 @@ def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) 
     fits = [target.points, target.steps] if len(target.points) < SHAPE_POINTS else [target.points]
     found = []
     for n, along in enumerate(fits):
-
-        def told(share: float, message: str, n: int = n) -> None:
-            progress(0.8 * (n + share) / len(fits), message)
-
+        part = part_of(progress, 0.8 * n / len(fits), 0.8 * (n + 1) / len(fits))
         points = [PathPoint(x=float(z.real), y=float(z.imag)) for z in target.centre + target.size * along]
         changes = {"method": "least_squares", "points": points, "constraints": demands}
         task = point_task(fit := problem.model_copy(update=changes))
-        for candidate in fitted(fit, task, np.random.default_rng(problem.seed), told):
+        for candidate in fitted(fit, task, np.random.default_rng(problem.seed), part):
             joints = configuration_of(candidate, task)
             if joints is not None:
                 found.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))

@@ -9,7 +9,6 @@ limits of their own to the client's: a good transmission angle and links that ca
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
@@ -22,8 +21,7 @@ from synthesis.kinds.path.point_fit import (
 )
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
-
-Progress = Callable[[float, str], None]
+from synthesis.model.kind import Progress, part_of
 
 ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 20.0), None)
 """What is asked of the linkages beyond the client's limits, round by round."""
@@ -45,11 +43,8 @@ def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | No
     found: list[PathDesign | None] = []
     sound = 0
     for n, usable in enumerate(ROUNDS):
-
-        def told(share: float, message: str, n: int = n) -> None:
-            progress((n + share) / len(ROUNDS), message)
-
-        for candidate in fitted(problem, task, rng, told, finalists=DRAWN, usable=usable):
+        part = part_of(progress, n / len(ROUNDS), (n + 1) / len(ROUNDS))
+        for candidate in fitted(problem, task, rng, part, finalists=DRAWN, usable=usable):
             if math.sqrt(2.0 * candidate.cost / len(task.rows)) > EXACT:
                 continue
             mechanism = mechanism_of(candidate, task)

@@ -43,6 +43,7 @@ from synthesis.kinds.path.point_starts import (
 )
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
+from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.numerics.augmented_lagrangian import hold
@@ -55,7 +56,6 @@ from synthesis.outcome.sifting import reported
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Whole = NDArray[np.int64]
-Progress = Callable[[float, str], None]
 
 PORTION = 16
 """Starts that a thread takes at a time; some milliseconds."""

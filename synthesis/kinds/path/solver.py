@@ -33,7 +33,7 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
 from synthesis.kinds.path.verify_cognates import with_cognates
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import follow, refine
 
@@ -69,11 +69,11 @@ def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     if problem.prescribed:
         return solve_timed(problem, progress)
     if len(problem.points) < NINE:
-        near = solve_family(problem, lambda share, message: progress(FIRST_PART * share, message))
+        near = solve_family(problem, part_of(progress, 0.0, FIRST_PART))
         if near.search.accepted:
             progress(1.0, "verified")
             return near
-        return _solve_nine(problem, lambda share, message: progress(FIRST_PART + (1.0 - FIRST_PART) * share, message))
+        return _solve_nine(problem, part_of(progress, FIRST_PART, 1.0))
     return _solve_nine(problem, progress)
 
 

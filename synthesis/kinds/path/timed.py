@@ -17,7 +17,6 @@ twelve fourbars at most, and with each stands the cognate whose input turns with
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -30,11 +29,11 @@ from synthesis.kinds.path.design import PathResult, TimedDyads
 from synthesis.kinds.path.exact_fit import exact_fits
 from synthesis.kinds.path.harvest import APART, SHORTEST_LINK, Harvest
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.kind import Progress
 from synthesis.model.linkages import FourbarConfiguration
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Progress = Callable[[float, str], None]
 
 FIVE = 5
 
