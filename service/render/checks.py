@@ -1,25 +1,34 @@
-"""The block of a design's checks, as the answer has them."""
+"""The checks of a design on its sheet: each number with the unit of what it measures, and in words how many fail."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from service.render.page import blocks, sheet
+from service.render.page.numbers import length, small
 from service.render.page.svg import clean
-from synthesis.model.answer import Check, Verification
+from service.units import symbols
+from synthesis.model.answer import Verification
+from synthesis.model.statement import StatedProblem
+
+ROUNDING = 1e-3
+"""Values below are residuals, of which two digits tell all; of others four are shown."""
 
 
-def checks(verification: Verification, written: Callable[[Check, float], str]) -> blocks.Block:
-    """Every check of a design; ``written`` says how the numbers of a check are."""
-
-    def amount(check: Check, value: float | None) -> str:
-        return "" if value is None else written(check, value)
-
+def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
+    """Every check of a design, in the units of its problem."""
+    units = {str(dimension): symbol for dimension, symbol in symbols(problem).items()}
     listed = []
     for check in verification.checks:
-        limit = "" if check.value is None else amount(check, check.limit)
-        listed.append(blocks.CheckRow(check.name, check.passed, amount(check, check.value), limit))
+        unit = "" if check.dimension is None else units[check.dimension]
+        limit = None if check.value is None else check.limit
+        listed.append(blocks.CheckRow(check.name, check.passed, _amount(check.value, unit), _amount(limit, unit)))
     return blocks.checks(listed)
+
+
+def _amount(value: float | None, unit: str) -> str:
+    if value is None:
+        return ""
+    digits = small(value) if abs(value) < ROUNDING else length(value, digits=4)
+    return f"{digits}{unit}" if unit in ("", "°") else f"{digits} {unit}"
 
 
 def verdict(verification: Verification) -> str:

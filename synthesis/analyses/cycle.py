@@ -39,19 +39,27 @@ def listed_branches(mechanism: Mechanism) -> list[Branch]:
     return branches(mechanism)
 
 
+def branch_of(mechanism: Mechanism) -> Branch | None:
+    """The branch of the reference; None where it stands at a toggle of several, or the circuits cannot be listed."""
+    try:
+        return holding_reference(mechanism, listed_branches(mechanism))
+    except TopologyError:
+        return None
+
+
 def cycle_of(mechanism: Mechanism) -> tuple[float, float]:
-    """First and last input of the cycle, radians, or lengths along the input slide.
+    """First and last input of the cycle, radians, or lengths along the input slide; see :func:`cycle_along`."""
+    return cycle_along(mechanism, branch_of(mechanism))
+
+
+def cycle_along(mechanism: Mechanism, here: Branch | None) -> tuple[float, float]:
+    """First and last input of the cycle on the reference's branch, radians, or lengths along the input slide.
 
     From the reference through a full turn (or as many as the gears need) where the input is a crank, else from toggle
-    to toggle of the reference's branch. Where the branch is not known (its reference is at a toggle of several, or the
-    circuits cannot be listed) a full turn too, and as far as the mechanism is wide where a slider drives it: ``valid``
-    then tells where the mechanism exists.
+    to toggle of the reference's branch. Where the branch is not known a full turn too, and as far as the mechanism is
+    wide where a slider drives it: ``valid`` then tells where the mechanism exists.
     """
     at = float(mechanism.reference_input)
-    try:
-        here = holding_reference(mechanism, listed_branches(mechanism))
-    except TopologyError:
-        here = None
     if (here is None or here.full) and mechanism.driven_by_slide:
         places = np.array([complex(joint) for joint in mechanism.joints.values()])
         half = 0.5 * float(np.abs(places[:, None] - places).max())

@@ -23,6 +23,7 @@ from service.render.page.svg import (
 )
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_answer import (
     LinkageDesign,
     LinkageMetrics,
@@ -87,7 +88,7 @@ def _case(
             checks=[
                 Check(name="reaches_targets", passed=True, value=1e-15, limit=1e-9),
                 Check(name="same_branch", passed=passed),
-                Check(name="transmission_angle", passed=True, value=41.23, limit=30.0),
+                Check(name="transmission_angle", passed=True, value=41.23, limit=30.0, dimension=ANGLE),
             ],
         ),
         metrics=LinkageMetrics(

@@ -13,7 +13,6 @@ from service.render.cam.sheet import (
     in_two_columns,
     motion_diagrams,
     segments_block,
-    written_check,
 )
 from service.render.cam.view import STYLES
 from service.render.checks import checks, verdict
@@ -66,7 +65,7 @@ def barrel_sheet(design: BarrelCamDesign, problem: CamProblem, title: str) -> st
     ends = [bottom]
     columns: list[list[Block]] = [
         [_dimensions(design, unit), segments_block(design)],
-        [checks(design.verification, written_check)],
+        [checks(design.verification, problem)],
         [_metrics(design), *([forces_block(design)] if design.metrics.forces else [])],
     ]
     room = (FULL - 2.0 * GUTTER) / 3.0

@@ -22,7 +22,6 @@ from service.render.page.numbers import (
     NONE,
     angle,
     length,
-    small,
 )
 from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, sheet, stacked
 from service.render.page.svg import (
@@ -52,7 +51,6 @@ from synthesis.kinds.cam.design import (
     ProgramTable,
 )
 from synthesis.kinds.cam.problem import CamProblem
-from synthesis.model.answer import Check
 
 DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0
 """Heights of the drawing, of a diagram and of the key below the drawing, pixels."""
@@ -66,9 +64,6 @@ FOLLOWERS = {
 
 ROTATIONS = {"ccw": "counter-clockwise", "cw": "clockwise"}
 
-DEGREES = frozenset({"pressure_angle", "pressure_angle_rise", "pressure_angle_fall"})
-"""Checks whose value is an angle."""
-
 
 def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a complete SVG document."""
@@ -77,7 +72,7 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
         [
             _dimensions(design, scene, unit),
             segments_block(design),
-            checks(design.verification, written_check),
+            checks(design.verification, problem),
             _metrics(design, unit),
             *([forces_block(design)] if design.metrics.forces else []),
         ]
@@ -204,13 +199,6 @@ def forces_block(design: CamDesign | BarrelCamDesign) -> Block:
         ("natural frequency : speed", length(found.frequency_ratio, digits=4)),
     ]
     return blocks.rows("Forces", entries)
-
-
-def written_check(check: Check, value: float) -> str:
-    """A measured value of a check."""
-    if check.name in DEGREES:
-        return angle(value, 2)
-    return small(value) if abs(value) < 1e-3 else length(value, digits=5)
 
 
 def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tuple[list[Element], float]:

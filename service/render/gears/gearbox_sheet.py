@@ -13,7 +13,7 @@ from typing import NamedTuple
 from service.render.checks import checks, verdict
 from service.render.gears.marks import COLOURS, PAPER, panel_of
 from service.render.page import blocks
-from service.render.page.numbers import length, small
+from service.render.page.numbers import length
 from service.render.page.sheet import EDGE, TOP, beside, sheet, stacked
 from service.render.page.svg import (
     Box,
@@ -32,7 +32,6 @@ from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
-from synthesis.model.answer import Check
 
 COLUMN, HEIGHT = 400.0, 620.0
 """Width of the tables, and height of the diagram, pixels."""
@@ -73,7 +72,7 @@ def gearbox_sheet(design: GearboxDesign, problem: GearboxProblem, title: str) ->
         (f"n{k}  {length(row.nominal, digits=5)}", f"{length(row.speed, digits=6)}  ({100.0 * row.error:+.2f} %)")
         for k, row in enumerate(metrics.speeds, 1)
     ]
-    tables += [blocks.rows("Speeds, nominal and reached", speeds), checks(design.verification, _written)]
+    tables += [blocks.rows("Speeds, nominal and reached", speeds), checks(design.verification, problem)]
     words = f"Gearbox {mechanism.formula}, {len(metrics.speeds)} speeds; {verdict(design.verification)}"
     return _sheet(title or "Gearbox", words, _diagram(names, shafts, rays), tables)
 
@@ -108,15 +107,11 @@ def layshaft_sheet(design: LayshaftDesign, problem: LayshaftProblem, title: str)
                 ("shaft distance", f"{length(mechanism.centre_distance)} {problem.length_unit}"),
             ],
         ),
-        checks(design.verification, _written),
+        checks(design.verification, problem),
     ]
     words = f"Layshaft gearbox, {len(mechanism.gears)} forward gears; {verdict(design.verification)}"
     diagram = _diagram(["input", "layshaft", "main shaft"], [[1.0], [head], sorted(set(main))], rays)
     return _sheet(title or "Layshaft gearbox", words, diagram, tables)
-
-
-def _written(check: Check, value: float) -> str:
-    return small(value) if check.name in ("speeds", "ratios") else length(value, digits=4)
 
 
 def _sheet(heading: str, words: str, diagram: Element, tables: Sequence[blocks.Block]) -> str:

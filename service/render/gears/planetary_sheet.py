@@ -31,7 +31,6 @@ from service.render.page.symbols import (
 )
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.model.answer import Check
 
 MARGIN = 24.0
 """Room in a panel around what is shown, and more of it below, pixels."""
@@ -128,7 +127,7 @@ def _tables(design: PlanetaryDesign, problem: PlanetaryProblem) -> list[blocks.B
             ],
         ),
         blocks.rows("Speeds over the input's", speeds),
-        checks(design.verification, _written),
+        checks(design.verification, problem),
         blocks.rows(
             "Metrics",
             [
@@ -140,7 +139,3 @@ def _tables(design: PlanetaryDesign, problem: PlanetaryProblem) -> list[blocks.B
             ],
         ),
     ]
-
-
-def _written(check: Check, value: float) -> str:
-    return small(value) if check.name == "ratio" else length(value, digits=4)

@@ -33,7 +33,6 @@ from service.render.page.symbols import (
 )
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.model.answer import Check
 
 HEIGHTS = (420.0, 860.0)
 """Least and greatest height of the drawing, pixels."""
@@ -156,7 +155,7 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Plac
         if any(mesh.interferes for mesh in meshes):
             entries.append(("interference", "yes; see suggested shift"))
         found.append(blocks.rows(f"Stage {number}", entries))
-    found.append(checks(design.verification, _written))
+    found.append(checks(design.verification, problem))
     found.append(
         blocks.rows(
             "Metrics",
@@ -169,7 +168,3 @@ def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[Plac
         )
     )
     return found
-
-
-def _written(check: Check, value: float) -> str:
-    return small(value) if check.name in ("ratio_error", "coaxial") else length(value)

@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from service.render.linkage.scene import scene_of
+from service.render.linkage.motion import DrivenLinkage
 from service.render.page import table
+from synthesis.kinds.function.design import FunctionDesign
+from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.linkage_statement import LinkageProblem
 
 STEPS = 360
@@ -21,10 +23,10 @@ STEPS = 360
 
 def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
     """The motion of a linkage design; numbers in full precision, nothing where there is none."""
-    scene, unit = scene_of(design), problem.length_unit
-    slide = scene.mechanism.driven_by_slide
-    inputs = np.linspace(scene.low, scene.high, STEPS + 1)
-    motion = scene.driven(inputs, order=2)
+    linkage, unit = DrivenLinkage.of(design), problem.length_unit
+    slide = linkage.mechanism.driven_by_slide
+    inputs = np.linspace(*linkage.cycle, STEPS + 1)
+    motion = linkage.driven(inputs, order=2)
     by = unit if slide else "rad"
     columns = {f"input [{unit}]" if slide else "input_angle [deg]": inputs if slide else np.degrees(inputs)}
     for name, turned in motion.angles.items():
@@ -39,3 +41,11 @@ def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
         columns[f"{name}_transmission_angle [deg]"] = np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0)))
     remark = f"{design.mechanism.type}; rates are derivatives by the input, in {by}"
     return table.numbers([title or "Linkage", remark], columns)
+
+
+def function_table(design: FunctionDesign, problem: FunctionProblem, title: str) -> str:
+    """Of a function generator: value of the input, angle of the input link, and structural error there."""
+    curve = design.structural_error.curve
+    unit = "deg" if design.structural_error.unit == "degrees" else problem.length_unit
+    rows = zip(curve.input, curve.input_angle, curve.error, strict=True)
+    return table.table(["input", "input_angle_deg", f"structural_error_{unit}"], rows)

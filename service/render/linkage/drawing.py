@@ -7,15 +7,20 @@ and the used part of one is heavy.
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinematics.linkage.planar.drive import MechanismMotion, drive
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.linkage.planar.drive import MechanismMotion
+from kinematics.linkage.planar.mechanism import GROUND, Slide
+from service.render.linkage.motion import DrivenLinkage, Real
 from service.render.page.labels import Labels
+from service.render.page.sheet import fitted
 from service.render.page.svg import (
     Box,
     Element,
@@ -41,7 +46,6 @@ from service.render.page.symbols import (
     scale_bar,
 )
 from service.render.page.symbols import GROUND as GROUND_COLOUR
-from synthesis.analyses.cycle import cycle_of
 from synthesis.kinds.motion.problem import Position
 from synthesis.kinds.path.problem import PathPoint
 
@@ -54,6 +58,9 @@ BLOCK = (22.0, 13.0)
 RAIL = 0.12
 """A slide's rail goes on beyond the places of its block by this share of the drawing's diagonal."""
 
+MARGIN, FOOT = 50.0, 26.0
+"""Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+
 SAMPLES = 361
 """Points of a path."""
 
@@ -61,57 +68,131 @@ Style = dict[str, str | float | None]
 
 
 class Scene:
-    """A linkage at inputs (radians, or lengths along the input slide), and the paths of some joints over its cycle.
+    """A linkage at inputs, and the paths of some joints over its cycle.
 
-    ``used``, where a joint is named, is that joint's path from the first input to the last; ``low`` and ``high`` are
-    the ends of the cycle. ``target`` is a curve that is to be drawn as a whole.
+    ``used``, where a joint is named, is that joint's path from the first input to the last. ``target`` is a curve that
+    is to be drawn as a whole. Joints that are ``hidden`` are not drawn.
     """
 
     def __init__(
         self,
-        mechanism: Mechanism,
-        inputs: NDArray[np.float64],
+        linkage: DrivenLinkage,
+        inputs: Real,
         traced: Sequence[str],
         used: str | None = None,
         positions: Sequence[Position | PathPoint] = (),
         target: Points | None = None,
+        hidden: Set[str] = frozenset(),
     ) -> None:
-        self.mechanism, self.inputs, self.positions, self.target = mechanism, inputs, positions, target
-        self.at = self.driven(inputs)
-        self.low, self.high = cycle_of(mechanism)
-        cycle = self.driven(np.linspace(self.low, self.high, SAMPLES))
-        self.paths: list[Points] = [cycle.joints[joint][0] for joint in traced]
+        self.linkage, self.mechanism, self.inputs = linkage, linkage.mechanism, inputs
+        self.positions, self.target, self.hidden = positions, target, hidden
+        self.at = linkage.driven(inputs)
+        self.paths: list[Points] = [linkage.path(joint, *linkage.cycle, SAMPLES) for joint in traced]
         self.used: Points = np.empty(0, np.complex128)
         if used is not None:
-            self.used = self.driven(np.linspace(inputs[0], inputs[-1], SAMPLES)).joints[used][0]
+            self.used = linkage.path(used, float(inputs[0]), float(inputs[-1]), SAMPLES)
 
-    def driven(self, inputs: NDArray[np.float64], order: int = 0) -> MechanismMotion:
-        """The linkage at inputs, with derivatives by the input up to an order."""
-        return drive(self.mechanism, inputs, order=order)
+    @classmethod
+    def of(cls, design: Any) -> Scene:
+        """The linkage of a design at its targets, and the path of its point P where it has one."""
+        linkage = DrivenLinkage.of(design)
+        inputs = linkage.targets(design)
+        traced = ["P"] if "P" in linkage.mechanism.joints else []
+        return cls(linkage, inputs, traced, "P" if traced and len(inputs) > 1 else None)
 
     def joints(self, k: int) -> dict[str, complex]:
         """Joints at an input; empty where the linkage cannot be assembled there."""
         if not self.at.valid[k]:
             return {}
-        return {name: complex(jet[0, k]) for name, jet in self.at.joints.items()}
+        return {name: complex(jet[0, k]) for name, jet in self.at.joints.items() if name not in self.hidden}
+
+    def links(self, joints: Mapping[str, complex]) -> Iterator[tuple[str, list[complex]]]:
+        """Moving links that join two joints or more, with the places of these."""
+        for name, listed in self.mechanism.links.items():
+            corners = [joints[joint] for joint in listed if joint in joints]
+            if name != GROUND and len(corners) > 1:
+                yield name, corners
+
+    def pivots(self) -> list[complex]:
+        """Fixed pivots that are drawn."""
+        listed = (name for name in self.mechanism.links[GROUND] if name not in self.hidden)
+        return [complex(self.mechanism.joints[name]) for name in listed]
+
+    def places(self) -> Points:
+        """All joints at all inputs."""
+        return np.array([z for k in range(len(self.inputs)) for z in self.joints(k).values()])
 
     def box(self) -> Box:
         """What the drawing must show."""
-        places = [z for k in range(len(self.inputs)) for z in self.joints(k).values()]
-        places += [position.point for position in self.positions]
-        places += [] if self.target is None else list(self.target)
-        return Box.around(np.concatenate([np.array(places), self.used, *self.paths]))
+        demanded = [position.point for position in self.positions]
+        target = [] if self.target is None else list(self.target)
+        return Box.around(np.concatenate([self.places(), demanded, target, self.used, *self.paths]))
 
-    def lines(self, k: int) -> list[tuple[str, complex, float]]:
-        """Slides at a target: the joint, and the line's direction by a point of it and its angle, radians."""
-        found = []
+    def slides(self, k: int) -> list[tuple[str, complex, float]]:
+        """Slides at an input: the joint, its place, and the angle of its line, radians."""
         joints = self.joints(k)
-        for slide in self.mechanism.slides:
-            turned = 0.0
-            if slide.link != GROUND:
-                turned = float(self.at.angles[slide.link][0, k] - self.mechanism.link_angle(slide.link))
-            found.append((slide.joint, joints[slide.joint], float(slide.angle) + turned))
-        return found
+        slides = self.mechanism.slides
+        return [(slide.joint, joints[slide.joint], self.slide_angle(slide, self.at, k)) for slide in slides]
+
+    def slide_angle(self, slide: Slide, motion: MechanismMotion, k: int) -> float:
+        """Angle of a slide's line at an input of a motion, radians."""
+        if slide.link == GROUND:
+            return float(slide.angle)
+        return float(slide.angle + motion.angles[slide.link][0, k] - self.mechanism.link_angle(slide.link))
+
+    def rails(self, beyond: float) -> Iterator[tuple[Slide, complex, complex]]:
+        """Lines of slides, with both ends: on the ground over all places of their blocks, on a link at the first input.
+
+        They go on beyond these places by a length.
+        """
+        first = self.joints(0)
+        for slide in self.mechanism.slides if first else ():
+            if slide.link == GROUND:
+                listed = [self.joints(k) for k in range(len(self.inputs))]
+                places = np.array([joints[slide.joint] for joints in listed if joints])
+            else:
+                places = np.array([first[joint] for joint in (slide.joint, *self.mechanism.links[slide.link])])
+            along = complex(np.exp(1j * float(slide.angle)))
+            way = ((places - places[0]) * along.conjugate()).real
+            low, high = float(way.min()) - beyond, float(way.max()) + beyond
+            yield slide, complex(places[0] + along * low), complex(places[0] + along * high)
+
+
+def around(corners: Sequence[complex]) -> list[complex]:
+    """Corners of a plate in their order around its middle."""
+    centre = sum(corners) / len(corners)
+    return sorted(corners, key=lambda z: math.atan2((z - centre).imag, (z - centre).real))
+
+
+def block_corners(at: complex, turned: float, width: float, height: float) -> list[complex]:
+    """Corners of a slide's block that is turned by an angle."""
+    along = cmath.rect(0.5, turned)
+    return [at + along * complex(x * width, y * height) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+
+
+Overlay = Callable[[Viewport], list[Element]]
+
+
+@dataclass(frozen=True)
+class PlanarPicture:
+    """The linkage of a scene in one panel, and what is demanded drawn over it."""
+
+    scene: Scene
+    unit: str
+    overlay: Overlay = lambda view: []
+    shown: Box | None = None
+    heights: tuple[float, float] = (420.0, 720.0)
+    wide: bool = False
+
+    @property
+    def box(self) -> Box:
+        """What it shows."""
+        return self.shown or self.scene.box()
+
+    def draw(self, width: float) -> tuple[list[Element], float]:
+        """The panel, and the y below it."""
+        view = fitted(self.box, width, self.heights, MARGIN, FOOT)
+        return [drawing(self.scene, view, self.unit).add(*self.overlay(view))], view.panel.high
 
 
 def framed(panel: Box) -> Element:
@@ -143,6 +224,9 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
         group.add(path(view.shown(points), stroke=CURVE, stroke_width=0.9))
     group.add(path(view.shown(shown.used), stroke=CURVE, stroke_width=2.2))
     labels.avoid(view.shown(shown.used), 1.0)
+    ground: Style = {"stroke": GROUND_COLOUR, "stroke_width": 1.3, "stroke_dasharray": "12 4 2 4"}
+    for start, end in pairwise(view.point(z) for z in shown.pivots()):
+        group.add(line(start, end, data_link=GROUND, **ground))
     group.add(*_rails(shown, view))
     for k in range(len(shown.inputs) - 1, -1, -1):
         group.add(_configuration(shown, view, k, labels))
@@ -167,23 +251,10 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
 
 
 def _rails(shown: Scene, view: Viewport) -> list[Element]:
-    """Rails of the slides: on the ground over all places of their blocks, on a link at the first target."""
     drawn = []
-    beyond = RAIL * shown.box().diagonal
-    first = shown.joints(0)
-    for slide in shown.mechanism.slides:
-        if not first:
-            continue
-        if slide.link == GROUND:
-            listed = [shown.joints(k) for k in range(len(shown.inputs))]
-            places = np.array([joints[slide.joint] for joints in listed if joints])
-        else:
-            places = np.array([first[joint] for joint in (slide.joint, *shown.mechanism.links[slide.link])])
-        along = complex(np.exp(1j * float(slide.angle)))
-        way = ((places - places[0]) * along.conjugate()).real
-        ends = [places[0] + along * t for t in (float(way.min()) - beyond, float(way.max()) + beyond)]
+    for slide, low, high in shown.rails(RAIL * shown.box().diagonal):
         style: Style = {"stroke": GROUND_COLOUR if slide.link == GROUND else COUPLER, "stroke_dasharray": "9 3 2 3"}
-        drawn.append(line(view.point(ends[0]), view.point(ends[1]), stroke_width=1.4, data_rail=slide.joint, **style))
+        drawn.append(line(view.point(low), view.point(high), stroke_width=1.4, data_rail=slide.joint, **style))
     return drawn
 
 
@@ -194,13 +265,12 @@ def _configuration(shown: Scene, view: Viewport, k: int, labels: Labels) -> Elem
     group = element("g", data_configuration=f"{k + 1}")
     if not joints:
         return group
-    for name, listed in shown.mechanism.links.items():
-        if name != GROUND:
-            corners = [joints[joint] for joint in listed]
-            group.add(_link(name, corners, first, shown.mechanism.input == name))
-            labels.avoid([_closed(corners)], 2.0 if first else 0.4)
-    for joint, place, turned in shown.lines(k):
-        group.add(_block(view.point(place), turned, joint, first))
+    for name, corners in shown.links(joints):
+        group.add(_link(name, corners, first, shown.mechanism.input == name))
+        labels.avoid([np.array([*corners, corners[0]])], 2.0 if first else 0.4)
+    for joint, place, turned in shown.slides(k):
+        corners = block_corners(view.point(place), -turned, *BLOCK)
+        group.add(polygon(corners, fill="#fff", stroke=OUTPUT if first else PALE, stroke_width=1.8, data_slide=joint))
     if first:
         for name, place in joints.items():
             fixed = name in shown.mechanism.links[GROUND]
@@ -218,20 +288,5 @@ def _link(name: str, corners: list[complex], first: bool, driven: bool) -> Eleme
     style: Style = {"stroke": colour if first else PALE, "stroke_width": LINK_WIDTH if first else THIN}
     if len(corners) == 2:
         return line(corners[0], corners[1], stroke_linecap="round", data_link=name, **style)
-    centre = sum(corners) / len(corners)
-    around = sorted(corners, key=lambda z: math.atan2((z - centre).imag, (z - centre).real))
     fill: Style = {"fill": colour, "fill_opacity": 0.14} if first else {"fill": "none"}
-    return polygon(around, stroke_linejoin="round", data_link=name, **{**style, **fill, "stroke_width": THIN})
-
-
-def _closed(corners: list[complex]) -> Points:
-    return np.array([*corners, corners[0]])
-
-
-def _block(at: complex, turned: float, joint: str, first: bool) -> Element:
-    """A slide's block, along its line."""
-    along = complex(math.cos(turned), -math.sin(turned))
-    half = [complex(x * BLOCK[0], y * BLOCK[1]) / 2.0 for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    colour = OUTPUT if first else PALE
-    corners = [at + corner * along for corner in half]
-    return polygon(corners, fill="#fff", stroke=colour, stroke_width=1.8, data_slide=joint)
+    return polygon(around(corners), stroke_linejoin="round", data_link=name, **{**style, **fill, "stroke_width": THIN})

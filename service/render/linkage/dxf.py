@@ -21,7 +21,6 @@ Coordinates are the problem's own, in its unit, which the header names.
 from __future__ import annotations
 
 import cmath
-import math
 from itertools import pairwise
 from typing import Any
 
@@ -31,12 +30,8 @@ from ezdxf.math import Matrix44, global_bspline_interpolation
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.mechanism import GROUND
-from service.render.linkage.drawing import Scene
-from service.render.linkage.scene import (
-    Demand,
-    demands,
-    scene_of,
-)
+from service.render.linkage.drawing import Scene, around, block_corners
+from service.render.linkage.motion import Demand, demands_of
 from service.render.page import dxf
 from service.render.page.svg import Box
 from synthesis.model.linkage_statement import LinkageProblem
@@ -74,7 +69,7 @@ CLOSED = 1e-9
 
 def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
     """The drawing of a linkage design as a DXF document (R2010)."""
-    scene, demanded = scene_of(design), demands(problem)
+    scene, demanded = Scene.of(design), demands_of(problem)
     moving = [name for name in scene.mechanism.links if name != GROUND]
     colours = {_layer(name): (LINK_COLOURS[n % len(LINK_COLOURS)], "CONTINUOUS") for n, name in enumerate(moving)}
     document = dxf.new_drawing(
@@ -95,8 +90,7 @@ def linkage_drawing(design: Any, problem: LinkageProblem, title: str) -> str:
 
 def _box(scene: Scene, demanded: list[Demand]) -> Box:
     """What is shown, the path of P left out."""
-    places = [z for k in range(len(scene.inputs)) for z in scene.joints(k).values()]
-    return Box.around(np.array([*places, *(demand.point for demand in demanded)]))
+    return Box.around(np.array([*scene.places(), *(demand.point for demand in demanded)]))
 
 
 def _layer(link: str) -> str:
@@ -106,50 +100,27 @@ def _layer(link: str) -> str:
 def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
     """The links at one target, on their own layers at the first."""
     joints = scene.joints(k)
-    for name, listed in scene.mechanism.links.items():
-        if name == GROUND or not joints:
-            continue
-        corners = [joints[joint] for joint in listed]
-        _outline(space, corners, _layer(name) if k == 0 else "OTHER_POSITIONS")
+    for name, corners in scene.links(joints):
+        layer = _layer(name) if k == 0 else "OTHER_POSITIONS"
+        if len(corners) == 2:
+            dxf.add_line(space, corners[0], corners[1], layer)
+        else:
+            dxf.add_outline(space, around(corners), layer)
     if k or not joints:
         return
     for name, place in joints.items():
         dxf.add_circle(space, place, PIN * size, "JOINTS")
         dxf.add_words(space, place + 1.6 * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
-    for _, place, turned in scene.lines(0):
-        along, half = cmath.exp(1j * turned), 0.5 * BLOCK * size
-        block = [place + along * complex(x * half, 0.6 * y * half) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        dxf.add_outline(space, block, "SLIDES")
-
-
-def _outline(space: Modelspace, corners: list[complex], layer: str) -> None:
-    """A line between two joints, the outline around more."""
-    if len(corners) < 2:
-        return
-    if len(corners) == 2:
-        dxf.add_line(space, corners[0], corners[1], layer)
-        return
-    centre = sum(corners) / len(corners)
-    around = sorted(corners, key=lambda z: math.atan2((z - centre).imag, (z - centre).real))
-    dxf.add_outline(space, around, layer)
+    for _, place, turned in scene.slides(0):
+        dxf.add_outline(space, block_corners(place, turned, BLOCK * size, 0.6 * BLOCK * size), "SLIDES")
 
 
 def _ground(space: Modelspace, scene: Scene, size: float) -> None:
     """Crosses at the fixed pivots, and the lines of slides over all targets."""
     for joint in scene.mechanism.links[GROUND]:
         dxf.add_cross(space, complex(scene.mechanism.joints[joint]), ARM * size, "GROUND")
-    first = scene.joints(0)
-    for slide in scene.mechanism.slides:
-        if not first:
-            continue
-        along = cmath.exp(1j * float(slide.angle))
-        listed = [scene.joints(k) for k in range(len(scene.inputs))] if slide.link == GROUND else [first]
-        places = [joints[slide.joint] for joints in listed if joints]
-        if slide.link != GROUND:
-            places += [first[joint] for joint in scene.mechanism.links[slide.link]]
-        way = [((z - places[0]) * along.conjugate()).real for z in places]
-        ends = [places[0] + along * t for t in (min(way) - 2.0 * BLOCK * size, max(way) + 2.0 * BLOCK * size)]
-        dxf.add_line(space, ends[0], ends[1], "GROUND" if slide.link == GROUND else "SLIDES")
+    for slide, low, high in scene.rails(2.0 * BLOCK * size):
+        dxf.add_line(space, low, high, "GROUND" if slide.link == GROUND else "SLIDES")
 
 
 def _curve(space: Modelspace, points: Complex, layer: str, size: float) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
+from service.render.linkage.motion import Demand, DrivenLinkage, demands_of, target_curve
 from service.render.page.svg import Box, Points
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.path.curve_placement import placed
@@ -65,15 +66,6 @@ class Configuration:
     b: complex
     p: complex
     body_angle: float
-
-
-@dataclass(frozen=True)
-class Demand:
-    """A demanded position: point, and angle of the body's line in radians, None where only the point is demanded."""
-
-    index: int
-    point: complex
-    angle: float | None
 
 
 @dataclass(frozen=True)
@@ -158,13 +150,14 @@ def fourbar_of(design: LinkageDesign) -> FourbarMechanism:
     return mechanism
 
 
-def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
-    """What is drawn of a fourbar design and of the problem that it answers."""
+def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: DrivenLinkage) -> Scene:
+    """What is drawn of a fourbar design, with its motion, and of the problem that it answers."""
     driven = driven_fourbar(fourbar_of(design))
     linkage = driven.linkage
     if isinstance(problem, PathProblem) and isinstance(design, PathDesign):
         problem = placed(problem, design)
-    demands = _demands(problem)
+    target = target_curve(problem)
+    demands = demands_of(problem)[: None if target is None else 1]
     configurations = _configurations(design, driven, demands)
     start = end = driven.reference
     used = (start, end)
@@ -172,14 +165,12 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
         angles = np.array([c.input_angle for c in configurations])
         way = traverse(linkage, angles, np.array([c.assembly for c in configurations]))
         start, end, used = float(way.angles[0]), float(way.angles[-1]), (way.start, way.end)
-    target = _target(problem)
     if target is not None and configurations:
         inputs = [math.radians(met.input_angle) for met in design.targets]
         turned = inputs[0] + math.copysign(math.tau, inputs[-1] - inputs[0])
-        end = turned if _is_closed(problem) else inputs[-1]
+        end = turned if isinstance(problem, PathProblem) and problem.closed else inputs[-1]
         used = (min(start, end, *inputs), max(start, end, *inputs))
-    limits = _limits(linkage, start)
-    lower, upper = limits or (start, start + math.tau)
+    lower, upper = motion.limits or (start, start + math.tau)
     assemblies = sorted(
         {driven.assembly, *(c.assembly for c in configurations)}, key=lambda sign: sign != driven.assembly
     )
@@ -188,7 +179,9 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem) -> Scene:
     kept = set(spread(len(demands), MARKED))
     shown = [demand for demand in demands if demand.index in kept]
     standing = [c for c in configurations if c.index in kept]
-    return Scene(linkage, standing, shown, curve, rest, limits, start, end, len(demands), len(configurations), target)
+    return Scene(
+        linkage, standing, shown, curve, rest, motion.limits, start, end, len(demands), len(configurations), target
+    )
 
 
 def spread(count: int, most: int) -> list[int]:
@@ -200,26 +193,6 @@ def spread(count: int, most: int) -> list[int]:
     if count <= most:
         return list(range(count))
     return sorted({round(k * (count - 1) / (most - 1)) for k in range(most)})
-
-
-def _demands(problem: MotionProblem | PathProblem) -> list[Demand]:
-    if isinstance(problem, PathProblem):
-        if problem.matched:
-            return [Demand(0, problem.points[0].point, None)]
-        return [Demand(k, p.point, None) for k, p in enumerate(problem.points)]
-    return [Demand(k, p.point, math.radians(p.angle)) for k, p in enumerate(problem.positions)]
-
-
-def _target(problem: MotionProblem | PathProblem) -> Points | None:
-    """The curve that is to be drawn as a whole, closed where it is."""
-    if not (isinstance(problem, PathProblem) and problem.matched):
-        return None
-    points = np.array([point.point for point in problem.points])
-    return np.append(points, points[0]) if problem.closed else points
-
-
-def _is_closed(problem: MotionProblem | PathProblem) -> bool:
-    return isinstance(problem, PathProblem) and problem.closed
 
 
 def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[Demand]) -> list[Configuration]:
@@ -267,32 +240,6 @@ def _assembled(
         if at.valid:
             return complex(at.a), complex(at.b), complex(at.p), float(at.coupler_angle)
     return None
-
-
-def _limits(linkage: Fourbar, angle: float) -> tuple[float, float] | None:
-    """Input angles of the toggles on both sides of ``angle``, None for an input without toggles."""
-    toggles = toggle_angles(linkage)
-    if toggles.size == 0:
-        return None
-    below = np.remainder(angle - toggles, 2.0 * np.pi)
-    above = np.remainder(toggles - angle, 2.0 * np.pi)
-    if not _closes_between(linkage, angle - below.min(), angle + above.min()):
-        # A target at a toggle, or out of reach: take the side on which the linkage closes.
-        nearest = int(np.argmin(np.minimum(below, above)))
-        angle = float(toggles[nearest])
-        others = np.delete(toggles, nearest)
-        if others.size == 0:
-            return angle, angle + math.tau
-        onward = float(np.remainder(others - angle, 2.0 * np.pi).min())
-        backward = float(np.remainder(angle - others, 2.0 * np.pi).min())
-        if _closes_between(linkage, angle, angle + onward):
-            return angle, angle + onward
-        return angle - backward, angle
-    return angle - float(below.min()), angle + float(above.min())
-
-
-def _closes_between(linkage: Fourbar, lower: float, upper: float) -> bool:
-    return bool(positions(linkage, 0.5 * (lower + upper)).valid)
 
 
 def _curve(linkage: Fourbar, start: float, end: float, assembly: int) -> Points:

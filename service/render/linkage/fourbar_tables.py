@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from service.render.linkage.fourbar import Scene, fourbar_of
-from service.render.page import blocks
 from service.render.page.blocks import (
     GAP,
     ROW,
@@ -38,14 +37,7 @@ from service.render.page.symbols import (
     OUTPUT,
 )
 from synthesis.kinds.path.design import PathMetrics
-from synthesis.model.answer import Check
 from synthesis.model.linkage_answer import LinkageDesign
-
-DEGREES = frozenset({"transmission_angle", "min_transmission_angle"})
-"""Checks whose value is an angle."""
-
-LENGTHS = frozenset({"shortest_link", "longest_link"})
-"""Checks whose value is a length."""
 
 GRASHOF = {
     "double_crank": "double crank",
@@ -142,8 +134,8 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     return draw
 
 
-def metrics(design: LinkageDesign, unit: str) -> Block:
-    """Measured properties that nothing was demanded of."""
+def metrics(design: LinkageDesign, unit: str) -> list[tuple[str, str]]:
+    """Measured properties of a linkage that guides a body or a point."""
     found = design.metrics
     rows = [] if found.grashof is None else [("type", f"{GRASHOF[found.grashof]} ({clean(found.barker or '')})")]
     rows += [
@@ -155,7 +147,6 @@ def metrics(design: LinkageDesign, unit: str) -> Block:
         ("size", f"{length(found.size, digits=4)} {unit}"),
         ("quality", length(found.quality, digits=3)),
     ]
-
     if isinstance(found, PathMetrics):
         rows += [
             ("rms distance", f"{length(found.rms_distance, digits=4)} {unit}"),
@@ -163,19 +154,11 @@ def metrics(design: LinkageDesign, unit: str) -> Block:
         ]
         if found.curve_distance is not None:
             rows.append(("curve to target, at most", f"{length(found.curve_distance, digits=4)} {unit}"))
-
-    return blocks.rows("Metrics", rows)
+    return rows
 
 
 def _yes(value: bool) -> str:
     return "yes" if value else "no"
-
-
-def written_check(check: Check, value: float) -> str:
-    """A measured value of a check."""
-    if check.name in DEGREES:
-        return angle(value, 2)
-    return length(value, digits=4) if check.name in LENGTHS else small(value)
 
 
 def _swatch(link: str, left: float, y: float) -> Element:

@@ -1,4 +1,4 @@
-"""Diagrams of a quantity over the angle of a cam or crank: frame, ticks of round numbers, curve, marks and limits."""
+"""Diagrams of a quantity over an angle or another: frame, ticks of round numbers, curve, marks and limits."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from service.render.page.numbers import length
 from service.render.page.svg import (
     Box,
     Element,
+    Points,
+    circle,
     element,
     line,
     path,
@@ -28,8 +30,8 @@ from service.render.page.symbols import (
 
 Real = NDArray[np.float64]
 
-LEFT, FOOT, HEAD = 62.0, 22.0, 20.0
-"""Room around the frame for the numbers at its left and below, and for its heading, pixels."""
+LEFT, FOOT, HEAD, RIGHT = 62.0, 22.0, 20.0, 4.0
+"""Room around the frame: for the numbers at its left and below, for its heading, and at its right; pixels."""
 
 TICKS = 5
 """Intervals of the vertical axis at most."""
@@ -45,7 +47,7 @@ FLAT = 1e-9
 
 @dataclass(frozen=True)
 class Diagram:
-    """One quantity over the angle of a cam or crank.
+    """One quantity over another.
 
     Parameters
     ----------
@@ -53,70 +55,96 @@ class Diagram:
         What is drawn, with its unit.
     name : str
         Marks the group as ``data-diagram``.
-    angle, values : float, shape (n,)
-        Degrees from 0 to ``span``, and the quantity; NaN interrupts the curve.
+    at, values : float, shape (n,)
+        Degrees where it is over an angle, and the quantity; NaN interrupts the curve.
     colour : str
     limits : sequence of float
         Levels drawn as dashed lines.
-    span : float
-        Degrees that the diagram is wide.
+    interval : pair of float
+        From where to where the diagram goes.
+    turned : bool
+        Whether it is over an angle, whose quarters are numbered; of another quantity round numbers are.
+    from_zero : bool
+        Whether the quantity's zero is shown in any case.
+    stems : bool
+        Whether values stand alone, each on a line from zero, and no curve goes through them.
+    dots, rings : sequence of complex
+        Points of the diagram that are marked, as values of the curve and as demanded ones.
+    height : float
+        Pixels, where it stands below others.
     """
 
     heading: str
     name: str
-    angle: Real
+    at: Real
     values: Real
     colour: str
     limits: Sequence[float] = ()
-    span: float = 360.0
+    interval: tuple[float, float] = (0.0, 360.0)
+    turned: bool = True
+    from_zero: bool = True
+    stems: bool = False
+    dots: Sequence[complex] | Points = ()
+    rings: Sequence[complex] | Points = ()
+    height: float = 170.0
 
-    def draw(self, box: Box, joints: Sequence[float]) -> Element:
+    def draw(self, box: Box, joints: Sequence[float] = ()) -> Element:
         """The diagram in a box of the sheet, with the segments' joints as vertical lines."""
-        frame = Box(box.left + LEFT, box.low + HEAD, box.right - 4.0, box.high - FOOT)
-        marks = ticks([*self.values[np.isfinite(self.values)].tolist(), *self.limits, 0.0])
-        low, high = marks[0], marks[-1]
+        frame = Box(box.left + LEFT, box.low + HEAD, box.right - RIGHT, box.high - FOOT)
+        levels = [*self.limits, *(point.imag for point in (*self.dots, *self.rings)), *([0.0] * self.from_zero)]
+        marks = ticks([*self.values[np.isfinite(self.values)].tolist(), *levels])
+        first, last = self.interval
 
-        def at(degrees: Real, values: Real) -> NDArray[np.complex128]:
-            x = frame.left + frame.width * degrees / self.span
-            y = frame.high - frame.height * (values - low) / (high - low)
+        def place(at: float | Real, values: float | Real) -> Points:
+            x = frame.left + frame.width * (at - first) / (last - first)
+            y = frame.high - frame.height * (values - marks[0]) / (marks[-1] - marks[0])
             return np.asarray(x + 1j * y)
 
         group = element("g", data_diagram=self.name)
         group.add(text(frame.left, box.low + HEAD - 6.0, self.heading, 11.5, font_weight="bold", fill=INK))
-        for share in QUARTERS:
-            x = frame.left + frame.width * share
-            group.add(line(complex(x, frame.high), complex(x, frame.high + 4.0), stroke=GREY, stroke_width=1.0))
-            words = written_angle(share * self.span, 1 if self.span >= TEXT else 3)
-            group.add(text(x, frame.high + 15.0, words, TEXT, text_anchor="middle", fill=GREY))
+        for at, words in self._numbered():
+            foot = complex(float(place(at, marks[0]).real), frame.high)
+            group.add(line(foot, foot + 4j, stroke=GREY, stroke_width=1.0))
+            group.add(text(foot.real, foot.imag + 15.0, words, TEXT, text_anchor="middle", fill=GREY))
         for joint in joints:
-            x = frame.left + frame.width * joint / self.span
+            x = float(place(joint, marks[0]).real)
             group.add(line(complex(x, frame.low), complex(x, frame.high), stroke=PALE, stroke_width=0.7))
         for mark in marks:
-            y = float(at(np.array(0.0), np.array(mark)).imag)
+            y = float(place(first, mark).imag)
             weight = 1.0 if mark == 0.0 else 0.4
             group.add(line(complex(frame.left, y), complex(frame.right, y), stroke=PALE, stroke_width=weight))
-            words = length(mark, high - low, digits=4)
+            words = length(mark, marks[-1] - marks[0], digits=4)
             group.add(text(frame.left - 5.0, y + 3.5, words, TEXT, text_anchor="end", fill=GREY))
         for limit in self.limits:
-            y = float(at(np.array(0.0), np.array(limit)).imag)
-            ends = complex(frame.left, y), complex(frame.right, y)
+            ends = complex(place(first, limit)), complex(place(last, limit))
             group.add(line(*ends, stroke=DEMANDED, stroke_width=1.2, stroke_dasharray="5 3"))
-        group.add(
-            element(
-                "rect",
-                x=frame.left,
-                y=frame.low,
-                width=frame.width,
-                height=frame.height,
-                fill="none",
-                stroke=GREY,
-                stroke_width=0.8,
-            )
-        )
-        known = np.isfinite(self.values)
-        runs = np.split(np.arange(len(self.values)), np.flatnonzero(np.diff(known)) + 1)
-        curve = [at(self.angle[run], self.values[run]) for run in runs if len(run) and known[run[0]]]
-        return group.add(path(curve, stroke=self.colour, stroke_width=1.6, stroke_linejoin="round"))
+        size = {"x": frame.left, "y": frame.low, "width": frame.width, "height": frame.height}
+        group.add(element("rect", **size, fill="none", stroke=GREY, stroke_width=0.8))
+        points = place(self.at, self.values)
+        if self.stems:
+            feet = place(self.at, np.zeros_like(self.values))
+            for foot, point in zip(feet.tolist(), points.tolist(), strict=True):
+                group.add(line(foot, point, stroke=self.colour, stroke_width=1.6))
+        else:
+            known = np.isfinite(self.values)
+            runs = np.split(np.arange(len(self.values)), np.flatnonzero(np.diff(known)) + 1)
+            curve = [points[run] for run in runs if len(run) and known[run[0]]]
+            group.add(path(curve, stroke=self.colour, stroke_width=1.6, stroke_linejoin="round"))
+        for dot in self.dots:
+            group.add(circle(complex(place(dot.real, dot.imag)), 2.6, fill=self.colour, data_dot=repr(float(dot.real))))
+        for ring in self.rings:
+            style = {"fill": "none", "stroke": DEMANDED, "data_target": repr(float(ring.real))}
+            group.add(circle(complex(place(ring.real, ring.imag)), 4.5, stroke_width=1.5, **style))
+        return group
+
+    def _numbered(self) -> list[tuple[float, str]]:
+        """Where the horizontal axis is numbered, and how."""
+        first, last = self.interval
+        span = last - first
+        if self.turned:
+            return [(first + share * span, written_angle(share * span, 1 if span >= TEXT else 3)) for share in QUARTERS]
+        inside = [at for at in ticks([first, last]) if first - FLAT * span <= at <= last + FLAT * span]
+        return [(at, length(at, span, digits=5)) for at in inside]
 
 
 def ticks(values: Sequence[float]) -> list[float]:

@@ -1,0 +1,131 @@
+"""Where a fourbar is drawn: a panel with its viewport, what is in sight there, and strokes that labels keep clear of.
+
+The functions that draw links, curves and targets all take a canvas; they add to its root from the back to the front.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from service.render.linkage.fourbar import Configuration, Scene
+from service.render.page.labels import Labels
+from service.render.page.svg import Box, Element, Points, Viewport, circle, element, path
+from service.render.page.symbols import PALE
+
+FRAME_REACH = 12.0
+"""Marks this near to the frame of a detail, pixels, are left to the detail."""
+
+ROOMY, SMALLEST = 30.0, 0.4
+"""Distance of joints on the sheet, pixels, from which the linkage is drawn in full size, and the least factor on it."""
+
+Style = dict[str, str | float | None]
+
+
+class Detail(NamedTuple):
+    """A part of the mechanism that is drawn again in another panel, with that panel's name and viewport."""
+
+    box: Box
+    name: str
+    viewport: Viewport
+
+
+class Canvas:
+    """A panel that cuts off what leaves it.
+
+    Attributes
+    ----------
+    scene : Scene
+        What is drawn.
+    viewport : Viewport
+        Where it is drawn; recorded on the root as ``data-scale``, ``data-centre`` and ``data-middle``.
+    labels : Labels
+        Of this panel.
+    root : Element
+        What strokes are added to.
+    first : Configuration or None
+        The linkage at the first target, where it can be assembled there.
+    size : float
+        Factor on link widths and joint sizes: below 1 where the joints stand close together on the sheet.
+    frames : list of (Detail, Box)
+        Parts that other panels show, with their frames in this one.
+    """
+
+    def __init__(self, scene: Scene, viewport: Viewport, name: str, details: Sequence[Detail]) -> None:
+        self.scene, self.viewport = scene, viewport
+        self.labels = Labels(viewport.panel.grown(-3.0))
+        self.root = _root(viewport, name)
+        self.first = next((c for c in scene.configurations if c.index == 0), None)
+        self.frames = [(detail, self._frame_of(detail)) for detail in details]
+        self.size = self._link_size()
+
+    def at(self, point: complex) -> complex:
+        """Sheet point of a mechanism point."""
+        return self.viewport.point(point)
+
+    def sees(self, point: complex) -> bool:
+        """Whether a mechanism point lies in the panel."""
+        return self.viewport.panel.holds(self.at(point))
+
+    def readable(self, point: complex) -> bool:
+        """Whether a point is in sight and not left to a detail, which shows its marks and labels."""
+        at = self.at(point)
+        return self.viewport.panel.holds(at) and not any(
+            frame.grown(FRAME_REACH).holds(at) and detail.viewport.panel.holds(detail.viewport.point(point))
+            for detail, frame in self.frames
+        )
+
+    def arc(self, radius: float, start: float, end: float) -> Points:
+        """Arc about O2 on the sheet; radius in pixels, angles in radians."""
+        count = max(3, math.ceil(abs(end - start) / math.tau * 180))
+        return np.asarray(self.at(self.scene.o2) + radius * np.exp(-1j * np.linspace(start, end, count)))
+
+    def segment(self, start: complex, end: complex, weight: float, /, **style: str | float | None) -> Element | None:
+        """A straight part of a link, cut at the panel; ``weight`` is what a label costs that covers it."""
+        pieces = self.viewport.shown(np.array([start, end]))
+        self.labels.avoid(pieces, weight)
+        return path(pieces, **style)
+
+    def mark(self, group: Element, name: str, joint: complex, radius: float, /, **style: str | float | None) -> None:
+        """Add a joint's circle to a group; joints out of sight are left out."""
+        at = self.at(joint)
+        if self.viewport.panel.grown(radius).holds(at):
+            group.add(circle(at, radius, data_joint=name, **style))
+            self.labels.avoid([np.array([at - radius, at + radius, at, at - 1j * radius, at + 1j * radius])], 4.0)
+
+    def ends(self, c: Configuration) -> list[tuple[complex, complex]]:
+        """Input, coupler and output as lines from joint to joint."""
+        return [(self.scene.o2, c.a), (c.a, c.b), (c.b, self.scene.o4)]
+
+    def _link_size(self) -> float:
+        if self.first is None:
+            return 1.0
+        spans = [abs(v - u) * self.viewport.scale for u, v in self.ends(self.first) if self.sees(u) or self.sees(v)]
+        return min(1.0, max(SMALLEST, min(spans, default=ROOMY) / ROOMY))
+
+    def _frame_of(self, detail: Detail) -> Box:
+        at = self.at(detail.box.centre)
+        half = [max(9.0, 0.5 * self.viewport.scale * side + 8.0) for side in (detail.box.width, detail.box.height)]
+        return Box(at.real - half[0], at.imag - half[1], at.real + half[0], at.imag + half[1])
+
+
+def _root(viewport: Viewport, name: str) -> Element:
+    box = viewport.panel
+    border = {"x": box.left + 0.5, "y": box.low + 0.5, "width": box.width - 1.0, "height": box.height - 1.0}
+    return element(
+        "svg",
+        element("rect", fill="#fff", stroke=PALE, **border),
+        x=box.left,
+        y=box.low,
+        width=box.width,
+        height=box.height,
+        viewBox=" ".join(f"{v:g}" for v in (box.left, box.low, box.width, box.height)),
+        overflow="hidden",
+        data_view=name,
+        data_scale=repr(viewport.scale),
+        data_centre=f"{viewport.centre.real!r} {viewport.centre.imag!r}",
+        data_middle=f"{viewport.middle.real!r} {viewport.middle.imag!r}",
+    )

@@ -1,0 +1,142 @@
+"""What is drawn around a fourbar's links: paths of A and P, the input's limits and rotation, demands and misses."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from service.render.linkage.fourbar_canvas import Canvas, Style
+from service.render.linkage.motion import Demand
+from service.render.page.numbers import angle
+from service.render.page.svg import CLIP_MARGIN, circle, clipped, line, path
+from service.render.page.symbols import (
+    CURVE,
+    DEMAND_RADIUS,
+    DEMANDED,
+    INK,
+    INPUT,
+    arrow,
+    demanded_point,
+    demanded_position,
+)
+
+ROTATION_ARC = 26.0, 74.0
+"""Least and greatest radius of the arc that shows the input's rotation, pixels."""
+
+ARC_LENGTH = 26.0
+"""That arc is moved outwards along the input link where it would be shorter than this, pixels."""
+
+LEAST_ROTATION = 1e-9
+"""A rotation smaller than this, radians, is none."""
+
+TICK = 9.0
+"""Length of the tick at an input limit, pixels."""
+
+SEEN_MISS = 1.0
+"""A point that is missed by less than so many pixels is seen to be met."""
+
+LARGEST_ARC = 4.0
+"""Arcs of a larger radius, in panel diagonals, are left out: in a detail they would be straight lines of no meaning."""
+
+
+def input_circle(canvas: Canvas) -> None:
+    """The path of A as far as the input reaches, and ticks at its limits."""
+    scene, view = canvas.scene, canvas.viewport
+    radius = view.scale * float(scene.linkage.input)
+    if radius > LARGEST_ARC * view.panel.diagonal:
+        return
+    swept = clipped(canvas.arc(radius, *(scene.limits or (0.0, math.tau))), view.panel.grown(CLIP_MARGIN))
+    style = {"stroke_dasharray": "1 4", "stroke_linecap": "round"}
+    canvas.root.add(path(swept, stroke=INPUT, stroke_width=0.9, **style))
+    canvas.labels.avoid(swept, 0.6)
+    for limit in scene.limits or ():
+        outward = cmath.exp(-1j * limit)
+        tip = canvas.at(scene.o2) + radius * outward
+        if view.panel.holds(tip):
+            low, high = tip - TICK * outward, tip + TICK * outward
+            canvas.root.add(line(low, high, stroke=INPUT, stroke_width=2.0, data_limit=repr(math.degrees(limit))))
+            canvas.labels.avoid([np.array([low, high])], 6.0)
+
+
+def curves(canvas: Canvas) -> None:
+    """The demanded curve, the path of P over the whole branch, and the used part of it."""
+    scene, shown = canvas.scene, canvas.viewport.shown
+    pieces, used = [piece for curve in scene.rest for piece in shown(curve)], shown(scene.used)
+    if scene.target is not None:
+        wide: Style = {"stroke": DEMANDED, "stroke_width": 6.0, "stroke_opacity": 0.3}
+        canvas.root.add(path(shown(scene.target), data_curve="target", **wide))
+    canvas.root.add(
+        path(pieces, stroke=CURVE, stroke_width=0.9, data_curve="branch"),
+        path(used, stroke=CURVE, stroke_width=2.2, stroke_linecap="round", data_curve="used"),
+    )
+    canvas.labels.avoid(pieces, 0.6)
+    canvas.labels.avoid(used, 2.0)
+
+
+def rotation_arc(canvas: Canvas) -> complex | None:
+    """Arc with an arrow from the input's first to its last angle; its middle, None where there is no arc."""
+    scene = canvas.scene
+    turned = scene.end - scene.start
+    if abs(turned) < LEAST_ROTATION or not canvas.readable(scene.o2):
+        return None
+    link = canvas.viewport.scale * float(scene.linkage.input)
+    least, most = ROTATION_ARC
+    radius = max(min(max(0.42 * link, least), most), min(ARC_LENGTH / abs(turned), 0.8 * link))
+    head = math.copysign(min(abs(turned), 9.0 / radius), turned)
+    arc = canvas.arc(radius, scene.start, scene.end - 0.8 * head)
+    back, tip = (complex(z) for z in canvas.arc(radius, scene.end - head, scene.end)[[0, -1]])
+    mark = arrow(back, tip, 4.0, INK)
+    mark.attributes["data-rotation"] = repr(math.degrees(turned))
+    canvas.root.add(path([arc], stroke=INK, stroke_width=1.4), mark)
+    canvas.labels.avoid([arc], 2.0)
+    return complex(canvas.arc(radius, scene.start, scene.start + 0.5 * turned)[-1])
+
+
+def demand(canvas: Canvas, demanded: Demand) -> None:
+    """A demanded point or position."""
+    if canvas.readable(demanded.point):
+        at, number = canvas.at(demanded.point), demanded.index + 1
+        if demanded.angle is None:
+            symbol, lines = demanded_point(at, number)
+        else:
+            symbol, lines = demanded_position(at, demanded.angle, number)
+        canvas.labels.avoid(lines, 3.0)
+        canvas.root.add(symbol)
+
+
+def misses(canvas: Canvas) -> None:
+    """How far P is from the points that are fitted: a line from each to where P passes it."""
+    places = {demand.index: demand.point for demand in canvas.scene.demands if demand.angle is None}
+    for c in canvas.scene.configurations:
+        point = places.get(c.index)
+        if point is None or not canvas.readable(point):
+            continue
+        wanted, met = canvas.at(point), canvas.at(c.p)
+        if abs(met - wanted) >= SEEN_MISS and canvas.viewport.panel.holds(met):
+            mark = line(wanted, met, stroke=DEMANDED, stroke_width=1.6, data_miss=f"{c.index + 1}")
+            canvas.root.add(mark, circle(met, 1.8, fill=DEMANDED))
+
+
+def label_demand(canvas: Canvas, demanded: Demand) -> None:
+    """The number of a target."""
+    if canvas.readable(demanded.point):
+        at, words = canvas.at(demanded.point), f"{demanded.index + 1}"
+        away = -1j if demanded.angle is None else -cmath.exp(-1j * demanded.angle)
+        style = {"fill": DEMANDED, "font_weight": "bold"}
+        canvas.labels.place(at, words, 11.0, clearance=DEMAND_RADIUS + 2.0, away=away, ring=DEMANDED, style=style)
+
+
+def label_input(canvas: Canvas, arc: complex | None) -> None:
+    """The turn of the input at the middle of its arc, and the word at its limits, where there is room."""
+    scene, o2 = canvas.scene, canvas.at(canvas.scene.o2)
+    if arc is not None:
+        turned = angle(math.degrees(scene.end - scene.start), 1)
+        canvas.labels.place(arc, turned, 11.0, clearance=3.0, away=arc - o2, optional=True, style={"fill": INK})
+    crank = float(scene.linkage.input)
+    for limit in scene.limits or ():
+        if canvas.readable(scene.o2 + cmath.rect(crank, limit)):
+            away = cmath.exp(-1j * limit)
+            tip = o2 + (canvas.viewport.scale * crank + TICK) * away
+            canvas.labels.place(tip, "limit", 10.0, clearance=2.0, away=away, optional=True, style={"fill": INPUT})

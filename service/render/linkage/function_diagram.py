@@ -1,0 +1,94 @@
+"""What is drawn of a function generator alone: the range of its input, its structural error, or its output."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from service.render.linkage.drawing import Scene
+from service.render.linkage.motion import DrivenLinkage
+from service.render.page.diagrams import Diagram
+from service.render.page.svg import Element, Viewport, path
+from service.render.page.symbols import CURVE, INK, arrow
+from synthesis.kinds.function.design import FunctionDesign
+from synthesis.kinds.function.problem import FunctionProblem
+
+HEIGHT = 250.0
+"""Of the diagram, pixels."""
+
+SAMPLES = 181
+"""Points of the output's curve."""
+
+ARC = (24.0, 70.0)
+"""Least and greatest radius of the arc that shows the input's range, pixels."""
+
+
+def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Element]:
+    """An arc with an arrow from the input's first angle to its last."""
+    joints = scene.joints(0)
+    if not joints:
+        return []
+    stated = design.structural_error.curve.input_angle or [target.input_angle for target in design.targets]
+    start, end = math.radians(stated[0]), math.radians(stated[-1])
+    radius = max(min(0.4 * abs(joints["A"] - joints["O2"]) * view.scale, ARC[1]), ARC[0])
+    arc = view.point(joints["O2"]) + radius * np.exp(-1j * np.linspace(start, end, 60))
+    drawn = path([arc], stroke=INK, stroke_width=1.4, data_range=repr(math.degrees(end - start)))
+    head = arrow(complex(arc[-4]), complex(arc[-1]), 3.6, INK)
+    return [drawn, head] if drawn is not None else [head]
+
+
+def function_diagram(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
+    """The structural error; the output where pairs are met, which have no error to be drawn."""
+    if problem.function is None and problem.aim == "precision":
+        return _output(design, problem, linkage)
+    error, pairs = design.structural_error, problem.function is None
+    x, e = np.array(error.curve.input), np.array(error.curve.error)
+    unit = "degrees" if error.unit == "degrees" else problem.length_unit
+    met = [] if pairs or problem.aim != "precision" else [complex(target.input) for target in design.targets]
+    extremes = x + 1j * e if pairs else [complex(extreme.input, extreme.error) for extreme in error.extremes]
+    return Diagram(
+        f"Structural error, {unit}, over {'the input of the pairs' if pairs else 'x'}",
+        "structural_error",
+        x,
+        e,
+        CURVE,
+        interval=(float(x.min()), float(x.max())),
+        turned=False,
+        stems=pairs,
+        dots=extremes,
+        rings=met,
+        height=HEIGHT,
+    )
+
+
+def _output(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Diagram:
+    """The value of the output over that of the input, as the driven linkage gives it, and the pairs that it meets."""
+    dials = design.dials
+    inputs = np.array([target.input for target in design.targets])
+    pairs = np.array([target.output for target in design.targets])
+    x = np.linspace(inputs.min(), inputs.max(), SAMPLES)
+    motion = linkage.driven(np.radians(dials.input.place + dials.input.scale * (x - dials.input.at)))
+    if design.mechanism.type == "slider_crank":
+        along = cmath.exp(-1j * math.radians(design.mechanism.slide.angle))
+        places = ((motion.joints["B"][0] - motion.joints["O2"][0]) * along).real
+    else:
+        places = np.degrees(motion.angles["output"][0])
+        places[motion.valid] = np.unwrap(places[motion.valid], period=360.0)
+    y = dials.output.at + (places - dials.output.place) / dials.output.scale
+    if design.mechanism.type != "slider_crank":
+        turn = 360.0 / dials.output.scale
+        y -= turn * np.round((y[np.abs(x - inputs[0]).argmin()] - pairs[0]) / turn)
+    return Diagram(
+        "Output over input, and the pairs",
+        "output",
+        x,
+        y,
+        CURVE,
+        interval=(float(x[0]), float(x[-1])),
+        turned=False,
+        from_zero=False,
+        rings=inputs + 1j * pairs,
+        height=HEIGHT,
+    )

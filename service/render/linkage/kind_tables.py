@@ -1,0 +1,469 @@
+"""What each kind of problem shows on the sheet of a linkage: a function a kind, all collected in one table."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from kinematics.linkage.planar.branches import cycle
+from service.render.linkage import fourbar_tables
+from service.render.linkage.content import Content
+from service.render.linkage.drawing import PlanarPicture, Scene
+from service.render.linkage.fourbar import scene as fourbar_scene
+from service.render.linkage.fourbar_picture import FourbarPicture, description
+from service.render.linkage.function_diagram import function_diagram, range_arc
+from service.render.linkage.motion import DrivenLinkage, target_curve
+from service.render.page import blocks
+from service.render.page.diagrams import Diagram
+from service.render.page.numbers import angle, length, small
+from service.render.page.svg import Box, Element, Viewport, line, path
+from service.render.page.symbols import CURVE, DEMANDED, OUTPUT
+from synthesis.kinds.dwell.design import DwellDesign
+from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.function.design import FunctionDesign
+from synthesis.kinds.function.problem import FunctionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.parallel_motion.design import ParallelMotionDesign
+from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.quick_return.design import QuickReturnDesign
+from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.verification import OUTPUTS
+from synthesis.kinds.steering.design import SteeringDesign
+from synthesis.kinds.steering.problem import SteeringProblem
+from synthesis.kinds.straight_line.design import StraightLineDesign
+from synthesis.kinds.straight_line.problem import StraightLineProblem
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
+
+SAMPLES = 721
+"""Points of a diagram's curve, and of P's path during a dwell."""
+
+MAX_ROWS = 12
+"""Targets that are listed, and configurations of a function generator that are drawn, at most."""
+
+PLACES = 4
+"""Places of its range at which a parallel motion is drawn; the body is drawn heavy at all of them."""
+
+NAMES = {
+    "slider_crank": "Slider-crank",
+    "geared_fivebar": "Geared fivebar",
+    "inverted_slider_crank": "Inverted slider-crank",
+    "watt_2": "Fourbar with a driver dyad (Watt's sixbar)",
+    "stephenson_3": "Fourbar with a driver dyad on its coupler (Stephenson's sixbar)",
+    "crank_shaper": "Crank-shaper",
+    "whitworth": "Whitworth quick return",
+    "drag_link_rocker": "Drag-link sixbar with a rocker",
+    "drag_link_slider": "Drag-link sixbar with a slider",
+    "davis": "Davis steering gear",
+    "dwell_rocker": "Dwell sixbar with a rocker",
+    "dwell_slider": "Dwell sixbar with a slider",
+    "dwell_slot": "Dwell sixbar with a slotted rocker",
+    "watt_1": "Watt sixbar for parallel motion",
+}
+"""What the types are called on a sheet."""
+
+STROKE_NAMES = NAMES | {"fourbar": "Crank-rocker", "slider_crank": "Offset slider-crank"}
+
+LINE_NAMES = {
+    "hoeken": "Hoeken's straight-line linkage",
+    "chebyshev": "Chebyshev's straight-line linkage",
+    "watt": "Watt's straight-line linkage",
+    "roberts": "Roberts' straight-line linkage",
+    "evans": "Evans' straight-line linkage",
+    "peaucellier": "Peaucellier's inversor",
+    "hart": "Hart's inversor",
+    "scott_russell": "Scott-Russell's mechanism",
+}
+"""What the families of straight-line linkages are called."""
+
+PROPORTIONS = {"optimal": "best", "classical": "classical", "exact": "exact"}
+
+BASES = {
+    "source": "of the given fourbar",
+    "left_cognate": "of its left cognate",
+    "right_cognate": "of its right cognate",
+    "path": "of a fourbar through the points",
+}
+"""What a sixbar for parallel motion is made of."""
+
+
+def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage: DrivenLinkage) -> Content:
+    """A body that is guided, or a point: at the targets; along a curve to be drawn whole, at its first and last."""
+    unit, measured = problem.length_unit, fourbar_tables.metrics(design, problem.length_unit)
+    if isinstance(design.mechanism, FourbarMechanism):
+        fourbar = fourbar_scene(design, problem, linkage)
+        grashof = design.metrics.grashof
+        kind = "" if grashof is None else f", {fourbar_tables.GRASHOF[grashof]}"
+        return Content(
+            "Fourbar linkage",
+            f"Fourbar linkage, {design.mechanism.assembly} assembly{kind}",
+            description(design, unit, fourbar),
+            FourbarPicture(fourbar, unit),
+            measured,
+            [fourbar_tables.targets(design, fourbar, unit)],
+            dimensions=fourbar_tables.dimensions(design, fourbar, unit),
+        )
+    inputs, target = linkage.targets(design), target_curve(problem)
+    positions = problem.positions if isinstance(problem, MotionProblem) else problem.points
+    if isinstance(problem, PathProblem) and problem.matched:
+        last = inputs[0] + cycle(linkage.mechanism) if problem.closed else inputs[-1]
+        inputs, positions = np.array([inputs[0], last]), positions[:1]
+    scene = Scene(linkage, inputs, ["P"], "P", positions, target)
+    slides = linkage.mechanism.driven_by_slide
+    met = [
+        (
+            f"{target.index + 1}: input {length(target.input_angle) if slides else angle(target.input_angle, 2)}",
+            f"off by {small(target.point_residual)} {unit}"
+            + ("" if target.angle_residual is None else f", {angle(target.angle_residual, 2)}"),
+        )
+        for target in design.targets
+    ]
+    least = [
+        (f"transmission at {link.replace('_', ' ')}", angle(value, 2))
+        for link, value in design.metrics.transmission_angles.items()
+    ]
+    name = NAMES[design.mechanism.type]
+    return Content(
+        name,
+        name,
+        f"a linkage at {len(inputs)} targets",
+        PlanarPicture(scene, unit, heights=(460.0, 860.0)),
+        [*least, *measured],
+        [blocks.rows("Targets", _first(met))],
+    )
+
+
+def _first(rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """The first rows, and how many more there are."""
+    more = len(rows) - MAX_ROWS
+    return [*rows[:MAX_ROWS], (f"and {more} more", "")] if more > 0 else rows
+
+
+def _size_and_quality(metrics: Any, unit: str) -> list[tuple[str, str]]:
+    """What every linkage is compared by."""
+    return [
+        ("longest : shortest link", length(metrics.link_ratio, digits=4)),
+        ("size", f"{length(metrics.size, digits=4)} {unit}"),
+        ("quality", length(metrics.quality, digits=3)),
+    ]
+
+
+def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Content:
+    """A function generator: at its targets, the range of the input as an arc, its structural error or output."""
+    unit, metrics, error, dials = problem.length_unit, design.metrics, design.structural_error, design.dials
+    slides = error.unit == "length"
+    chosen = np.unique(np.linspace(0, len(design.targets) - 1, min(MAX_ROWS, len(design.targets))).astype(int))
+    scene = Scene(linkage, linkage.targets(design)[chosen], [], hidden={"P"})
+
+    def off(value: float) -> str:
+        return f"{length(value, digits=4)}{f' {unit}' if slides else '°'}"
+
+    def placed(place: float) -> str:
+        return f"{length(place)} {unit}" if slides else angle(place)
+
+    readings = [
+        (f"input stands at {angle(dials.input.place)}", f"at the value {length(dials.input.at)}"),
+        ("and turns for a unit by", angle(dials.input.scale, 6)),
+        (f"output stands at {placed(dials.output.place)}", f"at the value {length(dials.output.at)}"),
+        ("and goes for a unit by", placed(dials.output.scale)),
+    ]
+    met = [
+        (
+            f"{target.index + 1}: {length(target.input, digits=5)} → {length(target.output, digits=5)}",
+            f"at {angle(target.input_angle, 2)}, off by {off(target.error)}",
+        )
+        for target in design.targets
+    ]
+    mechanism = design.mechanism
+    more = [("offset", length(mechanism.offset))] if mechanism.type == "slider_crank" else []
+    name = f"{'Slider-crank' if slides else 'Fourbar'} function generator"
+    return Content(
+        name,
+        name,
+        f"a linkage at {len(design.targets)} targets; structural error at most {off(error.max)}",
+        PlanarPicture(scene, unit, lambda view: range_arc(design, scene, view), heights=(380.0, 640.0)),
+        [
+            *([] if metrics.grashof is None else [("type", metrics.grashof.replace("_", "-"))]),
+            ("greatest structural error", off(error.max)),
+            ("root mean square", off(error.rms)),
+            ("alternating extremes", f"{error.alternations}"),
+            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+            ("input rotation", angle(metrics.input_rotation, 3)),
+            *_size_and_quality(metrics, unit),
+        ],
+        [blocks.rows("Dials", readings), blocks.rows("Targets", _first(met))],
+        more_dimensions=[*more, ("assembly", mechanism.assembly)],
+        hidden={"P"},
+        diagrams=[function_diagram(design, problem, linkage)],
+    )
+
+
+def quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, linkage: DrivenLinkage) -> Content:
+    """A quick return: at both limit positions of its output; the output and its rate over a turn from the first."""
+    unit, metrics, kind = problem.length_unit, design.metrics, design.mechanism.type
+    scene = Scene(linkage, linkage.targets(design), [joint for joint in linkage.moving if joint != "P"])
+    size, name = scene.box().diagonal, STROKE_NAMES[kind]
+    turned = np.linspace(0.0, 360.0, SAMPLES)
+    motion = linkage.driven(linkage.inputs(design.targets[0].input_angle + turned), order=1)
+    if OUTPUTS[kind] in linkage.mechanism.links:
+        place, rate = motion.angles[OUTPUTS[kind]]
+        value, what, by = np.degrees(np.unwrap(place)), "swing (°)", "output speed over crank speed"
+    else:
+        value, rate = motion.slides[OUTPUTS[kind]]
+        what, by = f"stroke ({unit})", f"slider speed ({unit} per radian of the crank)"
+    over = "over the crank's rotation from the first limit position"
+    limits = [
+        (
+            f"limit {target.index + 1}: crank {angle(target.input_angle, 3)}",
+            f"{length(target.output, size)} {unit}" if metrics.swing is None else angle(target.output, 3),
+        )
+        for target in design.targets
+    ]
+    stroke = ("stroke", f"{length(metrics.stroke or 0.0, digits=9)} {unit}")
+    return Content(
+        name,
+        f"{name} with a time ratio of {length(metrics.time_ratio)}",
+        "a mechanism at both limit positions of its output",
+        PlanarPicture(scene, unit, heights=(400.0, 700.0)),
+        [
+            ("time ratio", length(metrics.time_ratio, digits=9)),
+            ("crank rotation, slow and fast", f"{angle(metrics.slow_rotation)}, {angle(metrics.fast_rotation)}"),
+            stroke if metrics.swing is None else ("swing", angle(metrics.swing, 6)),
+            *(
+                (f"transmission at {link.replace('_', ' ')}", angle(least, 2))
+                for link, least in metrics.transmission_angles.items()
+            ),
+            *_size_and_quality(metrics, unit),
+        ],
+        [blocks.rows("Limits", limits)],
+        standing="at the first limit",
+        diagrams=[
+            Diagram(f"{what} {over}", "output", turned, value - value[0], CURVE),
+            Diagram(by, "rate", turned, rate, OUTPUT),
+        ],
+    )
+
+
+def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLinkage) -> Content:
+    """A steering mechanism: straight and at both locks; the outer wheel's angle and its error over the inner's."""
+    unit, metrics, targets = problem.length_unit, design.metrics, design.targets
+    straight = float(linkage.mechanism.reference_input)
+    if linkage.mechanism.driven_by_slide:
+        # Both locks are as far from the straight position.
+        locks = [targets[-1].input_angle, 2.0 * straight - targets[-1].input_angle]
+    else:
+        locks = [straight + math.radians(problem.lock), straight - math.radians(metrics.outer_lock)]
+    scene = Scene(linkage, np.array([straight, *locks]), [])
+    name = NAMES.get(design.mechanism.type, "Ackermann steering linkage")
+    inner, outer, error = (
+        np.array([getattr(target, quantity) for target in targets]) for quantity in ("inner", "outer", "error")
+    )
+    over, limit = (0.0, float(inner[-1])), metrics.steering_error
+    met = [
+        (f"inner {angle(target.inner, 2)}: outer {angle(target.outer, 3)}", f"error {angle(target.error, 4)}")
+        for target in targets
+    ]
+    travel = [] if metrics.bar_travel is None else [("travel of the bar", f"± {length(metrics.bar_travel)} {unit}")]
+    return Content(
+        name,
+        f"{name}, tie rod {metrics.tie_rod} the kingpins, to a lock of {angle(problem.lock)}",
+        "a steering mechanism, straight and at both locks",
+        PlanarPicture(scene, unit, heights=(260.0, 520.0)),
+        [
+            ("steering error", f"{small(metrics.steering_error)}°"),
+            ("correct at", ", ".join(angle(at, 2) for at in metrics.correct_at) or "everywhere"),
+            ("outer wheel at the lock", angle(metrics.outer_lock)),
+            ("arms", f"{length(metrics.arm_length)} {unit} at {angle(metrics.arm_angle)}"),
+            ("turning radius", f"{length(metrics.turning_radius)} {unit}"),
+            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+            *travel,
+        ],
+        [blocks.rows("Targets", met)],
+        standing="when straight",
+        diagrams=[
+            Diagram("outer wheel (°) over the inner wheel's angle", "outer", inner, outer, CURVE, interval=over),
+            Diagram("steering error (°)", "error", inner, error, OUTPUT, (-limit, limit), over),
+        ],
+    )
+
+
+def straight_line(design: StraightLineDesign, problem: StraightLineProblem, linkage: DrivenLinkage) -> Content:
+    """A straight-line linkage: at both ends and in the middle; distance from the line and velocity along it."""
+    unit, metrics = problem.length_unit, design.metrics
+    first, last = (float(at) for at in linkage.targets(design))
+    scene = Scene(linkage, np.array([first, 0.5 * (first + last), last]), ["P"], "P")
+    start = complex(*problem.start)
+    along = cmath.rect(1.0, math.radians(problem.direction))
+    end = start + problem.length * along
+    box = Box.around(np.concatenate([scene.places(), [start, end], scene.used]))
+    turned, sense = np.linspace(0.0, abs(last - first), SAMPLES), math.copysign(1.0, last - first)
+    point, rate = linkage.driven(first + sense * turned, order=1).joints["P"]
+    at, over = np.degrees(turned), (0.0, math.degrees(abs(last - first)))
+
+    def demanded(view: Viewport) -> list[Element]:
+        ends = view.point(start), view.point(end)
+        return [line(*ends, stroke=DEMANDED, stroke_width=1.4, stroke_dasharray="6 4", data_line="demanded")]
+
+    ends = [
+        (
+            f"{what}: input {angle(target.input_angle)}",
+            f"({length(target.x, box.diagonal)}, {length(target.y, box.diagonal)})",
+        )
+        for what, target in zip(("start", "end"), design.targets, strict=True)
+    ]
+    name, across = LINE_NAMES[metrics.family], ((point - start) * along.conjugate()).imag
+    heading = f"distance from the line ({unit}) over the input's rotation"
+    per = f"velocity along the line ({unit}/rad) over the input's rotation"
+    return Content(
+        name,
+        f"{name}, {PROPORTIONS[metrics.proportions]} proportions",
+        "a linkage at both ends and in the middle of a straight line",
+        PlanarPicture(scene, unit, demanded, box),
+        [
+            ("greatest deviation", f"{small(metrics.deviation)} {unit}"),
+            ("straightness error", f"{small(metrics.straightness_error)} %"),
+            ("velocity variation", f"{length(metrics.velocity_variation, digits=4)} %"),
+            ("mean velocity", f"{length(metrics.mean_velocity, digits=5)} {unit}/rad"),
+            ("velocity in the middle", f"{length(metrics.middle_velocity, digits=5)} {unit}/rad"),
+            ("input rotation", angle(metrics.input_rotation)),
+            ("input turns fully", "yes" if metrics.full_rotation else "no"),
+            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+            *_size_and_quality(metrics, unit),
+        ],
+        [blocks.rows("Line", ends)],
+        standing="at the start",
+        diagrams=[
+            Diagram(heading, "deviation", at, across, CURVE, interval=over),
+            Diagram(per, "velocity", at, sense * (rate * along.conjugate()).real, OUTPUT, interval=over),
+        ],
+    )
+
+
+def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) -> Content:
+    """A dwell sixbar: as a dwell begins and ends, and away from it; the output over a turn from the first dwell."""
+    unit, metrics, mechanism = problem.length_unit, design.metrics, design.mechanism
+    begun = [float(at) for at in linkage.targets(design)]
+    rotation, slides = math.radians(problem.dwell_angle), mechanism.type == "dwell_slider"
+    # The last place is that in which the output stands farthest from its first rest, or the second rest.
+    away = begun[1] if len(begun) == 2 else begun[0] + 0.5 * rotation + math.pi
+    traced = [joint for joint in ("P", "D") if joint in linkage.mechanism.joints]
+    scene = Scene(linkage, np.array([begun[0], begun[0] + rotation, away]), traced)
+    resting = [linkage.path("P", at, at + rotation, SAMPLES) for at in begun]
+    turned = np.linspace(0.0, 360.0, SAMPLES)
+    motion = linkage.driven(begun[0] + np.radians(turned), order=2)
+    jet = motion.slides["D"] if slides else motion.angles["output"]
+    place = jet[0] if slides else np.degrees(np.unwrap(jet[0]))
+    per = f"{unit}/rad²" if slides else "rad/rad²"
+    bend = f"acceleration ({per})" if slides else "angular acceleration (rad per rad² of the crank)"
+    what, over = f"slider ({unit})" if slides else "output angle (°)", "over the crank's rotation from the first dwell"
+
+    def measure(value: float) -> str:
+        return f"{length(value, digits=4)} {unit}" if slides else angle(value, 4)
+
+    def dwells(view: Viewport) -> list[Element]:
+        drawn = (path(view.shown(at), stroke=DEMANDED, stroke_width=2.6, data_curve="dwell") for at in resting)
+        return [curve for curve in drawn if curve is not None]
+
+    rests = []
+    for rest in design.targets:
+        rests += [
+            (f"dwell {rest.index + 1} from", angle(rest.input_angle, 2)),
+            ("jitter", measure(rest.jitter)),
+            (f"width at {measure(problem.allowed)}", angle(rest.width, 2)),
+        ]
+    name = NAMES[mechanism.type]
+    return Content(
+        name,
+        f"{name}, crank turns counter-clockwise",
+        "a sixbar as a dwell begins and ends, and away from it",
+        PlanarPicture(scene, unit, dwells),
+        [
+            ("stroke" if slides else "swing", measure(metrics.way)),
+            ("peak acceleration", f"{length(metrics.peak_acceleration, digits=4)} {per}"),
+            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+            *_size_and_quality(metrics, unit),
+        ],
+        [blocks.rows("Dwells", rests)],
+        standing="there",
+        more_dimensions=_coupler_point(mechanism),
+        diagrams=[
+            Diagram(f"{what} {over}", "output", turned, place - place[0], CURVE),
+            Diagram(bend, "acceleration", turned, jet[2], OUTPUT),
+        ],
+        marks=[math.degrees(at - begun[0] + by) % 360.0 for at in begun for by in (0.0, rotation)],
+    )
+
+
+def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem, linkage: DrivenLinkage) -> Content:
+    """A parallel motion: at places of its range, the body and its two paths; transmission angles over the range."""
+    unit, metrics = problem.length_unit, design.metrics
+    first, last = (math.radians(degrees) for degrees in metrics.input_range)
+    scene = Scene(linkage, np.linspace(first, last, PLACES + 1)[:-1], ["P", "Q"])
+    size = scene.box().diagonal
+    turned = np.linspace(0.0, abs(last - first), SAMPLES)
+    sines = linkage.driven(first + math.copysign(1.0, last - first) * turned).sines
+
+    def bodies(view: Viewport) -> list[Element]:
+        return [
+            line(view.point(at["P"]), view.point(at["Q"]), stroke=DEMANDED, stroke_width=3.0, data_body=f"{k + 1}")
+            for k in range(PLACES)
+            if (at := scene.joints(k))
+        ]
+
+    name = NAMES[design.mechanism.type]
+    return Content(
+        name,
+        f"{name}, {BASES[metrics.base]}",
+        f"a sixbar at {PLACES} places of its range",
+        PlanarPicture(scene, unit, bodies),
+        [
+            ("rotation of the body", f"{small(metrics.rotation)}°"),
+            ("Q from P", f"({length(metrics.translation[0], size)}, {length(metrics.translation[1], size)})"),
+            ("input from", angle(metrics.input_range[0], 2)),
+            ("to", angle(metrics.input_range[1], 2)),
+            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
+            *_size_and_quality(metrics, unit),
+        ],
+        standing="there",
+        more_dimensions=_coupler_point(design.mechanism),
+        diagrams=[
+            Diagram(
+                f"transmission angle at the {link} (°) over the input's rotation",
+                f"transmission_{link}",
+                np.degrees(turned),
+                np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0))),
+                OUTPUT,
+                interval=(0.0, math.degrees(abs(last - first))),
+            )
+            for link, sine in sines.items()
+        ],
+    )
+
+
+def _coupler_point(mechanism: Any) -> list[tuple[str, str]]:
+    return [
+        ("coupler point A–P", length(mechanism.coupler_point.distance)),
+        ("its angle from A–B", angle(mechanism.coupler_point.angle)),
+        ("reference input angle", angle(mechanism.reference_input_angle)),
+    ]
+
+
+_CONTENTS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
+    "motion": guided,
+    "path": guided,
+    "function": function,
+    "quick_return": quick_return,
+    "steering": steering,
+    "straight_line": straight_line,
+    "dwell": dwell,
+    "parallel_motion": parallel_motion,
+}
+
+
+def content_of(design: Any, problem: Any, linkage: DrivenLinkage) -> Content:
+    """What the kind of a problem shows of a design on its sheet."""
+    return _CONTENTS[problem.kind](design, problem, linkage)

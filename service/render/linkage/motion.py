@@ -1,0 +1,114 @@
+"""The linkage of a design as every file of it needs it: rebuilt from its dimensions once, and driven over its range."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
+
+from kinematics import errors as kinematics
+from kinematics.linkage.planar.branches import Branch
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from service.render import NotBuilt
+from service.render.page.svg import Points
+from synthesis.analyses.cycle import branch_of, cycle_along
+from synthesis.mechanisms import GivenMechanism, MechanismError
+
+Real = NDArray[np.float64]
+
+_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
+
+
+class DrivenLinkage:
+    """A mechanism, and its motion as far as a drawing asks for it.
+
+    Inputs are radians, or lengths along the input slide.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+
+    @classmethod
+    def of(cls, design: Any) -> DrivenLinkage:
+        """The linkage of a design, from its dimensions and its skeleton, as anybody who has only those would build it.
+
+        Raises
+        ------
+        NotBuilt
+            Where it is none that the analysis core would be given.
+        """
+        try:
+            return cls(_GIVEN.validate_python(design.mechanism.model_dump()).mechanism())
+        except (ValidationError, MechanismError, kinematics.MechanismError) as error:
+            raise NotBuilt(type(error).__name__) from error
+
+    @cached_property
+    def branch(self) -> Branch | None:
+        """The branch of the reference configuration; None where it is not known."""
+        return branch_of(self.mechanism)
+
+    @cached_property
+    def cycle(self) -> tuple[float, float]:
+        """First and last input of the cycle."""
+        return cycle_along(self.mechanism, self.branch)
+
+    @property
+    def limits(self) -> tuple[float, float] | None:
+        """Inputs at which the linkage cannot go on; None where the input turns fully, or the branch is not known."""
+        return None if self.branch is None or self.branch.full else self.cycle
+
+    @property
+    def moving(self) -> list[str]:
+        """Joints that are not fixed."""
+        return [joint for joint in self.mechanism.joints if joint not in self.mechanism.links[GROUND]]
+
+    def driven(self, inputs: Real, order: int = 0) -> MechanismMotion:
+        """The linkage at inputs, with derivatives by the input up to an order."""
+        return drive(self.mechanism, inputs, order=order)
+
+    def path(self, joint: str, first: float, last: float, count: int) -> Points:
+        """Path of a joint from an input to another; NaN where the linkage cannot be assembled."""
+        return np.asarray(self.driven(np.linspace(first, last, count)).joints[joint][0])
+
+    def inputs(self, degrees: Any) -> Real:
+        """Inputs as the answer states them (degrees, or lengths of an input slide)."""
+        stated = np.asarray(degrees, dtype=np.float64)
+        return stated if self.mechanism.driven_by_slide else np.radians(stated)
+
+    def targets(self, design: Any) -> Real:
+        """Inputs at the targets of a design, or that of the reference configuration where it has none."""
+        stated = [target.input_angle for target in getattr(design, "targets", None) or []]
+        return self.inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)
+
+
+@dataclass(frozen=True)
+class Demand:
+    """A demanded point, and the direction of the body there where one is demanded, radians; counted from 0."""
+
+    index: int
+    point: complex
+    angle: float | None
+
+
+def demands_of(problem: Any) -> list[Demand]:
+    """What a problem demands of the point P, in its order; nothing where it demands no places of it."""
+    places = getattr(problem, "positions", None) or getattr(problem, "points", None) or []
+    angles = [getattr(place, "angle", None) for place in places]
+    return [
+        Demand(k, place.point, None if angle is None else math.radians(angle))
+        for k, (place, angle) in enumerate(zip(places, angles, strict=True))
+    ]
+
+
+def target_curve(problem: Any) -> Points | None:
+    """The curve that is to be drawn as a whole, closed where it is; None where points alone are demanded."""
+    if not getattr(problem, "matched", False):
+        return None
+    points = np.array([place.point for place in problem.points])
+    return np.append(points, points[0]) if problem.closed else points
