@@ -58,9 +58,14 @@ export function judged(motion, design, problem) {
   return found;
 }
 
+/** Where the input stands at a target: an angle, or the place of an input that slides. @param {any} target @returns {number} */
+function inputOf(target) {
+  return target.input_angle ?? target.input_place;
+}
+
 /** Which samples lie between the first target and the last: the range that limits are for. @param {any} design @param {number[]} inputs @returns {boolean[] | undefined} */
 function usedRange(design, inputs) {
-  const at = (design.targets ?? []).map((/** @type {any} */ one) => one.input_angle);
+  const at = (design.targets ?? []).map(inputOf);
   if (at.length < 2 || !at.every(Number.isFinite)) return undefined;
   const [low, high] = [Math.min(...at), Math.max(...at)];
   const past = (/** @type {number} */ input) => input - low - 360 * Math.floor((input - low) / 360);
@@ -74,8 +79,8 @@ function errorCurve(design) {
     return { title: `Structural error (${structural.unit === "degrees" ? "°" : "length"})`, at: structural.curve.input_angle, values: structural.curve.error };
   }
   const targets = design.targets ?? [];
-  if (targets.length > 2 && targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(one.input_angle))) {
-    return { title: "Steering error (°)", at: targets.map((/** @type {any} */ one) => one.input_angle), values: targets.map((/** @type {any} */ one) => one.error) };
+  if (targets.length > 2 && targets.every((/** @type {any} */ one) => Number.isFinite(one.error) && Number.isFinite(inputOf(one)))) {
+    return { title: "Steering error (°)", at: targets.map(inputOf), values: targets.map((/** @type {any} */ one) => one.error) };
   }
   return null;
 }

@@ -222,13 +222,34 @@ LinkageMechanism = Annotated[
 """Any linkage that an answer may hold; the field ``type`` tells which."""
 
 
-class Target(Answer):
-    """One demanded position as the driven mechanism meets it."""
+class DrivenTo(Answer):
+    """Where the input stands at a target: an input that turns at an angle, one that slides at a place of its line."""
 
     index: int
-    input_angle: Angle = Field(
-        description="Absolute input angle, degrees, continuous along the motion from the first target."
+    input_angle: Angle | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Absolute input angle, degrees, continuous along the motion from the first target; "
+        "left out where the input slides.",
     )
+    input_place: Length | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Place of an input that slides, along its line from the line's point, length units; "
+        "left out where the input turns.",
+    )
+
+    @property
+    def at(self) -> float:
+        """The input as an analysis takes it: degrees, or length units."""
+        stated = self.input_place if self.input_angle is None else self.input_angle
+        assert stated is not None
+        return stated
+
+
+class Target(DrivenTo):
+    """One demanded position as the driven mechanism meets it."""
+
     residual: float = Field(
         description="Larger of the distance to the demanded point, as a share of the task's size, "
         "and the difference to the demanded angle in radians."
@@ -255,7 +276,16 @@ class LinkageMetrics(Answer):
     same_branch: bool
     visits_in_order: bool
     full_rotation: bool
-    input_rotation: Angle = Field(description="Rotation of the input from the first target to the last, degrees.")
+    input_rotation: Angle | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="Rotation of the input from the first target to the last, degrees; left out where it slides.",
+    )
+    input_travel: Length | None = Field(
+        default=None,
+        exclude_if=blank,
+        description="The same of an input that slides, length units; left out where it turns.",
+    )
     link_ratio: float = Field(description="Longest link over shortest.")
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "

@@ -69,13 +69,14 @@ class Driven(NamedTuple):
     output_side: Side
 
 
-def targets(inputs: Real, target: Demanded, driven: Driven) -> list[Target]:
-    """Targets as they are met, with inputs in degrees."""
+def targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool = False) -> list[Target]:
+    """Targets as they are met; inputs in degrees, or in length units where the input slides."""
     residuals = target.residuals(driven.offsets)
     return [
         Target(
             index=k,
-            input_angle=float(at),
+            input_angle=None if slides else float(at),
+            input_place=float(at) if slides else None,
             residual=float(residual),
             point_residual=math.hypot(offset[0], offset[1]),
             angle_residual=math.degrees(abs(offset[2])),

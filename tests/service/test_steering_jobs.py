@@ -30,10 +30,13 @@ def test_designs_are_drawn_and_driven(client, job):
         assert all(motion.json()["valid"])
         # The positions that the answer lists are those that an analysis of the mechanism gives.
         last = design["targets"][-1]
-        body = {"mechanism": design["mechanism"], "motion": {"at": last["input_angle"]}}
+        turns = design["mechanism"]["type"] == "fourbar"
+        driven, absent = ("input_angle", "input_place") if turns else ("input_place", "input_angle")
+        assert absent not in last, "an input is at an angle, or at a place"
+        body = {"mechanism": design["mechanism"], "motion": {"at": last[driven]}}
         here = client.post("/v1/analyses", json=body).json()
         name = "output" if design["mechanism"]["type"] == "fourbar" else "right_arm"
-        body["motion"]["at"] = design["targets"][0]["input_angle"]
+        body["motion"]["at"] = design["targets"][0][driven]
         straight = client.post("/v1/analyses", json=body).json()
         turned = here["links"][name]["angle"][0] - straight["links"][name]["angle"][0]
         assert (turned - last["outer"] + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-6)

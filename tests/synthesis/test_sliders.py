@@ -163,14 +163,28 @@ def test_damaged_dimensions_are_found(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["PR", "RP"])
 def test_designs_are_taken_as_they_are_by_an_analysis(kind: str) -> None:
     design = design_with(kind)
-    angles = [target.input_angle for target in design.targets]
+    inputs = [target.at for target in design.targets]
     skeleton = design.mechanism.skeleton.model_dump()
     for mechanism in (design.mechanism.model_dump(), {"type": design.mechanism.type, "skeleton": skeleton}):
-        for at, position in zip(angles, ORDINARY, strict=True):
+        for at, position in zip(inputs, ORDINARY, strict=True):
             answer = parse_request({"mechanism": mechanism, "motion": {"at": at}}).answer()
             assert answer["valid"] == [True]
             assert answer["joints"]["P"]["x"][0] == pytest.approx(position["x"], abs=1e-6)
             assert answer["joints"]["P"]["y"][0] == pytest.approx(position["y"], abs=1e-6)
+
+
+@pytest.mark.parametrize(("side", "slides"), [("input_side", True), ("output_side", False)])
+def test_an_input_stands_at_an_angle_or_at_a_place(side: str, slides: bool) -> None:
+    problem = problem_of(ORDINARY, **{side: {"dyad": "PR"}}, max_designs=1)
+    design = solved(problem).designs[0]
+    stated, absent = ("input_place", "input_angle") if slides else ("input_angle", "input_place")
+    for target in design.targets:
+        assert target.at == getattr(target, stated)
+        assert absent not in target.model_dump(mode="json")
+    gone = design.metrics.input_travel if slides else design.metrics.input_rotation
+    assert gone == pytest.approx(design.targets[-1].at - design.targets[0].at)
+    assert (design.metrics.input_rotation if slides else design.metrics.input_travel) is None
+    assert_drives_through(design, problem)
 
 
 def test_a_slider_is_offered_where_pins_cannot_do_it() -> None:

@@ -166,7 +166,7 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
         way = traverse(linkage, angles, np.array([c.assembly for c in configurations]))
         start, end, used = float(way.angles[0]), float(way.angles[-1]), (way.start, way.end)
     if target is not None and configurations:
-        inputs = [math.radians(met.input_angle) for met in design.targets]
+        inputs = [math.radians(met.at) for met in design.targets]
         turned = inputs[0] + math.copysign(math.tau, inputs[-1] - inputs[0])
         end = turned if isinstance(problem, PathProblem) and problem.closed else inputs[-1]
         used = (min(start, end, *inputs), max(start, end, *inputs))
@@ -206,12 +206,12 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
     size = spread if spread > 0.0 else float(driven.linkage.coupler)
     found = []
     for target in design.targets:
-        if not (0 <= target.index < len(demands) and math.isfinite(target.input_angle)):
+        if not (0 <= target.index < len(demands) and math.isfinite(target.at)):
             continue
         demand = demands[target.index]
         choices = []
         for sign in (driven.assembly, -driven.assembly):
-            at = _assembled(driven.linkage, toggles, math.radians(target.input_angle), sign)
+            at = _assembled(driven.linkage, toggles, math.radians(target.at), sign)
             if at is None:
                 continue
             a, b, p, coupler_angle = at
@@ -220,7 +220,7 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
             if demand.angle is not None:
                 miss = max(miss, abs(math.remainder(body_angle - demand.angle, math.tau)))
             configuration = Configuration(
-                target.index, math.radians(target.input_angle), sign, sign == driven.assembly, a, b, p, body_angle
+                target.index, math.radians(target.at), sign, sign == driven.assembly, a, b, p, body_angle
             )
             choices.append((miss > MEETS, not configuration.own, configuration))
         if choices:

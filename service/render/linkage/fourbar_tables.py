@@ -102,7 +102,7 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
         if target is None:
             cells += [NONE, NONE]
         else:
-            cells += [angle(target.input_angle, 2), small(target.residual)]
+            cells += [angle(target.at, 2), small(target.residual)]
         note = "" if k in assembled else "cannot be assembled here"
         if k in assembled and not assembled[k].own:
             note = "only in the other assembly (dashed)"
@@ -140,7 +140,8 @@ def metrics(design: LinkageDesign, unit: str) -> list[tuple[str, str]]:
     rows = [] if found.grashof is None else [("type", f"{GRASHOF[found.grashof]} ({clean(found.barker or '')})")]
     rows += [
         ("min transmission angle", angle(found.min_transmission_angle, 2)),
-        ("input rotation", angle(found.input_rotation, 2)),
+        *([] if found.input_rotation is None else [("input rotation", angle(found.input_rotation, 2))]),
+        *([] if found.input_travel is None else [("input travel", f"{length(found.input_travel, digits=4)} {unit}")]),
         ("input turns fully", _yes(found.full_rotation)),
         ("one branch, in order", f"{_yes(found.same_branch)}, {_yes(found.visits_in_order)}"),
         ("longest : shortest link", length(found.link_ratio, digits=4)),

@@ -116,7 +116,7 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
     slides = linkage.mechanism.driven_by_slide
     met = [
         (
-            f"{target.index + 1}: input {length(target.input_angle) if slides else angle(target.input_angle, 2)}",
+            f"{target.index + 1}: input {length(target.at) if slides else angle(target.at, 2)}",
             f"off by {small(target.point_residual)} {unit}"
             + ("" if target.angle_residual is None else f", {angle(target.angle_residual, 2)}"),
         )
@@ -192,7 +192,7 @@ def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLi
             ("root mean square", off(error.rms)),
             ("alternating extremes", f"{error.alternations}"),
             ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            ("input rotation", angle(metrics.input_rotation, 3)),
+            *([] if metrics.input_rotation is None else [("input rotation", angle(metrics.input_rotation, 3))]),
             *_size_and_quality(metrics, unit),
         ],
         [blocks.rows("Dials", readings), blocks.rows("Targets", _first(met))],
@@ -254,7 +254,7 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
     straight = float(linkage.mechanism.reference_input)
     if linkage.mechanism.driven_by_slide:
         # Both locks are as far from the straight position.
-        locks = [targets[-1].input_angle, 2.0 * straight - targets[-1].input_angle]
+        locks = [targets[-1].at, 2.0 * straight - targets[-1].at]
     else:
         locks = [straight + math.radians(problem.lock), straight - math.radians(metrics.outer_lock)]
     scene = Scene(linkage, np.array([straight, *locks]), [])

@@ -19,6 +19,7 @@ from service.render import NotBuilt
 from service.render.page.svg import Points
 from synthesis.analyses.cycle import branch_of, cycle_along
 from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.model.linkage_answer import DrivenTo
 
 Real = NDArray[np.float64]
 
@@ -83,7 +84,8 @@ class DrivenLinkage:
 
     def targets(self, design: Any) -> Real:
         """Inputs at the targets of a design, or that of the reference configuration where it has none."""
-        stated = [target.input_angle for target in getattr(design, "targets", None) or []]
+        targets = getattr(design, "targets", None) or []
+        stated = [target.at if isinstance(target, DrivenTo) else target.input_angle for target in targets]
         return self.inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)
 
 

@@ -65,7 +65,7 @@ def coupler_drivers(
 ) -> list[tuple[float, SixbarMechanism]]:
     """The best drivers of a fourbar's coupler, at most ``count``, with their scores, best first."""
     fourbar = driven_fourbar(mechanism)
-    inputs = np.radians([target.input_angle for target in design.targets])
+    inputs = np.radians([target.at for target in design.targets])
     steps = np.diff(inputs)
     if not (np.all(steps > 0.0) or np.all(steps < 0.0)):
         return []

@@ -172,7 +172,7 @@ def _drivers(
 ) -> list[tuple[float, SixbarMechanism]]:
     """Drivers of one link with their scores, the best of each shape."""
     fourbar = driven_fourbar(mechanism)
-    inputs = np.radians([target.input_angle for target in design.targets])
+    inputs = np.radians([target.at for target in design.targets])
     at = positions(fourbar.linkage, inputs, fourbar.assembly)
     if not at.valid.all():
         return []

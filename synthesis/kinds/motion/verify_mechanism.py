@@ -122,7 +122,9 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     everything = np.array(list(joints.values()))
     span = np.ptp(everything.view(np.float64).reshape(-1, 2), axis=0)
     barker = _barker(design)
-    degrees = (lambda x: x) if mechanism.driven_by_slide else np.degrees
+    slides = mechanism.driven_by_slide
+    inputs = way.inputs if slides else np.degrees(way.inputs)
+    gone = float(inputs[-1] - inputs[0])
     metrics = LinkageMetrics(
         grashof=None if barker is None else barker[0],
         barker=None if barker is None else barker[1],
@@ -131,7 +133,8 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,
-        input_rotation=float(degrees(way.inputs[-1] - way.inputs[0])),
+        input_rotation=None if slides else gone,
+        input_travel=gone if slides else None,
         link_ratio=ratio,
         rms_residual=target.rms(driven.offsets),
         size=math.hypot(*span),
@@ -145,7 +148,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         checks += _driver_checks(problem, design, mechanism, here, way)
     return LinkageDesign(
         mechanism=design,
-        targets=targets(np.asarray(degrees(way.inputs)), target, driven),
+        targets=targets(inputs, target, driven, slides=slides),
         verification=Verification(passed=all(check.passed for check in checks), checks=checks),
         metrics=metrics,
     )

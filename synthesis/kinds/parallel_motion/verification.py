@@ -180,6 +180,7 @@ def _path(problem: ParallelMotionProblem, configuration: FourbarConfiguration) -
     if driven is None:
         return None
     metrics = driven.metrics
+    assert metrics.input_rotation is not None, "the input of a fourbar turns"
     return _Path(driven.verification.checks, driven.targets, math.radians(metrics.input_rotation), metrics.rms_residual)
 
 

@@ -56,7 +56,7 @@ def _measured(
     side: Literal["left", "right"], cognate: Cognate, source: DrivenFourbar, design: PathDesign
 ) -> PathCognate | None:
     """A cognate where the design stands at its targets; None where it has no position there (at a toggle)."""
-    inputs = np.radians([target.input_angle for target in design.targets])
+    inputs = np.radians([target.at for target in design.targets])
     own = positions(source.linkage, inputs, source.assembly)
     at = cognate.configuration(inputs, source.assembly)
     stands = positions(cognate.linkage, at.input_angle[..., None], at.assembly)

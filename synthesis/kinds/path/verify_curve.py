@@ -49,7 +49,7 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
         return None
     points = np.array([point.point for point in problem.points])
     fourbar = driven_fourbar(mechanism)
-    inputs = np.radians([target.input_angle for target in design.targets])
+    inputs = np.radians([target.at for target in design.targets])
     low, high = float(inputs.min()), float(inputs.max())
     if problem.closed and design.metrics.full_rotation:
         low, high = float(inputs[0]), float(inputs[0]) + 2.0 * np.pi

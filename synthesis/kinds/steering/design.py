@@ -14,7 +14,7 @@ from synthesis.model.answer import (
     blank,
 )
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
+from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, Skeleton
 
 
 class DavisMechanism(Answer):
@@ -30,11 +30,9 @@ SteeringMechanisms = Annotated[FourbarMechanism | DavisMechanism, Discriminator(
 """Any steering mechanism; the field ``type`` tells which."""
 
 
-class SteeringPosition(Answer):
-    """The steering turned to the left, as measured on the driven mechanism; degrees."""
+class SteeringPosition(DrivenTo):
+    """The steering turned to the left, as measured on the driven mechanism, whose input is the left arm or the bar."""
 
-    index: int
-    input_angle: float = Field(description="What drives it: angle of the left arm, degrees, or place of the bar.")
     inner: Angle
     outer: Angle
     required: Angle = Field(description="What the outer wheel should have.")

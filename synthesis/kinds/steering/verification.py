@@ -118,13 +118,14 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         checks.append(at_most("steering_error", worst, problem.max_steering_error, ANGLE))
     checks += _constraint_checks(problem, design, lengths, metrics)
     listed = np.linspace(0, len(half[0]) - 1, SHOWN).round().astype(int)
-    stated = np.degrees(half[3]) if isinstance(design, FourbarMechanism) else half[3]
+    turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
         mechanism=design,
         targets=[
             SteeringPosition(
                 index=n,
-                input_angle=float(stated[k]),
+                input_angle=math.degrees(float(half[3][k])) if turns else None,
+                input_place=None if turns else float(half[3][k]),
                 inner=math.degrees(float(half[0][k])),
                 outer=math.degrees(float(half[1][k])),
                 required=math.degrees(float(outer_angle(half[0][k], ratio))),

@@ -1,0 +1,227 @@
+"""Every number of a report, and of the checks on a sheet, has the value of the answer and the unit of its field."""
+
+import re
+from functools import cache
+from html.parser import HTMLParser
+from xml.etree import ElementTree
+
+import pytest
+from pydantic import BaseModel
+
+from service.render import NoSuchExport, exported
+from service.render.outline import MOST_NUMBERS, words, written
+from service.render.page.numbers import length
+from service.render.report import Occasion, report
+from service.units import symbols
+from synthesis.dispatch import solve
+from synthesis.model.dimension import ANGLE, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
+from synthesis.registry import KINDS, examples, parse_problem
+
+OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
+
+# The example of each kind that is solved at once; the others take longer.
+QUICK = {"motion": 3, "path": 1, "function": 1, "cam": 0, "straight_line": 1, "quick_return": 0}
+
+# What the checks measure that compare in a unit; the others are shares, residuals, ratios and counts, which have none.
+MEASURING = {
+    "transmission_angle": ANGLE,
+    "shortest_link": LENGTH,
+    "longest_link": LENGTH,
+    "swing": ANGLE,
+    "steering_error": ANGLE,
+    "steers_correctly": ANGLE,
+    "deviation": LENGTH,
+    "velocity_variation": PERCENT,
+    "dwell_1": OUTPUT,
+    "dwell_2": OUTPUT,
+    "coaxial": LENGTH,
+    "clearance": LENGTH,
+    "pressure_angle": ANGLE,
+    "pressure_angle_fall": ANGLE,
+    "min_radius": LENGTH,
+    "face_width": LENGTH,
+    "clears_pivot": LENGTH,
+    "hub_radius": LENGTH,
+    "size": LENGTH,
+    "peak_velocity": VELOCITY,
+    "table_velocity": VELOCITY,
+}
+
+
+class Tables(HTMLParser):
+    """The tables of a page, each with the heading above it: rows of cells, and a head of its own where it is a list."""
+
+    def __init__(self, text):
+        super().__init__(convert_charrefs=True)
+        self.headings, self.tables, self.cell = ["", ""], [], None
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "table":
+            self.tables.append({"under": tuple(self.headings), "caption": "", "rows": []})
+        elif tag == "tr":
+            self.tables[-1]["rows"].append([])
+        elif tag in ("h2", "h3", "caption", "td", "th"):
+            self.cell = ""
+
+    def handle_endtag(self, tag):
+        if self.cell is None or tag not in ("h2", "h3", "caption", "td", "th"):
+            return
+        if tag in ("h2", "h3"):
+            self.headings = [self.cell, ""] if tag == "h2" else [self.headings[0], self.cell]
+        elif tag == "caption":
+            self.tables[-1]["caption"] = self.cell
+        else:
+            self.tables[-1]["rows"][-1].append(self.cell)
+        self.cell = None
+
+    def handle_data(self, data):
+        if self.cell is not None:
+            self.cell += data
+
+    def under(self, *headings):
+        return [table for table in self.tables if table["under"] == headings]
+
+
+def numbers(model, path=()):
+    """Every field of a model, and of the models in it, that holds numbers: the path to it, what it holds, its unit."""
+    for name in type(model).model_fields:
+        value, here = getattr(model, name), (*path, name)
+        for key, member in value.items() if isinstance(value, dict) else [(None, value)]:
+            there = here if key is None else (*here, key)
+            if isinstance(member, BaseModel):
+                yield from numbers(member, there)
+            elif isinstance(member, list) and member and isinstance(member[0], BaseModel):
+                for k, entry in enumerate(member):
+                    yield from numbers(entry, (*there, k))
+            elif holds_floats(member):
+                yield there, member, dimensions(type(model)).get(name)
+
+
+def holds_floats(value):
+    return any(map(holds_floats, value)) if isinstance(value, list | tuple) else isinstance(value, float)
+
+
+def check_written(tables, model, units, leave_out=()):
+    """Each number of a model stands in a table under its name, with its value and its unit."""
+    seen = 0
+    for path, value, dimension in numbers(model):
+        if path[0] in leave_out:
+            continue
+        unit = "" if dimension is None else units[dimension]
+        members = [k for k, part in enumerate(path) if isinstance(part, int)]
+        long = isinstance(value, list) and len(value) > MOST_NUMBERS
+        if members:
+            # In a list of models: a row for each of them, where there are not too many, and a column for the field.
+            k = members[0]
+            if len(members) > 1 or not shown_in_list(tables, path, k, f"{len(value)} values" if long else value, unit):
+                continue
+        elif long and shown_as_column(tables, path, value, unit):
+            pass
+        else:
+            name = words(": ".join(part.replace("_", " ") for part in path))
+            text = f"{len(value)} values" if long else written(value)
+            rows = [row[:3] for table in tables for row in table["rows"] if not table["caption"]]
+            assert [name.lower(), text, unit] in [[row[0].lower(), *row[1:]] for row in rows], path
+        seen += 1
+    return seen
+
+
+def head(name, unit):
+    return (words(name) + (f" ({unit})" if unit else "")).lower()
+
+
+def shown_in_list(tables, path, k, value, unit):
+    caption, name = words(": ".join(path[:k])), " ".join(map(str, path[k + 1 :]))
+    (table,) = [t for t in tables if t["caption"].lower() == caption.lower()]
+    heads = [cell.lower() for cell in table["rows"][0]]
+    if head(name, unit) not in heads:
+        # More columns than a page is wide: the last ones are in the JSON only, whatever their units.
+        assert len(heads) == 10
+        assert not any(re.fullmatch(rf"{re.escape(words(name).lower())}( \(.*\))?", h) for h in heads)
+        return False
+    if len(table["rows"]) - 1 <= path[k]:
+        return False
+    listed = [row[heads.index(head(name, unit))] for row in table["rows"][1:]]
+    text = value if isinstance(value, str) else written(value)
+    assert text in listed if len(listed) == 40 else listed[path[k]] == text, path
+    return True
+
+
+def shown_as_column(tables, path, value, unit):
+    for table in tables:
+        heads = [cell.lower() for cell in table["rows"][0]] if table["rows"] else []
+        if table["caption"].lower() == words(": ".join(path[:-1])).lower() and head(path[-1], unit) in heads:
+            column = [row[heads.index(head(path[-1], unit))] for row in table["rows"][1:]]
+            assert (column[0], column[-1]) == (written(value[0]), written(value[-1])), path
+            return True
+    return False
+
+
+@cache
+def solved(kind, n):
+    problem = parse_problem(examples(kind)[n])
+    return problem, solve(problem)
+
+
+EXAMPLES = [
+    pytest.param(kind, n, marks=[] if n == QUICK.get(kind, 0) and kind != "dwell" else pytest.mark.slow)
+    for kind in KINDS
+    for n in range(len(examples(kind)))
+]
+
+
+@pytest.mark.parametrize(("kind", "n"), EXAMPLES)
+def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
+    problem, result = solved(kind, n)
+    units = symbols(problem)
+    page = Tables(report(problem, result, OCCASION, len(result.designs)))
+    check_written(page.under("Problem", ""), problem, units)
+    check_written(page.under("What was searched", ""), result.search, units)
+    for number, design in enumerate(result.designs):
+        section = f"Design {number}: {words(design.mechanism.type)}"
+        (checks,) = page.under(section, "Checks")
+        for row, check in zip(checks["rows"][1:], design.verification.checks, strict=True):
+            unit = "" if check.dimension is None else f" {units[check.dimension]}"
+            stated = ["" if value is None else f"{length(value)}{unit}" for value in (check.value, check.limit)]
+            assert row == [words(check.name), "✓ passed" if check.passed else "✗ failed", *stated]
+        assert check_written(page.under(section, "Dimensions"), design.mechanism, units, {"skeleton"}) or kind in (
+            "layshaft_gearbox",
+        )
+        assert check_written(page.under(section, "Quantities"), design.metrics, units)
+        rest = page.under(section, "As it was driven")
+        check_written(rest, design, units, {"mechanism", "metrics", "verification"})
+
+
+@pytest.mark.parametrize(("kind", "n"), EXAMPLES)
+def test_checks_say_what_they_measure(kind, n):
+    _, result = solved(kind, n)
+    for design in result.designs:
+        for check in design.verification.checks:
+            compares = check.value is not None or check.limit is not None
+            assert check.dimension == (MEASURING.get(check.name) if compares else None), check.name
+
+
+@pytest.mark.parametrize(("kind", "n"), EXAMPLES)
+def test_checks_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
+    problem, result = solved(kind, n)
+    units = symbols(problem)
+    for design in result.designs:
+        try:
+            drawing = ElementTree.fromstring(exported(design, problem, "sheet", "svg"))
+        except NoSuchExport:
+            continue
+        rows = [group for group in drawing.iter() if group.get("data-check")]
+        assert [row.get("data-check") for row in rows] == [check.name for check in design.verification.checks]
+        for row, check in zip(rows, design.verification.checks, strict=True):
+            unit = "" if check.dimension is None else units[check.dimension]
+            texts = [part.text or "" for part in row.iter() if part.tag.endswith("text")]
+            amounts = re.findall(r"([−\d.e]+) ?([^\s()]*)", texts[-1].replace("limit", "")) if len(texts) > 1 else []
+            if check.value is None:
+                assert not amounts, check.name
+                continue
+            stated = [value for value in (check.value, check.limit) if value is not None]
+            assert [symbol for _, symbol in amounts] == [unit] * len(stated), (check.name, texts)
+            for (digits, _), value in zip(amounts, stated, strict=True):
+                assert float(digits.replace("−", "-")) == pytest.approx(value, rel=0.06), check.name
