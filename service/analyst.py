@@ -24,10 +24,10 @@ from service.loading import IMPORTS
 THREADS = 2
 """Analyses that run at once. They hold the interpreter most of the time; more of them would only delay all others."""
 
-LONGEST_S = 20.0
+MAX_ANALYSIS_S = 20.0
 """How long a client is kept waiting for an analysis."""
 
-LATEST_START_S = 10.0
+MAX_START_DELAY_S = 10.0
 """The core is loaded after the first worker has started, so that the service is ready soon, but not later than this."""
 
 _PERIOD_S = 0.02
@@ -58,7 +58,7 @@ class Analyst:
         self._loaded = threading.Event()
 
     def start(self, after: Callable[[], bool]) -> None:
-        """Load the core once ``after`` says so, at the latest :data:`LATEST_START_S` from now; returns at once."""
+        """Load the core once ``after`` says so, at the latest :data:`MAX_START_DELAY_S` from now; returns at once."""
         for n in range(THREADS):
             loading = after if n == 0 else None
             threading.Thread(target=self._serve, args=(loading,), name=f"analyst-{n}", daemon=True).start()
@@ -69,19 +69,19 @@ class Analyst:
         Raises
         ------
         Busy, TooLong
-            After :data:`LONGEST_S`.
+            After :data:`MAX_ANALYSIS_S`.
         """
         future: Future[T] = Future()
         self._calls.put((future, partial(work, *args, **kwargs)))
         try:
-            async with asyncio.timeout(LONGEST_S):
+            async with asyncio.timeout(MAX_ANALYSIS_S):
                 return await asyncio.wrap_future(future)
         except TimeoutError:
             raise (Busy if future.cancelled() else TooLong) from None
 
     def _serve(self, loading: Callable[[], bool] | None) -> None:
         if loading is not None:
-            latest = time.monotonic() + LATEST_START_S
+            latest = time.monotonic() + MAX_START_DELAY_S
             while not loading() and time.monotonic() < latest:
                 time.sleep(_PERIOD_S)
             self._load()

@@ -32,13 +32,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if command.name == "worker":
         return _worker()
     if command.name == "demo":
-        from httpx import HTTPError
-
         from service.demo import DemoFailure, demo
 
         try:
             demo(command.output)
-        except (DemoFailure, HTTPError, OSError) as failure:
+        except (DemoFailure, OSError) as failure:
             print(f"mechsynth demo: {failure}", file=sys.stderr)
             return EXIT_FAILURE
         return 0

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import httpx
+from service.client import Client, ClientError, Job
 
 START_TIMEOUT_S = 120.0
 """The very first start compiles the numeric kernels."""
@@ -33,34 +33,24 @@ def demo(output: Path) -> None:
     DemoFailure
         When the service does not start, does not answer as documented, or finds no design.
     """
-    with _service() as url, httpx.Client(base_url=url, timeout=60.0) as client:
-        problem = _example(client, "motion")
-        answer = client.post("/v1/jobs", json={"problem": problem, "label": "demo"}, headers={"Prefer": "wait=10"})
-        if answer.status_code != 200:
-            raise DemoFailure(f"the job was not finished in time: {answer.status_code} {answer.text[:500]}")
-        job = answer.json()
-        if job["status"] != "succeeded" or not job["result"]["designs"]:
-            raise DemoFailure(f"no design: {job['status']}, {job['error'] or job['result']['summary']}")
-        drawing = client.get(f"/v1/jobs/{job['id']}/designs/0.svg")
-        if drawing.status_code != 200:
-            raise DemoFailure(f"no drawing: {drawing.status_code} {drawing.text[:500]}")
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_bytes(drawing.content)
+    with _service() as url, Client(url) as client:
+        try:
+            job = client.solve(client.problems()["motion"]["example"], label="demo")
+            drawing = client.file(job.id, 0, "svg")
+        except ClientError as error:
+            raise DemoFailure(str(error)) from None
+    if drawing is None:
+        raise DemoFailure("no design was found")
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_bytes(drawing)
     print(report(job))
     print(f"\nDrawing: {output}")
 
 
-def _example(client: httpx.Client, kind: str) -> Any:
-    """The example that the service gives for a kind of problem."""
-    answer = client.get("/v1/problems")
-    if answer.status_code != 200:
-        raise DemoFailure(f"no list of problems: {answer.status_code} {answer.text[:500]}")
-    return next(listed["example"] for listed in answer.json()["problems"] if listed["kind"] == kind)
-
-
-def report(job: dict[str, Any]) -> str:
+def report(job: Job) -> str:
     """The problem, the best design and its checks as a text for people."""
-    problem, result = job["problem"], job["result"]
+    assert job.result is not None
+    problem, result = job.problem, job.result
     unit = problem["length_unit"]
     design = result["designs"][0]
     mechanism, metrics = design["mechanism"], design["metrics"]
@@ -114,9 +104,7 @@ def _service() -> Iterator[str]:
         with announced.open("wb") as stdout:
             server = subprocess.Popen([sys.executable, "-m", "service.cli", "serve"], env=environment, stdout=stdout)
         try:
-            url = _announced_url(server, announced)
-            _await_ready(url)
-            yield url
+            yield _announced_url(server, announced)
         finally:
             server.terminate()
             try:
@@ -136,12 +124,3 @@ def _announced_url(server: subprocess.Popen[bytes], announced: Path) -> str:
             raise DemoFailure(f"the service ended at its start with status {server.returncode}")
         time.sleep(_POLL_S)
     raise DemoFailure(f"the service was not ready after {START_TIMEOUT_S:g} s")
-
-
-def _await_ready(url: str) -> None:
-    try:
-        answer = httpx.get(f"{url}/readyz")
-    except httpx.TransportError as error:
-        raise DemoFailure(f"the service does not answer: {error}") from None
-    if answer.status_code != 200:
-        raise DemoFailure(f"the service is not ready: {answer.text}")

@@ -12,10 +12,10 @@ from typing import ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
-AT_ONCE = 2
+MAX_AT_ONCE = 2
 """Drawings that are made at once; more of them would be ready no sooner."""
 
-LONGEST_WAIT_S = 20.0
+MAX_WAIT_S = 20.0
 """How long a drawing waits for its turn."""
 
 P = ParamSpec("P")
@@ -30,18 +30,18 @@ class Drawings:
     """Has drawings made, each in its turn. To be used on one event loop only."""
 
     def __init__(self) -> None:
-        self._turn = asyncio.Semaphore(AT_ONCE)
+        self._turn = asyncio.Semaphore(MAX_AT_ONCE)
 
-    async def made(self, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """What ``draw`` gives, called in a thread.
+    async def call(self, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+        """Call ``draw`` in a thread when its turn has come; what it raises is raised here.
 
         Raises
         ------
         Busy
-            After :data:`LONGEST_WAIT_S`.
+            After :data:`MAX_WAIT_S`.
         """
         try:
-            async with asyncio.timeout(LONGEST_WAIT_S):
+            async with asyncio.timeout(MAX_WAIT_S):
                 await self._turn.acquire()
         except TimeoutError:
             raise Busy from None

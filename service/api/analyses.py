@@ -10,7 +10,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ValidationError
 from pydantic_core import to_json
 
-from service.analyst import LONGEST_S, Analyst, Busy, TooLong
+from service.analyst import MAX_ANALYSIS_S, Analyst, Busy, TooLong
 from service.api import errors
 from service.api.body import JsonRoute
 from service.api.errors import busy, invalid_mechanism, invalid_request, sentence
@@ -72,7 +72,7 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
         with span("analysis"):
             return Response(await analyst.call(work, *args, **kwargs), media_type="application/json")
     except TooLong:
-        fault = ("/mechanism", f"The analysis was given up after {LONGEST_S:g} seconds; are all lengths meant so?")
+        fault = ("/mechanism", f"The analysis was given up after {MAX_ANALYSIS_S:g} seconds; are all lengths meant so?")
         raise invalid_mechanism([fault]) from None
     except Busy:
         raise busy("analyses") from None

@@ -108,7 +108,7 @@ for _form, _export in EXPORTS.items():
 
 async def _drawn(board: Drawings, draw: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     try:
-        return await board.made(draw, *args, **kwargs)
+        return await board.call(draw, *args, **kwargs)
     except Busy:
         raise busy("drawings") from None
 

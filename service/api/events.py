@@ -156,6 +156,6 @@ async def _nothing() -> AsyncIterator[bytes]:
 
 
 def _seen(last_event_id: str | None) -> tuple[int, Status] | None:
-    # What is no id of ours is passed over, like by a client that comes for the first time.
-    found = _EVENT_ID.fullmatch(last_event_id or "")
-    return None if found is None else (int(found[1]), Status(found[2]))
+    # An id that is none of ours is ignored, as if the client came for the first time.
+    match = _EVENT_ID.fullmatch(last_event_id or "")
+    return None if match is None else (int(match[1]), Status(match[2]))

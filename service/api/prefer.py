@@ -9,8 +9,8 @@ from collections.abc import Iterable
 # to nobody here.
 _WAIT = re.compile(r'\s*wait\s*=\s*(?:"(?P<quoted>[0-9]{1,9})"|(?P<plain>[0-9]{1,9}))\s*(?:;.*)?', re.IGNORECASE)
 _COMMA_OUTSIDE_QUOTES = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')
-_LONGEST = 1000
-"""What is read of it, characters: finding the commas takes time by the square of the length."""
+_MAX_LENGTH = 1000
+"""Characters of the header that are read: finding the commas takes time by the square of the length."""
 
 
 def wait_seconds(headers: Iterable[str], longest: int) -> int:
@@ -22,8 +22,8 @@ def wait_seconds(headers: Iterable[str], longest: int) -> int:
     >>> wait_seconds(["respond-async, wait=5"], longest=30)
     5
     """
-    for preference in _COMMA_OUTSIDE_QUOTES.split(",".join(headers)[:_LONGEST]):
-        found = _WAIT.fullmatch(preference)
-        if found:
-            return min(int(found["quoted"] or found["plain"]), longest)
+    for preference in _COMMA_OUTSIDE_QUOTES.split(",".join(headers)[:_MAX_LENGTH]):
+        match = _WAIT.fullmatch(preference)
+        if match:
+            return min(int(match["quoted"] or match["plain"]), longest)
     return 0

@@ -33,7 +33,7 @@ def _kinds() -> ProblemKinds:
                 description=inspect.getdoc(kind.problem) or "",
                 schema=kind.problem.model_json_schema(),
                 example=example(name),
-                files={one: list(found) for one in kind.mechanisms if (found := forms(name, one))},
+                files={type_: list(offered) for type_ in kind.mechanisms if (offered := forms(name, type_))},
             )
             for name, kind in KINDS.items()
         ]

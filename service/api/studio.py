@@ -36,13 +36,13 @@ class StudioFile(NamedTuple):
 
 
 def _read() -> dict[str, StudioFile]:
-    found = {}
+    files_by_name = {}
     for entry in files("service").joinpath("studio").iterdir():
         media_type = _TYPES.get(entry.name.rpartition(".")[2])
         if media_type is not None:
             content = entry.read_bytes()
-            found[entry.name] = StudioFile(content, media_type, f'"{hashlib.sha256(content).hexdigest()[:16]}"')
-    return found
+            files_by_name[entry.name] = StudioFile(content, media_type, f'"{hashlib.sha256(content).hexdigest()[:16]}"')
+    return files_by_name
 
 
 FILES = _read()

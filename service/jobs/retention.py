@@ -11,11 +11,11 @@ from starlette.concurrency import run_in_threadpool
 from service.jobs.finished import FinishedJobs
 from service.jobs.store import JobStore
 
-AT_ONCE = 200
+MAX_REMOVED_AT_ONCE = 200
 """Jobs removed by one statement, so that nobody who writes meanwhile waits for long."""
 
-LONGEST_PERIOD_S = 3600.0
-SHORTEST_PERIOD_S = 0.5
+MAX_PERIOD_S = 3600.0
+MIN_PERIOD_S = 0.5
 _PAUSE_S = 0.05
 
 log = structlog.get_logger(__name__)
@@ -26,11 +26,11 @@ async def keep_tidy(store: JobStore, finished: FinishedJobs, days: float | None)
     if days is None:
         return
     kept = timedelta(days=days)
-    period_s = min(max(kept.total_seconds() / 10, SHORTEST_PERIOD_S), LONGEST_PERIOD_S)
+    period_s = min(max(kept.total_seconds() / 10, MIN_PERIOD_S), MAX_PERIOD_S)
     while True:
         removed = 0
         try:
-            while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, AT_ONCE):
+            while gone := await run_in_threadpool(store.delete_finished, datetime.now(UTC) - kept, MAX_REMOVED_AT_ONCE):
                 removed += gone
                 finished.removed()
                 await asyncio.sleep(_PAUSE_S)

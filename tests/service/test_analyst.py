@@ -26,7 +26,7 @@ def test_what_is_returned_or_raised_comes_back(ready):
 
 
 def test_nobody_waits_for_ever(ready, monkeypatch):
-    monkeypatch.setattr(analyst, "LONGEST_S", 0.2)
+    monkeypatch.setattr(analyst, "MAX_ANALYSIS_S", 0.2)
     end, begun = threading.Event(), threading.Semaphore(0)
 
     def work():
@@ -58,7 +58,7 @@ def test_a_core_that_cannot_be_warmed_up_holds_nobody_up(ready, monkeypatch):
 
 
 def test_the_core_is_loaded_even_if_no_worker_ever_starts(ready, monkeypatch):
-    monkeypatch.setattr(analyst, "LATEST_START_S", 0.05)
+    monkeypatch.setattr(analyst, "MAX_START_DELAY_S", 0.05)
     other = Analyst()
     other.start(after=lambda: False)
     assert asyncio.run(other.call(divmod, 7, 2)) == (3, 1)

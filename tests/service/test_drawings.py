@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from service import drawings
 from service.api import designs
 from service.api.errors import Refusal
-from service.drawings import AT_ONCE, Busy, Drawings
+from service.drawings import MAX_AT_ONCE, Busy, Drawings
 from synthesis.registry import example
 
 MANY = 60
@@ -34,34 +34,34 @@ def test_who_does_not_draw_does_not_wait_for_who_does():
         return "drawn"
 
     async def ask():
-        made = Drawings()
-        under_way = [asyncio.ensure_future(made.made(draw)) for _ in range(MANY)]
+        board = Drawings()
+        under_way = [asyncio.ensure_future(board.call(draw)) for _ in range(MANY)]
         async with asyncio.timeout(20):
-            while drawing < AT_ONCE:
+            while drawing < MAX_AT_ONCE:
                 await asyncio.sleep(0.01)  # threads begin when they do
             assert await run_in_threadpool(lambda: "read") == "read"
         release.set()
         return await asyncio.gather(*under_way)
 
     assert asyncio.run(ask()) == ["drawn"] * MANY
-    assert most == AT_ONCE
+    assert most == MAX_AT_ONCE
 
 
 def test_nobody_waits_for_ever_and_a_turn_comes_back(monkeypatch):
-    monkeypatch.setattr(drawings, "LONGEST_WAIT_S", 0.1)
+    monkeypatch.setattr(drawings, "MAX_WAIT_S", 0.1)
     release = threading.Event()
 
     async def ask():
-        made = Drawings()
-        under_way = [asyncio.ensure_future(made.made(release.wait, 30)) for _ in range(AT_ONCE)]
+        board = Drawings()
+        under_way = [asyncio.ensure_future(board.call(release.wait, 30)) for _ in range(MAX_AT_ONCE)]
         await asyncio.sleep(0)  # they take their turns
         with pytest.raises(Busy):
-            await made.made(divmod, 7, 2)
+            await board.call(divmod, 7, 2)
         release.set()
         await asyncio.gather(*under_way)
         with pytest.raises(ZeroDivisionError):
-            await made.made(divmod, 7, 0)
-        return await made.made(divmod, 7, 2)
+            await board.call(divmod, 7, 0)
+        return await board.call(divmod, 7, 2)
 
     assert asyncio.run(ask()) == (3, 1)
 
@@ -71,7 +71,7 @@ def test_a_drawing_that_finds_no_turn_is_refused():
         raise Busy
 
     with pytest.raises(Refusal) as refused:
-        asyncio.run(designs._drawn(SimpleNamespace(made=never), divmod, 7, 2))
+        asyncio.run(designs._drawn(SimpleNamespace(call=never), divmod, 7, 2))
     assert (refused.value.status, refused.value.type) == (503, "/problems/busy")
 
 
