@@ -141,3 +141,8 @@ def _followed(
                 break
         pins_b[k] = b
     return pins_a, pins_b
+
+
+def inverted_images(task: Any, points: Any) -> Any:
+    """Fixed points as the body of a motion task sees them, moved back to the first position: shape (..., n)."""
+    return task.points[0] + task.turns.conj() * (np.asarray(points)[..., None] - task.points)

@@ -18,7 +18,7 @@ from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.sections import section
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.registry import parse_problem
-from tests.synthesis.planted import plant
+from tests.synthesis.planted import inverted_images, plant
 
 
 def random_task(rng: np.random.Generator, n: int = 4) -> MotionTask:
@@ -35,7 +35,7 @@ def curve_of(task: MotionTask) -> BurmesterCurve:
 
 def centre_cubic(task: MotionTask, fixed: np.ndarray) -> np.ndarray:
     """Whether O is the centre for some point: its four inverted images lie on a circle, a 4 × 4 determinant."""
-    z = task.inverted_images(fixed)
+    z = inverted_images(task, fixed)
     matrix = np.stack([np.abs(z) ** 2, z.real, z.imag, np.ones(z.shape)], axis=-1)
     scale = np.linalg.norm(matrix, axis=-1).prod(axis=-1)
     return np.asarray(np.abs(np.linalg.det(matrix)) / scale)

@@ -14,7 +14,6 @@ from kinematics.cam.segments import dwell, law_segment
 from synthesis.kinds.cam.critical import critical_motion
 from synthesis.kinds.cam.sizing import (
     RollerLimits,
-    face_sweep,
     free_offset,
     free_pivot,
     oscillating_flat,
@@ -75,6 +74,12 @@ def check_oscillating(seed: int) -> None:
         return
     assert brute is not None
     assert size.radius == pytest.approx(brute, abs=max(AGREES * size.radius, 2e-5 * (size.radius <= start + 2e-5)))
+
+
+def face_sweep(program: Program) -> float:
+    """Length that the contact sweeps on a translating face: greatest less least v, whatever the base radius."""
+    velocity = program.peaks[1]
+    return velocity.greatest - velocity.least
 
 
 def check_flat(seed: int) -> None:

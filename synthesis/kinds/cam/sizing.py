@@ -256,12 +256,6 @@ def translating_flat(program: Program, least_radius: float, least: float) -> Siz
     return Size(radius + MARGIN * max(radius, program.lift), proven=True)
 
 
-def face_sweep(program: Program) -> float:
-    """Length that the contact sweeps on a translating face: greatest less least v, whatever the base radius."""
-    v = program.peaks[1]
-    return v.greatest - v.least
-
-
 def oscillating_flat(
     program: Program,
     pivot: float,

@@ -40,11 +40,6 @@ class MotionTask(NamedTuple):
         images: Complex = self.points + self.turns * (np.asarray(points)[..., None] - self.points[0])
         return images
 
-    def inverted_images(self, points: Complex) -> Complex:
-        """Fixed points as the body sees them, moved back to the first position: shape (..., n)."""
-        images: Complex = self.points[0] + self.turns.conj() * (np.asarray(points)[..., None] - self.points)
-        return images
-
     def to_task(self, z: complex) -> complex:
         """A point of the problem in task coordinates."""
         return (z - self.origin) / self.size
