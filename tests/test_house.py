@@ -7,12 +7,14 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
-from service.render import forms
+from service.render import FILES, forms
 from synthesis.analyses import FAMILIES
 from synthesis.model.kind import Kind
+from synthesis.model.mechanism_types import models_within
 from synthesis.registry import KINDS
 
 ROOT = Path(__file__).parents[1]
@@ -55,11 +57,13 @@ def test_every_kind_is_offered() -> None:
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=lambda kind: kind.name)
 def test_every_mechanism_is_drawn_and_analysed(kind: Kind) -> None:
-    """Those that no family knows are linkages, which are stated by dimensions or a skeleton."""
-    assert kind.mechanisms
-    for mechanism in kind.mechanisms:
-        assert "svg" in forms(kind.name, mechanism)
-        assert mechanism in FAMILIES or "skeleton" in str(kind.result.model_json_schema()["$defs"])
+    """What has neither files nor a family of its own is a linkage, and is drawn and driven by its skeleton."""
+    designs = models_within(kind.result.model_fields["designs"].annotation)
+    for model in (model for design in designs for model in models_within(design.model_fields["mechanism"].annotation)):
+        for mechanism in get_args(model.model_fields["type"].annotation):
+            assert mechanism in kind.mechanisms
+            assert "svg" in forms(kind.name, mechanism)
+            assert (mechanism in FAMILIES and mechanism in FILES) or "skeleton" in model.model_fields
 
 
 def test_kinematics_knows_numpy_and_numba_only() -> None:
@@ -75,7 +79,7 @@ def test_kinematics_knows_numpy_and_numba_only() -> None:
 
 def test_kinds_are_known_by_name_where_they_are_listed_and_drawn_only() -> None:
     """What goes over all kinds asks the registry."""
-    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/", "service/units.py", "synthesis/proof/")
+    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/", "synthesis/proof/")
     files = [path for package in ("synthesis", "service") for path in (ROOT / package).rglob("*.py")]
     knowing = {
         place
@@ -89,9 +93,13 @@ def test_kinds_are_known_by_name_where_they_are_listed_and_drawn_only() -> None:
 def test_the_page_names_no_more_than_four_files_that_a_kind_edits() -> None:
     page = (ROOT / "docs" / "adding-a-kind.md").read_text("utf-8")
     table = page.split("## What is edited elsewhere")[1].split("\n\n")[1]
-    edited = re.findall(r"^\| `([^`]+)`", table, re.MULTILINE)
-    assert 0 < len(edited) <= MOST_EDITED
-    assert all((ROOT / file).is_file() for file in edited)
+    rows = re.findall(r"^\| `([^`]+)` \|[^|]*\|([^|]*)\|([^|]*)\|$", table, re.MULTILINE)
+    assert all((ROOT / file).is_file() for file, *_ in rows)
+    for_linkages, for_others = (
+        [mark for mark in column if "✓" in mark] for column in list(zip(*rows, strict=True))[1:]
+    )
+    assert 0 < len(for_linkages) <= MOST_EDITED
+    assert 0 < len(for_others) <= MOST_EDITED
 
 
 @pytest.mark.parametrize("module", ["synthesis.registry", "service.app"])
