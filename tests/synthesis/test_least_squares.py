@@ -23,6 +23,7 @@ from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import LinkageDesign
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.status import Status
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.continuation import Linkages, configurations, follow
@@ -278,6 +279,24 @@ def test_the_gradient_agrees_with_differences() -> None:
     differences = [(fitting.cost(x + step * e) - fitting.cost(x - step * e)) / (2.0 * step) for e in np.eye(len(x))]
     assert gradient == pytest.approx(np.array(differences), abs=1e-7)
     assert np.abs(gradient).max() > 1e-3
+
+
+def test_a_fit_says_whether_it_has_converged() -> None:
+    rng = np.random.default_rng(8)
+    planted = plant_many(rng, 12)
+    problem = motion(noisy(planted, 0.005, rng))
+    task = motion_task(problem)
+    found = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
+             for s in (planted.input_side, planted.output_side)]  # fmt: skip
+    fitting = PoseFit(fit_demands(problem, task), (found[0][0], found[1][0]))
+    start = fitting.start(found[0][1], found[1][1])
+    short, whole = fitting.minimum(start, evaluations=2), fitting.minimum(start)
+    assert short is not None
+    assert short.status is Status.STEP_LIMIT
+    assert whole is not None
+    assert whole.status.converged
+    assert whole.cost < short.cost
+    assert np.abs(fitting.gradient(whole.point)).max() < 1e-6
 
 
 def test_five_poses_give_all_planted_dyads_by_linear_algebra() -> None:

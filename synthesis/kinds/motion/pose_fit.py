@@ -28,7 +28,8 @@ from synthesis.kinds.motion.constraint_manifold import (
     nearest_poses,
     surface_distances,
 )
-from synthesis.numerics.multistart import EVALUATIONS, TIGHT, Fit, fit
+from synthesis.numerics.minpack import EVALUATIONS, TIGHT, Fit, fit
+from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -232,8 +233,8 @@ class _Chart:
         ended = fit(self._residuals, self._jacobian, start, tolerance=tolerance, evaluations=evaluations)
         x = self._at(ended.point)[0]
         if x is None:
-            return Fit(self.x0, self.problem.cost(self.x0), False)
-        return Fit(x, ended.cost, ended.converged)
+            return Fit(self.x0, self.problem.cost(self.x0), Status.IMPOSSIBLE)
+        return Fit(x, ended.cost, ended.status)
 
     def _at(self, y: Real) -> tuple[Real | None, Real | None]:
         """x(y) and dx/dy; None where Newton's method does not find it."""
