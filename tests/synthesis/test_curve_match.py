@@ -249,6 +249,16 @@ def test_demands_are_kept_and_cost_accuracy():
     assert free.metrics.rms_distance < held.designs[0].metrics.rms_distance < 3.0 * free.metrics.rms_distance
 
 
+def test_a_demanded_link_ratio_costs_no_more_accuracy_than_it_must():
+    """Held by multipliers: differences of a Python function ended at an rms distance of 0.25."""
+    result = matched(CASES["ullah67"]["curve"], True, rank_by="accuracy", constraints={"max_link_ratio": 3})
+    assert result.designs[0].metrics.rms_distance < 0.15
+    for design in result.designs:
+        assert design.verification.passed
+        links = design.mechanism.links.model_dump().values()
+        assert max(links) <= 3.0 * min(links) * (1.0 + 1e-8)
+
+
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}

@@ -26,11 +26,13 @@ from numpy.typing import NDArray
 
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural
 from synthesis.fit.coupler_curve import place
+from synthesis.fit.demands import LINKS
 from synthesis.kinds.path.curve_descent import Descent, descend
 from synthesis.kinds.path.curve_limits import (
-    Limits,
+    curve_setting,
     descend_within,
-    settle,
+    lengths_kept,
+    usable,
 )
 from synthesis.kinds.path.curve_placement import (
     moved,
@@ -134,17 +136,17 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by matching the whole curve."""
     target = _Target(problem)
     sought = searched(problem)
-    limits = Limits.of(sought, target.centre, target.size)
+    setting = curve_setting(sought, target.centre, target.size)
     sweep = None
     if sought.fixed_pivots.given():
         linkages = _at_given_pivots(sought, target, progress)
     else:
-        candidates, sweep = _alike(problem, target, limits, progress)
+        candidates, sweep = _alike(problem, target, setting, progress)
         linkages = [joints for candidate in candidates for joints in with_cognates(_joints(candidate))]
     sifting = Sifting[PathDesign](problem)
     sifting.sift(
         reported(linkages, progress, (0.8, 1.0), "{done} of {all} linkages verified"),
-        partial(_verified, problem, target, limits),
+        partial(_verified, problem, target, setting),
     )
     sifting.withdraw(near_the_nearest(sifting.passed, problem), "far_from_the_curve")
     progress(1.0, "verified")
@@ -160,7 +162,7 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _alike(
-    problem: PathProblem, target: _Target, limits: Limits, progress: Progress
+    problem: PathProblem, target: _Target, setting: Real, progress: Progress
 ) -> tuple[list[_Candidate], CurveSweep]:
     """The linkages in the running of those whose curves have the target's shape."""
     families = _families(problem)
@@ -180,12 +182,12 @@ def _alike(
             problem.closed,
             count,
             FOLLOWED,
-            longest=limits.longest,
+            longest=float(setting[LINKS + 1]),
             seed=problem.seed % 2**32,
             told=told,
         )
         drawn, swept, followed = drawn + count, swept + starts.swept, followed + len(starts.x)
-        refined, least = _refined(target, starts, limits, least, traded=problem.rank_by != "accuracy")
+        refined, least = _refined(target, starts, setting, least, traded=problem.rank_by != "accuracy")
         candidates += refined
         progress(0.8 * (n + 1.0) / len(families), "best shapes refined")
     return _running(candidates), CurveSweep(linkages=drawn, curves=swept, refined=followed)
@@ -218,11 +220,14 @@ def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) 
 def warm_up() -> None:
     """Load the compiled kernels on a small circle, closed and open."""
     circle = np.exp(2j * np.pi * np.arange(SHAPE_POINTS) / SHAPE_POINTS)
-    gradient = np.empty(9)
+    stated = {"points": [{"x": z.real, "y": z.imag} for z in circle]}
+    problem = PathProblem.model_validate({"kind": "path", "method": "curve_match", **stated})
+    setting = curve_setting(problem, 0j, 1.0)
     for family, closed in ((CRANK_ROCKER, True), (FOURBAR, False)):
         starts = alike(family, circle, closed, 64, 2)
         fit = descend(family, starts.x, starts.sign, starts.theta, circle, iterations=2)
-        settle(family, fit.x[0], starts.sign[0], fit.theta[0], circle, np.ones(SHAPE_POINTS), gradient)
+        start = Descent(fit.x[0], fit.theta[0], fit.cost[0])
+        descend_within(family, start, float(starts.sign[0]), circle, np.ones(SHAPE_POINTS), setting)
 
 
 class _Target:
@@ -266,7 +271,7 @@ def _families(problem: PathProblem) -> list[int]:
 
 
 def _refined(
-    target: _Target, starts: Starts, limits: Limits, least: float, *, traded: bool
+    target: _Target, starts: Starts, setting: Real, least: float, *, traded: bool
 ) -> tuple[list[_Candidate], float]:
     """The starts' linkages after least squares, and the least cost at equal steps, of earlier families too.
 
@@ -274,7 +279,7 @@ def _refined(
     """
     if not len(starts.x):
         return [], least
-    family, longest = starts.family, limits.longest
+    family, longest = starts.family, float(setting[LINKS + 1])
     rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGHLY)
     least = min(least, float(rough.cost.min()))
     best = np.argsort(rough.cost, kind="stable")[:REFINED]
@@ -304,15 +309,16 @@ def _refined(
     free = [(_candidate(target, family, fine.x[k], float(signs[k]), fine.theta[k]), k) for k in order]
     free.sort(key=lambda pair: pair[0].error)
     found, offered = [], list[_Candidate]()
-    usable = limits.usable() if traded else None
+    practical = usable(setting) if traded else None
     for candidate, k in free[:LIMITED]:
         descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
-        kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, limits)
-        fit = descent if kept is None else kept
-        found.append(candidate if kept is None else _candidate(target, family, kept.x, candidate.sign, kept.theta))
-        if usable is not None and len(found) <= ALSO_USABLE:
-            better = descend_within(family, fit, candidate.sign, target.fitted, target.weights, usable)
-            if better is not None:
+        kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, setting)
+        if kept is None:
+            continue
+        found.append(candidate if kept is descent else _candidate(target, family, kept.x, candidate.sign, kept.theta))
+        if practical is not None and len(found) <= ALSO_USABLE:
+            better = descend_within(family, kept, candidate.sign, target.fitted, target.weights, practical)
+            if better is not None and better is not kept:
                 offered.append(_candidate(target, family, better.x, candidate.sign, better.theta))
     return found + offered, least
 
@@ -406,13 +412,13 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
 
 def _verified(
-    problem: PathProblem, target: _Target, limits: Limits, joints: FourbarConfiguration
+    problem: PathProblem, target: _Target, setting: Real, joints: FourbarConfiguration
 ) -> PathDesign | str | None:
     """A linkage in the target's unit, driven and measured; or why it is not driven."""
     links = joints.lengths
     if min(links) < SHORTEST:
         return "degenerate"
-    if not limits.lengths_kept(links):
+    if not lengths_kept(setting, links):
         return "link_length"
     if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
         return "full_rotation"

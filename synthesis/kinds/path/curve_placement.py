@@ -16,7 +16,7 @@ from synthesis.model.linkages import FourbarConfiguration, to_point
 
 
 def searched(problem: PathProblem) -> PathProblem:
-    """The problem as the shape is searched for: without the demands that placing the curve will meet."""
+    """The problem as the shape is searched for: without the demands that placing the curve will meet, or change."""
     free = set(problem.placement_free)
     demands: dict[str, object] = {}
     limits: dict[str, object] = {}
@@ -25,7 +25,7 @@ def searched(problem: PathProblem) -> PathProblem:
     if "position" in free:
         limits |= {"fixed_pivot_region": None, "input_pivot_region": None, "moving_pivot_region": None}
     if "size" in free:
-        limits["link_length"] = None
+        limits |= {"link_length": None, "coupler_point": None}
     if limits:
         demands["constraints"] = problem.constraints.model_copy(update=limits)
     return problem.model_copy(update=demands) if demands else problem

@@ -48,6 +48,9 @@ SHORTEST_SHARE = 1e-4
 GRASHOF = 1e-6
 """Least of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
 
+FIRM = 1e3
+"""Weight of limits in task units at first, where they are brought to hold."""
+
 INSIDE = 1e-10
 """Limits are drawn in by this share, so that what rounding leaves lies on their right side."""
 

@@ -28,7 +28,7 @@ from synthesis.fit.coupler_curve import place
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
-from synthesis.kinds.path.limits import Usable, setting_of
+from synthesis.kinds.path.limits import FIRM, Usable, setting_of
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
     COUPLER,
@@ -102,8 +102,8 @@ LEAST_DRIVEN = 12
 EXPLORED = 48
 """Points with which starts are made and thinned out, at most: evenly chosen ones of more."""
 
-SOFT, FIRM = 10.0, 1e3
-"""Weight of limits in task units while starts are thinned out, and at first where they are brought to hold."""
+SOFT = 10.0
+"""Weight of limits in task units while starts are thinned out."""
 
 SAME_FIT = 1e-2
 """Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
