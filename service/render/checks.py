@@ -15,7 +15,7 @@ ROUNDING = 1e-3
 
 def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
     """Every check of a design, in the units of its problem."""
-    units = {str(dimension): symbol for dimension, symbol in symbols(problem).items()}
+    units = symbols(problem)
     listed = []
     for check in verification.checks:
         unit = "" if check.dimension is None else units[check.dimension]

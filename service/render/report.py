@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from service.render import NoSuchExport, NotBuilt, exported
 from service.render.outline import Outline, outline, words, written
 from service.render.page.numbers import length
+from service.render.page.sheet import UNITS
 from service.render.page.svg import clean
 from service.units import symbols
 from synthesis.model.answer import (
@@ -28,8 +29,6 @@ from synthesis.model.answer import (
 )
 from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
-
-UNITS = {"mm": "millimetres", "cm": "centimetres", "m": "metres", "in": "inches"}
 
 _HERE = files("service").joinpath("render")
 _STYLE = _HERE.joinpath("report.css").read_text(encoding="utf-8")

@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 
 from service.render import exported
+from service.render.checks import checks
 from synthesis.dispatch import solve
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.registry import parse_problem
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -44,3 +47,17 @@ def test_all_links_joints_and_targets_are_drawn(asked: dict[str, Any], kind: str
     checks = {g.get("data-check") for g in root.iter() if g.get("data-check")}
     assert checks == {check.name for check in design.verification.checks}
     assert exported(design, problem, "A <title> & more", "svg") == text
+
+
+def test_numbers_of_checks_have_the_unit_of_what_they_measure() -> None:
+    problem = parse_problem({"kind": "motion", "positions": POSITIONS, "length_unit": "in"})
+    stated = [
+        Check(name="transmission_angle", passed=True, value=41.234, limit=30.0, dimension=ANGLE),
+        Check(name="longest_link", passed=False, value=120.0, limit=100.0, dimension=LENGTH),
+        Check(name="reaches_targets", passed=True, value=1.23e-15, limit=1e-9),
+        Check(name="same_branch", passed=True),
+    ]
+    block, _ = checks(Verification(passed=False, checks=stated), problem)(0.0, 0.0, 370.0)
+    words = list(ET.fromstring(block.write()).itertext())
+    assert words[0] == "Checks: not all passed"
+    assert words[2::2] == ["41.23°  (limit 30°)", "120 in  (limit 100 in)", "1.2e−15  (limit 1e−9)"]

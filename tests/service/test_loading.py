@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -28,3 +30,13 @@ def test_who_imports_waits_for_another_import(work) -> None:
         assert thread.is_alive()
     thread.join(60.0)
     assert not thread.is_alive()
+
+
+def test_who_only_offers_files_loads_no_drawing_library() -> None:
+    offered = (
+        "import sys; from service.render import forms; from synthesis.registry import KINDS; "
+        "assert all(forms(kind.name, one) for kind in KINDS.values() for one in kind.mechanisms); "
+        "print(sorted({'ezdxf', 'PIL', 'numba', 'scipy'} & set(sys.modules)))"
+    )
+    told = subprocess.run([sys.executable, "-c", offered], capture_output=True, text=True, check=True, timeout=100.0)
+    assert told.stdout == "[]\n"

@@ -25,7 +25,6 @@ from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
-from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
 from service.render.cam.scene import CamScene
 from service.render.page import dxf
 from synthesis.kinds.cam.design import CamDesign
@@ -147,20 +146,13 @@ def _closed(space: Modelspace, contour: Contour, layer: str) -> None:
 
 def _follower(space: Modelspace, scene: CamScene) -> None:
     """Roller or face at cam angle 0, with the arm and its pivot."""
-    follower = scene.follower
-    if isinstance(follower, TranslatingRoller | OscillatingRoller):
-        centre = complex(scene.pitch_curve[0])
-        if follower.roller_radius > 0.0:
-            dxf.add_circle(space, centre, follower.roller_radius, "FOLLOWER")
-        end = scene.pivot if scene.pivot is not None else centre + scene.base_radius
-        dxf.add_line(space, centre, end, "FOLLOWER")
-    else:
-        start, end = scene.faces(len(scene.angle))[0]
-        if isinstance(follower, OscillatingFlat):
-            along = scene.face_direction(0)
-            pivot = complex(follower.pivot_distance)
-            start += along * ((pivot - start) * along.conjugate()).real
-            dxf.add_line(space, start, pivot, "FOLLOWER")
+    for start, end in scene.held:
         dxf.add_line(space, start, end, "FOLLOWER")
+    if scene.roller is not None:
+        centre = complex(scene.pitch_curve[0])
+        if scene.roller.roller_radius > 0.0:
+            dxf.add_circle(space, centre, scene.roller.roller_radius, "FOLLOWER")
+        if scene.pivot is None:
+            dxf.add_line(space, centre, centre + scene.base_radius, "FOLLOWER")
     if scene.pivot is not None:
         dxf.add_circle(space, scene.pivot, 0.04 * scene.base_radius, "FOLLOWER")

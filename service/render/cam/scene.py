@@ -102,6 +102,19 @@ class CamScene:
         follower = self.follower
         return complex(follower.pivot_distance) if isinstance(follower, OscillatingRoller | OscillatingFlat) else None
 
+    @cached_property
+    def held(self) -> list[tuple[complex, complex]]:
+        """What carries the contact at cam angle 0, as lines: an arm, or a flat face and its arm; none for a stem."""
+        if self.pivot is not None and self.roller is not None:
+            return [(complex(self.pitch_curve[0]), self.pivot)]
+        if self.roller is not None:
+            return []
+        (start, end), along = self.faces(len(self.angle))[0], self.face_direction(0)
+        if self.pivot is None:
+            return [(start, end)]
+        foot = start + along * ((self.pivot - start) * along.conjugate()).real
+        return [(foot, end), (foot, self.pivot)]
+
     def faces(self, every: int) -> list[tuple[complex, complex]]:
         """A flat face around its contact, in each so many positions of the table."""
         half = FACE_SHARE * self.base_radius

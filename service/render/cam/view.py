@@ -12,7 +12,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingRoller
 from service.render.cam.scene import CamScene
 from service.render.page.labels import Labels
 from service.render.page.numbers import angle
@@ -153,28 +152,18 @@ def _stations(scene: CamScene, viewport: Viewport, labels: Labels) -> Element:
 def _follower(scene: CamScene, viewport: Viewport) -> Element:
     """The follower at cam angle 0."""
     group = element("g", data_part="follower", **STYLES["follower"])
-    follower, reach = scene.follower, scene.base_radius
-    if isinstance(follower, TranslatingRoller | OscillatingRoller):
+    reach, roller = STEM * scene.base_radius, scene.roller
+    group.add(*(line(viewport.point(start), viewport.point(end)) for start, end in scene.held))
+    if roller is not None:
         centre = complex(scene.pitch_curve[0])
-        if isinstance(follower, OscillatingRoller):
-            group.add(line(viewport.point(centre), viewport.point(complex(follower.pivot_distance))))
-        else:
-            group.add(*_stem(viewport, centre, centre + follower.roller_radius + STEM * reach))
-        radius = max(viewport.scale * follower.roller_radius, 1.5)
+        if scene.pivot is None:
+            group.add(*_stem(viewport, centre, centre + roller.roller_radius + reach))
+        radius = max(viewport.scale * roller.roller_radius, 1.5)
         group.add(circle(viewport.point(centre), radius, fill="#fff", fill_opacity=0.7))
         group.add(circle(viewport.point(centre), 2.5, fill=COUPLER))
-    else:
-        (start, end), along = scene.faces(len(scene.angle))[0], scene.face_direction(0)
-        if isinstance(follower, OscillatingFlat):
-            pivot = complex(follower.pivot_distance)
-            foot = start + along * ((pivot - start) * along.conjugate()).real
-            group.add(
-                line(viewport.point(foot), viewport.point(end)), line(viewport.point(foot), viewport.point(pivot))
-            )
-        else:
-            group.add(line(viewport.point(start), viewport.point(end)))
-            foot = complex(scene.profile[0].real)
-            group.add(*_stem(viewport, foot, foot + STEM * reach))
+    elif scene.pivot is None:
+        foot = complex(scene.profile[0].real)
+        group.add(*_stem(viewport, foot, foot + reach))
     if scene.pivot is not None:
         at = viewport.point(scene.pivot)
         group.add(bearing(at, 0.8)[0], circle(at, 4.0, fill="#fff", stroke=GROUND, stroke_width=1.5))
