@@ -9,11 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from service import client as service
+from service.units import symbols
+from synthesis.registry import parse_problem
 
 _COLUMNS = 7
 """Metrics that fit beside each other on a terminal; the files have all of them."""
@@ -112,10 +115,26 @@ def report(job: service.Job, console: Console) -> None:
     table = Table(title="Checks of design 0, when driven")
     for name in ("check", "", "value", "limit"):
         table.add_column(name, justify="right" if name in ("value", "limit") else "left")
+    units = _units(job.problem)
     for check in best["verification"]["checks"]:
+        unit = units.get(check.get("dimension"), "")
         verdict = "passed" if check["passed"] else "FAILED"
-        table.add_row(check["name"], verdict, _shown(check.get("value")), _shown(check.get("limit")))
+        table.add_row(check["name"], verdict, *(_amount(check.get(name), unit) for name in ("value", "limit")))
     console.print(table)
+
+
+def _amount(value: float | None, unit: str) -> str:
+    if value is None:
+        return ""
+    return f"{_shown(value)}{unit}" if unit in ("", "°") else f"{_shown(value)} {unit}"
+
+
+def _units(problem: Mapping[str, Any]) -> dict[str, str]:
+    """Symbols by dimension; none for a problem of a service that knows more than this client."""
+    try:
+        return {str(dimension): symbol for dimension, symbol in symbols(parse_problem(dict(problem))).items()}
+    except ValidationError:
+        return {}
 
 
 def _compared(designs: Sequence[Mapping[str, Any]]) -> Table:

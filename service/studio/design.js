@@ -64,7 +64,7 @@ export class Shown {
     this.before.replaceChildren();
     this.exploring.replaceChildren(...this.explored());
     this.numbers.replaceChildren(downloads(job, n, this.drawing),
-      el("div", { class: "columns" }, checks(this.design), table("Quantities", figures(this.design)), dimensions(this.design)), this.drawing);
+      el("div", { class: "columns" }, checks(this.design, job.problem), table("Quantities", figures(this.design)), dimensions(this.design)), this.drawing);
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
   }

@@ -1,6 +1,7 @@
 /** The numbers of a design: its metrics, its dimensions, and the checks that it has passed. */
 
 import { el, shown, words } from "./dom.js";
+import { symbolOf } from "./units.js";
 
 /** What a card shows first of a design's metrics, where the design has it. */
 const FIRST = ["quality", "min_transmission_angle", "rms_residual", "structural_error", "max_error", "ratio_error", "error",
@@ -18,13 +19,19 @@ export function text(value) {
   return typeof value === "number" ? shown(value) : typeof value === "boolean" ? (value ? "yes" : "no") : words(String(value));
 }
 
-/** @param {any} design */
-export function checks(design) {
+/** A number of a check with the unit of what the check measures. @param {number} value @param {any} check @param {any} problem */
+function amount(value, check, problem) {
+  const unit = symbolOf(check.dimension, problem);
+  return `${shown(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
+}
+
+/** @param {any} design @param {any} problem */
+export function checks(design, problem) {
   return el("section", {}, el("h4", {}, "Checks"), el("ul", { class: "checks" },
     ...(design.verification?.checks ?? []).map((/** @type {any} */ check) => el("li", { class: check.passed ? "good" : "bad" },
       el("span", {}, check.passed ? "✓ " : "✗ "), words(check.name),
       typeof check.value === "number" && el("span", { class: "note" },
-        ` ${shown(check.value)}${typeof check.limit === "number" ? `, limit ${shown(check.limit)}` : ""}`),
+        ` ${amount(check.value, check, problem)}${typeof check.limit === "number" ? `, limit ${amount(check.limit, check, problem)}` : ""}`),
       el("span", { class: "hidden" }, check.passed ? " passed" : " failed")))));
 }
 

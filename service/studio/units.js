@@ -1,10 +1,10 @@
-/** The symbol of what a number measures, in the units of the problem; the schemas say the dimension as `x-dimension`. */
+/** The symbol of what a number measures, in the units of the problem: schemas say it as `x-dimension`, a check as `dimension`. */
 
 /** @param {any} problem */
 function symbols(problem) {
   const length = problem.length_unit ?? "mm";
   const arm = String(problem.follower?.type ?? "").startsWith("oscillating");
-  const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider";
+  const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider" || (problem.stroke ?? null) !== null;
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const force = length === "in" ? "lbf" : "N";
   return /** @type {Record<string, string>} */ ({
@@ -15,7 +15,12 @@ function symbols(problem) {
   });
 }
 
+/** The unit of a dimension; empty where there is none. @param {string | undefined} dimension @param {any} problem */
+export function symbolOf(dimension, problem) {
+  return dimension === undefined ? "" : symbols(problem)[dimension] ?? "";
+}
+
 /** The unit of a field; empty for a pure number. @param {import("./schema.js").Schema} schema @param {any} problem */
 export function unitOf(schema, problem) {
-  return symbols(problem)[schema["x-dimension"]] ?? "";
+  return symbolOf(schema["x-dimension"], problem);
 }

@@ -175,7 +175,16 @@ def test_every_kind_can_be_printed(real):
             console = Console(record=True, width=200, file=io.StringIO())
             job = real.solve(example(kind))
             report(job, console)
-            assert job.result["designs"][0]["mechanism"]["type"] in console.export_text()
+            printed = console.export_text()
+            design = job.result["designs"][0]
+            assert design["mechanism"]["type"] in printed
+            units = {"angle": "°", "length": " mm", "velocity": " mm/rad", None: ""}
+            for check in design["verification"]["checks"]:
+                if "value" in check:
+                    amount = f"{check['value']:.6g}{units[check.get('dimension')]}"
+                    cells = [[cell.strip() for cell in line.split("│")] for line in printed.splitlines()]
+                    verdict = "passed" if check["passed"] else "FAILED"
+                    assert any(row[1:4] == [check["name"], verdict, amount] for row in cells), check
 
 
 def test_the_command_takes_the_body_of_a_request_from_standard_input(server, tmp_path):
