@@ -16,7 +16,6 @@ stroke may be drawn by any link, between its toggles.
 
 from __future__ import annotations
 
-import cmath
 import math
 from functools import partial
 from typing import NamedTuple
@@ -28,6 +27,7 @@ from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural
 from synthesis.fit.coupler_curve import place
 from synthesis.fit.demands import LINKS
 from synthesis.kinds.path.curve_descent import Descent, descend
+from synthesis.kinds.path.curve_families import families_of, joints_of
 from synthesis.kinds.path.curve_limits import (
     curve_setting,
     descend_within,
@@ -165,7 +165,7 @@ def _alike(
     problem: PathProblem, target: _Target, setting: Real, progress: Progress
 ) -> tuple[list[_Candidate], CurveSweep]:
     """The linkages in the running of those whose curves have the target's shape."""
-    families = _families(problem)
+    families = families_of(problem)
     candidates: list[_Candidate] = []
     least = math.inf
     drawn = swept = followed = 0
@@ -256,18 +256,6 @@ class _Target:
             share, known = np.append(share, 1.0), np.append(theta, theta[0] + turn)
         at = np.interp(self.places, share, known)
         return np.concatenate([at, theta]) if len(self.fitted) > len(self.points) else at
-
-
-def _families(problem: PathProblem) -> list[int]:
-    """The families that may hold an answer."""
-    grashof = problem.constraints.grashof
-    if grashof == "crank_rocker":
-        return [CRANK_ROCKER]
-    if grashof == "double_crank":
-        return [DOUBLE_CRANK]
-    if problem.closed or problem.constraints.full_rotation:
-        return [CRANK_ROCKER, DOUBLE_CRANK]
-    return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
 
 
 def _refined(
@@ -382,13 +370,7 @@ def _running(candidates: list[_Candidate]) -> list[_Candidate]:
 
 
 def _joints(candidate: _Candidate) -> FourbarConfiguration:
-    """The joints at the first point, in the target's own unit."""
-    x, lengths, chart = candidate.x, np.zeros(4), np.zeros((4, 4))
-    natural(candidate.family, x, lengths, chart)
-    _, p, unit = place(candidate.family, x, lengths, candidate.sign, 0.0, candidate.theta)
-    o2 = complex(x[0], x[1])
-    a = o2 + cmath.rect(float(lengths[1]), candidate.theta)
-    return FourbarConfiguration(o2, a, a + lengths[2] * unit, o2 + cmath.rect(float(lengths[0]), float(x[2])), p)
+    return joints_of(candidate.family, candidate.x, candidate.sign, candidate.theta)
 
 
 def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:

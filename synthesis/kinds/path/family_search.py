@@ -9,16 +9,14 @@ angle, lengths, order) chooses among the members, all of which are driven.
 
 from __future__ import annotations
 
-import cmath
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, natural
-from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_families import families_of, joints_of
 from synthesis.kinds.path.curve_shapes import (
     SHAPE_POINTS,
     alike,
@@ -80,7 +78,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     limit = problem.constraints.link_length
     longest = LONGEST if limit is None or limit.max is None else limit.max / size
     smooth, places = _smooth(points)
-    families = _families(problem)
+    families = families_of(problem)
     found: list[FourbarConfiguration] = []
     brought = 0
     for turn in range(problem.rounds):
@@ -98,20 +96,9 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
                 family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=SETTLED
             )
             for k in np.flatnonzero(ends.cost <= MET):
-                joints = _joints(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
+                joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
                 found.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
     return _answer(problem, found, brought, progress)
-
-
-def _families(problem: PathProblem) -> list[int]:
-    grashof = problem.constraints.grashof
-    if grashof == "crank_rocker":
-        return [CRANK_ROCKER]
-    if grashof == "double_crank":
-        return [DOUBLE_CRANK]
-    if problem.closed or problem.constraints.full_rotation:
-        return [CRANK_ROCKER, DOUBLE_CRANK]
-    return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
 
 
 def _within(problem: PathProblem, centre: complex, size: float) -> Real:
@@ -149,16 +136,6 @@ def _smooth(points: Complex) -> tuple[Complex, Real]:
     curve = np.asarray(CubicSpline(chords, points)(dense), np.complex128)
     steps, shares = equal_steps(curve, False, SHAPE_POINTS)
     return steps, np.interp(chords, dense, shares)
-
-
-def _joints(family: int, x: Real, sign: float, theta: float) -> FourbarConfiguration:
-    """The joints at the first point, in the task's unit."""
-    lengths, chart = np.zeros(4), np.zeros((4, 4))
-    natural(family, x, lengths, chart)
-    _, p, unit = place(family, x, lengths, sign, 0.0, theta)
-    o2 = complex(x[0], x[1])
-    a = o2 + cmath.rect(float(lengths[1]), theta)
-    return FourbarConfiguration(o2, a, a + lengths[2] * unit, o2 + cmath.rect(float(lengths[0]), float(x[2])), p)
 
 
 def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:
