@@ -62,7 +62,7 @@ from synthesis.kinds.path.verify_curve import distances, verify_curve
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LengthLimits
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.outcome.ranking import distinct
+from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
@@ -120,6 +120,10 @@ accurate is. Errors below the last, a share of the curve's size, are rounding.""
 
 SHORTEST = 1e-7
 """Links shorter than this share of the curve's size are no links."""
+
+
+ROUNDING = 1e-6
+"""Share of a step of nearness that is rounding."""
 
 
 class _Candidate(NamedTuple):
@@ -451,17 +455,13 @@ def near_the_nearest(designs: list[PathDesign], problem: PathProblem) -> list[Pa
 def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
     """Designs in the order asked for: the nearest first, among those equally near by quality, unless size or
     transmission angle are asked for: then these decide among designs whose error is less than twice the least."""
-    if not designs:
-        return []
     factor = math.log(NEARER if problem.rank_by == "accuracy" else EQUALLY_NEAR)
-    least = min(error_of(design, problem) for design in designs)
+    least = min((error_of(design, problem) for design in designs), default=0.0)
 
-    def key(design: PathDesign) -> tuple[float, float, float]:
-        metrics = design.metrics
-        asked = {"size": metrics.size, "transmission_angle": -metrics.min_transmission_angle}.get(problem.rank_by)
-        if asked is not None:
-            return float(error_of(design, problem) > 2.0 * least), asked, -metrics.quality
-        error = error_of(design, problem)
-        return math.floor(math.log(error / least) / factor + 1e-6), -metrics.quality, error
+    def nearness(design: PathDesign) -> int:
+        return math.floor(math.log(error_of(design, problem) / least) / factor + ROUNDING)
 
-    return sorted(designs, key=key)
+    if problem.rank_by in ("size", "transmission_angle"):
+        return ranked(designs, problem.rank_by, group=lambda design: error_of(design, problem) > 2.0 * least)
+    nearest_first = sorted(designs, key=lambda design: error_of(design, problem))
+    return ranked(nearest_first, problem.rank_by, {"quality": nearness, "accuracy": nearness})
