@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import positions
+from kinematics.linkage.fourbar import positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.solver import warm_up

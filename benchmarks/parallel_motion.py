@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar import Fourbar, barker_class
 from synthesis.dispatch import solve
 from synthesis.kinds.parallel_motion.solver import warm_up
 from synthesis.registry import parse_problem

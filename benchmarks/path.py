@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     OPEN,
     Fourbar,
     cognates,

@@ -15,12 +15,12 @@ def warm() -> None:
 
     Raises what a solver raises, and ``BrokenProcessPool`` where a process died, for want of memory for instance.
     """
-    from kinematics import linkage
+    from kinematics.linkage.warm import warm_up
     from service import analyst
     from synthesis import dispatch
     from synthesis.registry import KINDS
 
-    linkage.warm_up()
+    warm_up()
     dispatch.warm_up()
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
         tasks = [processes.submit(dispatch.warm_up_kind, name) for name in KINDS]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from kinematics import linkage
+from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
@@ -45,7 +45,7 @@ def warm_up() -> None:
 
 def warm_up_rest() -> None:
     """Compile or load everything else: the analysis core, and what the solvers of all kinds need."""
-    linkage.warm_up()
+    warm.warm_up()
     for name in KINDS:
         warm_up_kind(name)
 

@@ -1,127 +1,40 @@
-"""Planar linkages: the fourbar's motion, classification, transmission angle, circuits, cognates, coupler curve and
-instantaneous geometry, and mobility by counting."""
+"""Planar linkages: what a given linkage does.
 
-from kinematics.linkage.fourbar.circuits import (
-    InputLimits,
-    Traversal,
-    full_rotation,
-    input_limits,
-    same_circuit,
-    stays_on_branch,
-    toggle_angles,
-    traverse,
-)
-from kinematics.linkage.fourbar.classification import (
-    BARKER,
-    BarkerClass,
-    barker_class,
-    barker_type,
-    can_assemble,
-    grashof_class,
-    grashof_excess,
-)
-from kinematics.linkage.fourbar.closed_form import (
-    CROSSED,
-    OPEN,
-    CouplerMotion,
-    CouplerPoints,
-    Derivatives,
-    Fourbar,
-    Motion,
-    Positions,
-    coupler_motion,
-    coupler_points,
-    motion,
-    positions,
-)
-from kinematics.linkage.fourbar.cognates import (
-    Cognate,
-    Cognates,
-    Configuration,
-    GearedFivebarCognate,
-    ParallelMotion,
-    cognates,
-    driven_at_output,
-    geared_fivebar_cognate,
-    parallel_motion,
-)
-from kinematics.linkage.fourbar.coupler_curve import (
-    ACNODE,
-    CRUNODE,
-    CUSP,
-    DoublePoints,
-    Sextic,
-    coupler_curve_degree,
-    curve_unit,
-    double_points,
-    sextic,
-    sextic_coefficients,
-)
-from kinematics.linkage.fourbar.curvature import (
-    PathCurvature,
-    Pole,
-    path_curvature,
-    pole,
-)
-from kinematics.linkage.fourbar.transmission import transmission_angle, transmission_extremes
+A linkage of the :mod:`catalogue <kinematics.linkage.planar.catalogue>`, or any other as a :class:`Mechanism`, is driven
+by :func:`drive`. The fourbar (:mod:`kinematics.linkage.fourbar`) and the slider-crank
+(:mod:`kinematics.linkage.slider_crank`) have closed forms besides, for many designs at once.
+"""
+
+from kinematics.linkage import fourbar, slider_crank
+from kinematics.linkage.batch import CROSSED, OPEN
+from kinematics.linkage.fourbar import Fourbar
 from kinematics.linkage.mobility import mobility
-from kinematics.linkage.slider_crank.closed_form import SliderCrank
-from kinematics.linkage.warm import warm_up
+from kinematics.linkage.planar import (
+    GROUND,
+    GearPair,
+    Mechanism,
+    MechanismMotion,
+    Slide,
+    TopologyError,
+    catalogue,
+    drive,
+)
+from kinematics.linkage.slider_crank import SliderCrank
 
 __all__ = [
-    "ACNODE",
-    "BARKER",
     "CROSSED",
-    "CRUNODE",
-    "CUSP",
+    "GROUND",
     "OPEN",
-    "BarkerClass",
-    "Cognate",
-    "Cognates",
-    "Configuration",
-    "CouplerMotion",
-    "CouplerPoints",
-    "Derivatives",
-    "DoublePoints",
     "Fourbar",
-    "GearedFivebarCognate",
-    "InputLimits",
-    "Motion",
-    "ParallelMotion",
-    "PathCurvature",
-    "Pole",
-    "Positions",
-    "Sextic",
+    "GearPair",
+    "Mechanism",
+    "MechanismMotion",
+    "Slide",
     "SliderCrank",
-    "Traversal",
-    "barker_class",
-    "barker_type",
-    "can_assemble",
-    "cognates",
-    "coupler_curve_degree",
-    "coupler_motion",
-    "coupler_points",
-    "curve_unit",
-    "double_points",
-    "driven_at_output",
-    "full_rotation",
-    "geared_fivebar_cognate",
-    "grashof_class",
-    "grashof_excess",
-    "input_limits",
+    "TopologyError",
+    "catalogue",
+    "drive",
+    "fourbar",
     "mobility",
-    "motion",
-    "parallel_motion",
-    "path_curvature",
-    "pole",
-    "positions",
-    "same_circuit",
-    "sextic",
-    "sextic_coefficients",
-    "stays_on_branch",
-    "toggle_angles",
-    "transmission_angle",
-    "transmission_extremes",
-    "traverse",
-    "warm_up",
+    "slider_crank",
 ]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     ACNODE,
     CROSSED,
     CRUNODE,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import barker_type
+from kinematics.linkage.fourbar import barker_type
 from kinematics.linkage.fourbar.classification import BARKER
 from kinematics.linkage.planar.branches import Branch
 from kinematics.linkage.planar.closures import decompose

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple, TypeVar
 
-from kinematics.linkage import CROSSED, OPEN, Fourbar
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar
 from synthesis.model.answer import Point
 from synthesis.model.linkage_answer import (
     BlockSlide,

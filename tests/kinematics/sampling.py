@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import Fourbar
+from kinematics.linkage.fourbar import Fourbar
 from tests.oracles.continuation import Linkages
 
 Real = NDArray[np.float64]

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import MechanismError
-from kinematics.linkage import CROSSED, OPEN, Fourbar, positions, toggle_angles
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions, toggle_angles
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.closures import decompose

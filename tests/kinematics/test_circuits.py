@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     Fourbar,

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     Fourbar,

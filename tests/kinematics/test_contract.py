@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError, MechanismError, ShapeError
-from kinematics.linkage import (
+from kinematics.linkage import mobility
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     Fourbar,
@@ -21,7 +22,6 @@ from kinematics.linkage import (
     grashof_class,
     grashof_excess,
     input_limits,
-    mobility,
     motion,
     positions,
     same_circuit,

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage import CROSSED, OPEN, Fourbar, input_limits, motion, positions
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, input_limits, motion, positions
 from kinematics.linkage.fourbar.cognates import cognates
 from kinematics.linkage.fourbar.coupler_curve import (
     ACNODE,

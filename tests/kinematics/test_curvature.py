@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage import CROSSED, OPEN, Fourbar, motion, positions, toggle_angles, transmission_angle
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, motion, positions, toggle_angles, transmission_angle
 from kinematics.linkage.fourbar.curvature import path_curvature, pole
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     Fourbar,
     barker_type,
     input_limits,

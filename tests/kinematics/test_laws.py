@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     Fourbar,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage import (
+from kinematics.linkage import mobility
+from kinematics.linkage.fourbar import (
     BARKER,
     CROSSED,
     OPEN,
@@ -13,7 +14,6 @@ from kinematics.linkage import (
     barker_class,
     grashof_class,
     input_limits,
-    mobility,
     motion,
     positions,
     toggle_angles,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError, ShapeError
-from kinematics.linkage import Fourbar, motion
+from kinematics.linkage.fourbar import Fourbar, motion
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import (
     MechanismMotion,

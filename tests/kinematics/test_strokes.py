@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     Fourbar,

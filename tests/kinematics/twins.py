@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.linkage import Fourbar, can_assemble, grashof_class
+from kinematics.linkage.fourbar import Fourbar, can_assemble, grashof_class
 from kinematics.linkage.fourbar.circuit_kernels import AT_TOGGLE, CHANGE_POINT
 from kinematics.linkage.kernels import ON_TOGGLE, TOGGLE_SINE
 from kinematics.linkage.slider_crank.closed_form import SliderCrank

@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from kinematics.linkage import CROSSED, OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
 from service.render import exported
 from service.render.linkage.fourbar import MARKED, OTHERS
 from service.render.page.svg import (

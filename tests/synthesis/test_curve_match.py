@@ -7,7 +7,8 @@ import pytest
 from pydantic import ValidationError
 
 from benchmarks.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
-from kinematics.linkage import OPEN, Fourbar, SliderCrank, positions
+from kinematics.linkage import SliderCrank
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from kinematics.linkage.planar.catalogue import geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.kinds.path.verify_curve import (
     BULGE,
     astray,

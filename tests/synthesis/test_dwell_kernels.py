@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, Fourbar, coupler_points
+from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.outputs import CYCLE, output
 from synthesis.kinds.dwell.scoring import (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, natural
 from synthesis.kinds.path.curve_descent import ANYWHERE, descend

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.five_point_system import SOLUTIONS, residuals
 from synthesis.kinds.path.five_points import five_points

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematics.linkage import (
+from kinematics.linkage import SliderCrank, slider_crank
+from kinematics.linkage.fourbar import (
     Fourbar,
-    SliderCrank,
     positions,
-    slider_crank,
 )
 from synthesis.kinds.function.approximation import _Descent
 from synthesis.kinds.function.closure import FOURBAR

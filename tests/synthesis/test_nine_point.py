@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.kinds.path.nine_point import all_triples, conjugate
 from synthesis.kinds.path.nine_point_system import (
     ORBITS,

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from kinematics.linkage import Fourbar, SliderCrank, positions
+from kinematics.linkage import SliderCrank
+from kinematics.linkage.fourbar import Fourbar, positions
 from kinematics.linkage.planar.catalogue import geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.path_fit import best_published, rows, statement
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
 from tests.campaign import sampled

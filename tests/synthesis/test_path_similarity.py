@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematics.linkage import OPEN, Fourbar, positions
+from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
 from synthesis.registry import parse_problem

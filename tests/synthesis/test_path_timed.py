@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from kinematics.linkage import OPEN, cognates, positions
+from kinematics.linkage.fourbar import OPEN, cognates, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.sections import section

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from kinematics.linkage import Fourbar, barker_type, transmission_extremes
+from kinematics.linkage.fourbar import Fourbar, barker_type, transmission_extremes
 from synthesis.dispatch import solve
 from synthesis.kinds.quick_return.crank_rocker import families
 from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnResult

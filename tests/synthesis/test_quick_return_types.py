@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.linkage import Fourbar, barker_type, positions, transmission_extremes
+from kinematics.linkage.fourbar import Fourbar, barker_type, positions, transmission_extremes
 from synthesis.kinds.quick_return.design import DragLinkMechanism, QuickReturnMechanism
 from synthesis.kinds.quick_return.drag_link import drag_link
 from synthesis.model.linkage_answer import SliderCrankMechanism

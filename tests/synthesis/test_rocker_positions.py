@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematics.linkage import Fourbar, positions
+from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.quick_return.design import QuickReturnDesign
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.registry import parse_problem

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from kinematics.linkage import Fourbar, positions
+from kinematics.linkage.fourbar import Fourbar, positions
 from kinematics.linkage.steering import davis_arm_angle, outer_angle
 from synthesis.dispatch import solve
 from synthesis.kinds.steering.design import SteeringDesign, SteeringResult

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import Fourbar, positions, toggle_angles, traverse
+from kinematics.linkage.fourbar import Fourbar, positions, toggle_angles, traverse
 from service.render.linkage.motion import Demand, DrivenLinkage, demands_of, target_curve
 from service.render.page.svg import Box, Points
 from synthesis.kinds.motion.problem import MotionProblem

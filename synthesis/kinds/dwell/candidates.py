@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage import OPEN, Fourbar, coupler_points
+from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.outputs import CYCLE, Kind
 from synthesis.kinds.dwell.scoring import (

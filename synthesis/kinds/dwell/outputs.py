@@ -21,7 +21,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import OPEN, Fourbar, coupler_points
+from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.numerics.narrowing import Values
 
 Real = NDArray[np.float64]

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import OPEN, coupler_points, positions
+from kinematics.linkage.fourbar import OPEN, coupler_points, positions
 from synthesis.kinds.dwell.candidates import Start, starts
 from synthesis.kinds.dwell.design import (
     DwellDesign,

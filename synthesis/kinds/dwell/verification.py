@@ -15,7 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import (
     GROUND,

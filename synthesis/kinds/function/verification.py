@@ -17,16 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage import SliderCrank, slider_crank
+from kinematics.linkage.fourbar import (
     CROSSED,
     OPEN,
     BarkerClass,
-    SliderCrank,
     barker_class,
     can_assemble,
     positions,
     same_circuit,
-    slider_crank,
     stays_on_branch,
     transmission_extremes,
 )

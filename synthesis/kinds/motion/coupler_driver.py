@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage import positions
+from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.driver_joints import (
     ROOM,
     coupler_driven,

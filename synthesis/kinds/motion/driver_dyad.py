@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import positions
+from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.coupler_driver import coupler_drivers
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.driver_joints import (

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion, drive

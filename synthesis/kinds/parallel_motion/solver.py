@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Literal, NamedTuple
 
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     Fourbar,
     cognates,
     parallel_motion,

@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage import full_rotation, positions, same_circuit, toggle_angles
+from kinematics.linkage.fourbar import full_rotation, positions, same_circuit, toggle_angles
 from synthesis.model.linkages import DrivenFourbar
 
 Real = NDArray[np.float64]

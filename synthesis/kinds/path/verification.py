@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     Fourbar,
     barker_class,
     can_assemble,

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import (
+from kinematics.linkage.fourbar import (
     Cognate,
     barker_class,
     cognates,

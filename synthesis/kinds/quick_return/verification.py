@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference

@@ -16,7 +16,7 @@ from pydantic import TypeAdapter, ValidationError
 from scipy.interpolate import CubicSpline
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import positions, stays_on_branch, transmission_extremes
+from kinematics.linkage.fourbar import positions, stays_on_branch, transmission_extremes
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 from kinematics.linkage.steering import outer_angle

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage import CROSSED, OPEN, Fourbar, coupler_motion, positions
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, coupler_motion, positions
 from synthesis.kinds.straight_line.problem import LineMechanism
 from synthesis.numerics.narrowing import Values
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from kinematics.errors import DimensionError
-from kinematics.linkage import Fourbar, barker_class
+from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import (
     GROUND,
