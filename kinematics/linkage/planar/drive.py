@@ -143,10 +143,10 @@ def drive(
     for n, values in enumerate(given):
         inputs[n, ...] = values
     designs = shape[:-1]
-    rows = np.ones((len(program.rows), *designs), np.int64)
+    rows = np.ones((len(program.code.rows), *designs), np.int64)
     for n, sign in enumerate(chosen):
         rows[n, ...] = sign
-    own = np.broadcast_to(np.arange(len(program.frame)).reshape(mechanism.shape), designs).ravel()
+    own = np.broadcast_to(np.arange(len(program.code.frame)).reshape(mechanism.shape), designs).ravel()
     return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
 
 
@@ -165,9 +165,9 @@ def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
     moved[:, 0, 0] = input - program.reference_input[0]
     sines, margins = np.empty((len(program.closing), count, 1)), np.empty((len(program.closing), 2, count, 1))
     own = np.zeros(count, np.int64)
-    none = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
-    masks = np.empty((2, 0, 0), np.bool_)
-    kernels.drive(*program[6:], own, signs, moved, none[0], none[1], none[0], none[0], sines, margins, masks)
+    none, no_points = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
+    results = kernels.Sweep(no_points, none, none, sines, margins, np.empty((2, 0, 0), np.bool_))
+    kernels.drive(program.code, own, signs, moved, none, results)
     return margins[..., 0]
 
 
@@ -184,7 +184,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     sines = np.empty((len(program.closing), *flat))
     margins = np.empty((len(program.closing), min(length, 2), *flat))
     masks = np.empty((2, *flat), np.bool_)
-    kernels.drive(*program[6:], own, signs, moved, given, points, angles, travels, sines, margins, masks)
+    kernels.drive(program.code, own, signs, moved, given, kernels.Sweep(points, angles, travels, sines, margins, masks))
     valid, smooth = masks.reshape(2, *shape)
     joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
     closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
@@ -241,7 +241,7 @@ def given_up(mechanism: Mechanism) -> bool:
 @lru_cache(maxsize=RECENT)
 def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     """The loops of one design of a class III mechanism and what is known of their solutions."""
-    joints = program_of(mechanism).joints[design]
+    joints = program_of(mechanism).code.joints[design]
     loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
     track = Track(loops)
     at = program_of(mechanism).reference_input[design : design + 1]

@@ -19,6 +19,7 @@ the equation, or none does: the closure says nothing, and there is no solution t
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -48,60 +49,78 @@ AT_LIMIT = 16.0 * ON_TOGGLE
 rounding of an angle, which the margin's rate, up to some ten in unit coordinates, multiplies."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def drive(
-    program: Rows,
-    ratios: Real,
-    gives: Rows,
-    joints: Complex,
-    lines: Complex,
-    line_angles: Real,
-    link_angles: Real,
-    frame: Complex,
-    slides: Rows,
-    driver: Rows,
-    own: Rows,
-    signs: Rows,
-    moved: Real,
-    given: Real,
-    points: Complex,
-    angles: Real,
-    travels: Real,
-    sines: Real,
-    margins: Real,
-    masks: Mask,
-) -> None:
-    """Fill ``margins`` and ``sines``, and, unless ``points`` has no rows, all the others; ``masks`` are valid, smooth.
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+"""How the kernels are compiled."""
 
-    M mechanisms, D designs (mechanisms with their signs), N inputs, n the length of a jet.
+STEP: dict[str, Any] = OPTIONS | {"inline": "always"}
+"""A step of the sweep that stands in one place: a call there would pass its arrays at each position, which costs more
+than the step."""
 
-    program : (steps, 8), ratios : (steps,), gives : (links, 1 + joints): how many joints a link makes known, and
-    which. joints, lines, line_angles, link_angles : (M, count) in unit coordinates.
-    frame : (M, 2), origin and size. slides : (slides, 2), joint and link. driver : the input link (or −1), its pin (or
-    the input slide's joint), and the input slide. own : (D,), which mechanism. signs : (steps, D). moved :
-    (D, n, N), input from the reference. given : (links, D, n, N), rotations of GIVEN links. Link 0 is the ground.
+
+class Code(NamedTuple):
+    """M mechanisms of one make, joints and lines in unit coordinates.
+
+    ``rows`` (steps, 8) is the program, ``ratios`` (steps,) those of its gears. ``gives`` (links, 1 + joints): how many
+    joints a link makes known, and which; link 0 is the ground. ``joints``, ``lines``, ``line_angles`` and
+    ``link_angles`` have the shape (M, count); ``frame`` (M, 2) is origin and size. ``slides`` (slides, 2): joint and
+    link. ``driver``: the input link (or −1), its pin (or the input slide's joint), and the input slide.
     """
+
+    rows: Rows
+    ratios: Real
+    gives: Rows
+    joints: Complex
+    lines: Complex
+    line_angles: Real
+    link_angles: Real
+    frame: Complex
+    slides: Rows
+    driver: Rows
+
+
+class Sweep(NamedTuple):
+    """What the sweep fills, for D designs at N inputs; n is the length of a jet.
+
+    ``points`` (joints, n, D, N), ``angles`` (links, n, D, N), ``travels`` (slides, n, D, N); by closure, ``sines``
+    (closures, D, N) and ``margins`` (closures, 1 or 2, D, N); ``masks`` (2, D, N): valid, smooth.
+    """
+
+    points: Complex
+    angles: Real
+    travels: Real
+    sines: Real
+    margins: Real
+    masks: Mask
+
+
+@njit(**OPTIONS)
+def drive(code: Code, own: Rows, signs: Rows, moved: Real, given: Real, results: Sweep) -> None:
+    """Fill margins and sines, and, unless ``results.points`` has no rows, all the others.
+
+    own : (D,), which of the M mechanisms a design is. signs : (steps, D). moved : (D, n, N), input from the reference.
+    given : (links, D, n, N), rotations of GIVEN links.
+    """
+    # Everything is unpacked here, once: a tuple that is taken apart at each position counts references to its arrays
+    # there, which doubles the time.
+    rows, ratios, gives, joints, lines, line_angles, link_angles, frame, slides, driver = code
+    points, angles, travels, sines, margins, masks = results
     length = moved.shape[1]
-    count_links, count_joints, count_rows = gives.shape[0], joints.shape[1], program.shape[0]
-    x = np.zeros((count_joints, 4), np.complex128)
-    rotation = np.zeros((count_links, 4))
-    turned = np.zeros(count_links, np.bool_)  # whose rotation is known itself, not only e^{iφ}
-    unit = np.zeros((count_links, 4), np.complex128)
-    shift = np.zeros((count_links, 4), np.complex128)
+    x = np.zeros((joints.shape[1], 4), np.complex128)
+    rotation, turned = np.zeros((len(gives), 4)), np.zeros(len(gives), np.bool_)  # turned: φ is known, not only e^{iφ}
+    unit, shift = np.zeros((len(gives), 4), np.complex128), np.zeros((len(gives), 4), np.complex128)
     k, r, base = np.zeros(4, np.complex128), np.zeros(4), np.zeros(4, np.complex128)
-    arms, directions = np.zeros((count_rows, 2), np.complex128), np.zeros(count_rows, np.complex128)
-    lengths = np.zeros((count_rows, 2))
-    reaches, norms = np.zeros(count_rows), np.zeros(count_rows)
+    arms, directions = np.zeros((len(rows), 2), np.complex128), np.zeros(len(rows), np.complex128)
+    lengths, reaches, norms = np.zeros((len(rows), 2)), np.zeros(len(rows)), np.zeros(len(rows))
     unit[0, 0] = 1.0
     turned[0] = True
     for design in range(moved.shape[0]):
         m = own[design]
-        origin, size = frame[m, 0], frame[m, 1].real
         place, line, along = joints[m], lines[m], line_angles[m]
+        origin, size = frame[m, 0], frame[m, 1].real
         if design == 0 or m != own[design - 1]:
             for n in range(1, gives[0, 0] + 1):
                 x[gives[0, n], 0] = place[gives[0, n]]
-            _reference(program, place, line, along, arms, directions, lengths, reaches, norms)
+            _reference(rows, place, line, along, arms, directions, lengths, reaches, norms)
         for at in range(moved.shape[2]):
             if driver[0] < 0:
                 joint, angle = driver[1], along[driver[2]]
@@ -113,8 +132,8 @@ def drive(
                     rotation[driver[0], n] = moved[design, n, at]
                 turned[driver[0]] = True
                 _pose(driver[0], driver[1], place, gives, rotation, turned, unit, shift, x, length)
-            for row in range(count_rows):
-                step = program[row]
+            for row in range(len(rows)):
+                step = rows[row]
                 kind, link, pin, joint = step[KIND], step[LINK], step[PIN], step[JOINT]
                 other, other_pin, closing = step[OTHER], step[OTHER_PIN], step[CLOSING]
                 if kind == GEAR:
@@ -129,96 +148,71 @@ def drive(
                     for n in range(length):
                         rotation[link, n] = given[link, design, n, at]
                     turned[link] = True
-                elif kind == RRP:
-                    normal = directions[row]
-                    on_line = line[step[SLIDE]]
-                    for n in range(length):
-                        k[n] = unit[other, n] * normal * arms[row, 0].conjugate()
-                        base[n] = unit[other, n] * on_line + shift[other, n] - x[pin, n]
-                    for n in range(length):
-                        r[n] = 0.0
-                        for j in range(n + 1):
-                            r[n] += _binomial(n, j) * ((unit[other, j] * normal).conjugate() * base[n - j]).real
-                elif kind == RPR:
-                    normal = directions[row].conjugate()
-                    for n in range(length):
-                        k[n] = normal * (x[joint, n] - x[pin, n])
-                        r[n] = 0.0
-                    r[0] = (normal * arms[row, 0]).real
-                else:
+                elif kind == RRR:
                     # The shorter link is solved for: beside it the squares of long ones would leave nothing of its own.
                     first = 1 if lengths[row, 1] < lengths[row, 0] else 0
-                    own_length, other_length = lengths[row, first], lengths[row, 1 - first]
-                    for n in range(length):
-                        base[n] = x[other_pin, n] - x[pin, n]
-                        k[n] = arms[row, first].conjugate() * (-base[n] if first else base[n])
-                    for n in range(length):
-                        r[n] = 0.0
-                        for j in range(n + 1):
-                            r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
-                    r[0] += (own_length - other_length) * (own_length + other_length) / 2.0
-                if closing >= 0:
-                    reach, norm, slack = reaches[row], norms[row], 0.0
-                    sign, solved = signs[row, design], link
-                    if kind == RRR:
-                        reach, slack = own_length, base[0].real * base[0].real + base[0].imag * base[0].imag
-                        if first:
-                            sign, solved = -sign, other
+                    solved, sign = (other, -signs[row, design]) if first else (link, signs[row, design])
+                    reach, far = lengths[row, first], lengths[row, 1 - first]
+                    _equate_links(pin, other_pin, arms[row, first], first, reach, far, x, k, r, base, length)
+                    square = base[0].real * base[0].real + base[0].imag * base[0].imag
                     sine = _close(
-                        k, r, reach, norm, slack, sign, rotation, unit, solved, margins, closing, design, at, length
+                        k,
+                        r,
+                        reach,
+                        norms[row],
+                        square,
+                        sign,
+                        rotation,
+                        unit,
+                        solved,
+                        margins,
+                        closing,
+                        design,
+                        at,
+                        length,
                     )
-                    if kind == RRR:
-                        # sine of the angle between the two links: the base's part of |k| is not the force's
-                        sine *= _abs(base[0]) / other_length
-                        if first:
-                            sine = -sine
-                    sines[closing, design, at] = sine
+                    # Sine of the angle between the two links: the base's part of |k| is not the force's.
+                    sine *= math.sqrt(square) / far
+                    sines[closing, design, at] = -sine if first else sine
+                else:
+                    if kind == RRP:
+                        normal, on_line = directions[row], line[step[SLIDE]]
+                        _equate_joint_on_line(
+                            other, pin, arms[row, 0], normal, on_line, unit, shift, x, k, r, base, length
+                        )
+                    else:
+                        _equate_line_on_joint(pin, joint, arms[row, 0], directions[row], x, k, r, length)
+                    reach, norm, sign = reaches[row], norms[row], signs[row, design]
+                    sines[closing, design, at] = _close(
+                        k, r, reach, norm, 0.0, sign, rotation, unit, link, margins, closing, design, at, length
+                    )
                 if kind == RRR and first:
                     _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
                     _carry(other, joint, place, unit, shift, x, length)
                     _towards(link, pin, joint, arms[row, 0], rotation, unit, x, length)
                 _pose(link, pin, place, gives, rotation, turned, unit, shift, x, length)
                 if kind == RRR and first:
+                    # Again: the link's own pose has put the joint where rounding of the longer arm has it.
                     _carry(other, joint, place, unit, shift, x, length)
                 elif kind == RRR:
                     _towards(other, other_pin, joint, arms[row, 1], rotation, unit, x, length)
                     _pose(other, other_pin, place, gives, rotation, turned, unit, shift, x, length)
             if not len(points):
                 continue
-            valid, smooth = True, True
-            for joint in range(count_joints):
-                valid = valid and np.isfinite(x[joint, 0])
-                for n in range(1, length):
-                    smooth = smooth and np.isfinite(x[joint, n])
-            smooth = smooth and valid
+            valid, smooth = _exists(x, length)
             masks[0, design, at], masks[1, design, at] = valid, smooth
-            for link in range(1, count_links):
-                if not turned[link]:
-                    rotation[link, 0] = math.atan2(unit[link, 0].imag, unit[link, 0].real)
-            for n in range(length):
-                known = smooth if n else valid
-                for joint in range(count_joints):
-                    points[joint, n, design, at] = x[joint, n] * size if known else complex(np.nan, np.nan)
-                for link in range(1, count_links):
-                    angles[link, n, design, at] = rotation[link, n] if known else np.nan
-                for slide in range(slides.shape[0]):
-                    travels[slide, n, design, at] = np.nan
-                    if known:
-                        travels[slide, n, design, at] = size * _travel(
-                            x, unit, shift, slides[slide, 0], slides[slide, 1], line[slide], along[slide], n
-                        )
-            for joint in range(count_joints):
-                points[joint, 0, design, at] += origin
-            for link in range(1, count_links):
-                angles[link, 0, design, at] += link_angles[m, link]
+            known = length if smooth else (1 if valid else 0)
+            _write_joints(x, origin, size, points, known, design, at)
+            _write_rotations(rotation, unit, turned, link_angles[m], angles, known, design, at)
+            _write_travels(x, unit, shift, slides, line, along, size, travels, known, design, at)
             if not valid:
                 for closing in range(sines.shape[0]):
                     sines[closing, design, at] = np.nan
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _reference(
-    program: Rows,
+    rows: Rows,
     place: Complex,
     line: Complex,
     along: Real,
@@ -229,13 +223,13 @@ def _reference(
     norms: Real,
 ) -> None:
     """What stays the same at all inputs: by row, the vectors from the pins to the joint, and the slide's normal."""
-    for row in range(len(program)):
-        kind, pin, joint, slide = program[row, KIND], program[row, PIN], program[row, JOINT], program[row, SLIDE]
+    for row in range(len(rows)):
+        kind, pin, joint, slide = rows[row, KIND], rows[row, PIN], rows[row, JOINT], rows[row, SLIDE]
         if kind in (GEAR, GIVEN):
             continue
         arms[row, 0] = (line[slide] if kind == RPR else place[joint]) - place[pin]
         if kind == RRR:
-            arms[row, 1] = place[joint] - place[program[row, OTHER_PIN]]
+            arms[row, 1] = place[joint] - place[rows[row, OTHER_PIN]]
         lengths[row, 0], lengths[row, 1] = abs(arms[row, 0]), abs(arms[row, 1])
         reaches[row], norms[row] = lengths[row, 0], lengths[row, 0] ** 2
         if kind == RPR:
@@ -246,13 +240,134 @@ def _reference(
             directions[row] = complex(-math.sin(along[slide]), math.cos(along[slide]))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**STEP)
+def _equate_links(
+    pin: int,
+    other_pin: int,
+    arm: complex,
+    first: int,
+    reach: float,
+    far: float,
+    x: Complex,
+    k: Complex,
+    r: Real,
+    base: Complex,
+    length: int,
+) -> None:
+    """k and r of two links that meet (RRR), for the link of this arm and length ``reach``; ``first``: the other one.
+
+    With the base from pin to pin, k = arm̄ · base and r = (|base|² + reach² − far²)/2.
+    """
+    for n in range(length):
+        base[n] = x[other_pin, n] - x[pin, n]
+        k[n] = arm.conjugate() * (-base[n] if first else base[n])
+    for n in range(length):
+        r[n] = 0.0
+        for j in range(n + 1):
+            r[n] += 0.5 * _binomial(n, j) * (base[j] * base[n - j].conjugate()).real
+    r[0] += (reach - far) * (reach + far) / 2.0
+
+
+@njit(**STEP)
+def _equate_joint_on_line(
+    other: int,
+    pin: int,
+    arm: complex,
+    normal: complex,
+    on_line: complex,
+    unit: Complex,
+    shift: Complex,
+    x: Complex,
+    k: Complex,
+    r: Real,
+    base: Complex,
+    length: int,
+) -> None:
+    """k and r of a link whose joint slides on a line of another link (RRP): its distance from the line is zero."""
+    for n in range(length):
+        k[n] = unit[other, n] * normal * arm.conjugate()
+        base[n] = unit[other, n] * on_line + shift[other, n] - x[pin, n]
+    for n in range(length):
+        r[n] = 0.0
+        for j in range(n + 1):
+            r[n] += _binomial(n, j) * ((unit[other, j] * normal).conjugate() * base[n - j]).real
+
+
+@njit(**STEP)
+def _equate_line_on_joint(
+    pin: int, joint: int, arm: complex, normal: complex, x: Complex, k: Complex, r: Real, length: int
+) -> None:
+    """k and r of a link with a line that slides on a known joint (RPR): the line keeps its distance from the pin."""
+    for n in range(length):
+        k[n] = normal.conjugate() * (x[joint, n] - x[pin, n])
+        r[n] = 0.0
+    r[0] = (normal.conjugate() * arm).real
+
+
+@njit(**STEP)
+def _exists(x: Complex, length: int) -> tuple[bool, bool]:
+    """Whether all joints have a place, and all their derivatives."""
+    valid, smooth = True, True
+    for joint in range(len(x)):
+        valid = valid and np.isfinite(x[joint, 0])
+        for n in range(1, length):
+            smooth = smooth and np.isfinite(x[joint, n])
+    return valid, smooth and valid
+
+
+@njit(**STEP)
+def _write_joints(x: Complex, origin: complex, size: float, points: Complex, known: int, design: int, at: int) -> None:
+    """Joints in the mechanism's own coordinates; NaN from the derivative ``known`` on."""
+    for joint in range(len(x)):
+        for n in range(points.shape[1]):
+            points[joint, n, design, at] = x[joint, n] * size if n < known else complex(np.nan, np.nan)
+        points[joint, 0, design, at] += origin
+
+
+@njit(**STEP)
+def _write_rotations(
+    rotation: Real, unit: Complex, turned: Mask, reference: Real, angles: Real, known: int, design: int, at: int
+) -> None:
+    """Angles of the links: their rotations from those of the reference; NaN from the derivative ``known`` on."""
+    for link in range(1, len(rotation)):
+        if not turned[link]:
+            rotation[link, 0] = math.atan2(unit[link, 0].imag, unit[link, 0].real)
+        for n in range(angles.shape[1]):
+            angles[link, n, design, at] = rotation[link, n] if n < known else np.nan
+        angles[link, 0, design, at] += reference[link]
+
+
+@njit(**STEP)
+def _write_travels(
+    x: Complex,
+    unit: Complex,
+    shift: Complex,
+    slides: Rows,
+    line: Complex,
+    along: Real,
+    size: float,
+    travels: Real,
+    known: int,
+    design: int,
+    at: int,
+) -> None:
+    """Places of the slides' joints along their lines; NaN from the derivative ``known`` on."""
+    for slide in range(len(slides)):
+        joint, link = slides[slide, 0], slides[slide, 1]
+        for n in range(travels.shape[1]):
+            travels[slide, n, design, at] = np.nan
+            if n < known:
+                travel = _travel(x, unit, shift, joint, link, line[slide], along[slide], n)
+                travels[slide, n, design, at] = size * travel
+
+
+@njit(**OPTIONS)
 def _abs(z: complex) -> float:
     """|z| of numbers near one, where nothing overflows."""
     return math.sqrt(z.real * z.real + z.imag * z.imag)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _binomial(n: int, k: int) -> float:
     """n over k for n up to 3."""
     if k == 0 or k == n:
@@ -260,7 +375,7 @@ def _binomial(n: int, k: int) -> float:
     return float(n)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _travel(
     x: Complex, unit: Complex, shift: Complex, joint: int, link: int, line: complex, angle: float, n: int
 ) -> float:
@@ -273,7 +388,7 @@ def _travel(
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _pose(
     link: int,
     pin: int,
@@ -304,14 +419,14 @@ def _pose(
         _carry(link, gives[link, j], place, unit, shift, x, length)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _carry(link: int, joint: int, place: Complex, unit: Complex, shift: Complex, x: Complex, length: int) -> None:
     """A joint where a link has it."""
     for n in range(length):
         x[joint, n] = unit[link, n] * place[joint] + shift[link, n]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _towards(
     link: int, pin: int, joint: int, arm: complex, rotation: Real, unit: Complex, x: Complex, length: int
 ) -> None:
@@ -331,7 +446,7 @@ def _towards(
                 rotation[link, 3] = (third - 3.0 * first * second + 2.0 * first * first * first).imag
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**OPTIONS)
 def _close(
     k: Complex,
     r: Real,
@@ -350,7 +465,7 @@ def _close(
 ) -> float:
     """Solve a closure: e^{iφ} and the rates of φ, margin and its rate; returns the sine that vanishes at its limit.
 
-    ``slack`` is what r is the rounded difference of, where that is more than |k|.
+    r is a difference of squares; ``slack`` is the size of these where it is more than |k|: r carries their rounding.
     """
     square = k[0].real * k[0].real + k[0].imag * k[0].imag
     size = math.sqrt(square)

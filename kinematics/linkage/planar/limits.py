@@ -136,7 +136,7 @@ def limit_positions(
     if not links and not slides:
         return [], []
     program = program_of(mechanism)
-    own = program.signs or [1] * len(program.rows)
+    own = program.signs or [1] * len(program.code.rows)
     signs = np.array(own, np.int64).reshape(-1, 1)
     near = (high - low) * TOWARDS_END
     grid = np.concatenate([low + near, np.linspace(low, high, GRID)[1:-1], high - near[::-1]])

@@ -50,7 +50,7 @@ class Frame:
 
 
 class Program(NamedTuple):
-    """What :func:`kinematics.linkage.planar.drive_kernels.drive` takes, in its order, after the names of things.
+    """A mechanism's closures in order, the names of what the kernel numbers, and the ``code`` that it takes.
 
     ``links`` are in the kernel's order, the ground first. ``closing`` are the links that have two assemblies, ``signs``
     the reference's assemblies by step, ``reference_input`` the inputs there, of shape (M,).
@@ -62,16 +62,7 @@ class Program(NamedTuple):
     closing: tuple[str, ...]
     signs: tuple[Signs, ...]
     reference_input: Real
-    rows: Signs
-    ratios: Real
-    gives: Signs
-    joints: Complex
-    lines: Complex
-    line_angles: Real
-    link_angles: Real
-    frame: Complex
-    slides: Signs
-    driver: Signs
+    code: kernels.Code
 
 
 @lru_cache(maxsize=RECENT)
@@ -141,13 +132,7 @@ def program_of(mechanism: Mechanism) -> Program:
             out[:, n] = np.broadcast_to(value, mechanism.shape).ravel()
         return out
 
-    return Program(
-        steps,
-        bool(decomposition.left),
-        links,
-        tuple(closing),
-        assembly_signs(mechanism, steps),
-        mechanism.reference_input.ravel(),
+    code = kernels.Code(
         np.array(rows, np.int64).reshape(len(rows), 8),
         np.array([step.ratio for step in steps] or [0.0] * len(rows)),
         numbers.gives,
@@ -159,6 +144,8 @@ def program_of(mechanism: Mechanism) -> Program:
         np.array([(numbers.joint[s.joint], numbers.link[s.link]) for s in mechanism.slides], np.int64).reshape(-1, 2),
         np.array(driver, np.int64),
     )
+    signs, reference_input = assembly_signs(mechanism, steps), mechanism.reference_input.ravel()
+    return Program(steps, bool(decomposition.left), links, tuple(closing), signs, reference_input, code)
 
 
 class _Numbers:

@@ -90,7 +90,7 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
     if mechanism.driven_by_slide:
         raise DimensionError("input", "a link that turns", mechanism.input)
     program = program_of(mechanism)
-    own = program.signs or [1] * len(program.rows)
+    own = program.signs or [1] * len(program.code.rows)
     signs = np.array(own, np.int64).reshape(-1, 1)
 
     def jets(inputs: Real, order: int) -> Real:
