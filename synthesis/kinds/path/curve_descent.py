@@ -8,7 +8,7 @@ z(x, θᵢ) − tᵢ. Each θᵢ enters its own residual alone, so that Levenber
 
 are solved by elimination of the angles (Schur's complement, m × m) at a cost linear in n: orthogonal distance without
 an inner search for the nearest point (Boggs, Byrd & Schnabel 1987, doi:10.1137/0908085, whose structure this is).
-Points may be weighed. The step is refused where the linkage does not close at some point.
+Points may be weighted. The step is refused where the linkage does not close at some point.
 """
 
 from __future__ import annotations
@@ -31,8 +31,11 @@ Complex = NDArray[np.complex128]
 FIRST_DAMPING, EASED, STIFFENED = 1e-2, 0.2, 5.0
 """Marquardt's damping: at first, after a good step, after a refused one."""
 
-STIFFEST = 1e10
-"""Damping at which no step is left."""
+MIN_DAMPING, STIFFEST = 1e-12, 1e10
+"""Least damping, and that at which no step is left."""
+
+STILL_X, STILL_TURN = 1e-14, 1e-12
+"""Added to the diagonals of A and, a unit of weight, of D: what nothing hangs on stays where it is."""
 
 FURTHEST_TURN, FURTHEST_LOG = 0.4, 1.0
 """Crank angles (radians) and unknowns move no farther than this in one step, where the linear model means something."""
@@ -134,6 +137,113 @@ def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, 
 
 
 @njit(**OPTIONS)
+def _first_log(family: int) -> int:
+    """Where the numbers for lengths begin in x."""
+    return 4 if family == GEARED_FIVEBAR else 3
+
+
+@njit(**OPTIONS)
+def _links(family: int) -> int:
+    """How many numbers for lengths there are."""
+    return 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
+
+
+@njit(**OPTIONS)
+def _normal_equations(
+    family: int, x: Real, lengths: Real, chart: Real, sign: float, ratio: float, theta: Real, points: Complex,
+    weights: Real, slopes: Complex, a: Real, g: Real, c: Real, d: Real, h: Real,
+) -> None:  # fmt: skip
+    """A (its lower triangle), g, and C, D, h of the crank angles, of the points alone."""
+    m, n = len(x), len(points)
+    a[:] = 0.0
+    g[:] = 0.0
+    for i in range(n):
+        _, z = place_with_slopes(family, x, lengths, chart, sign, ratio, theta[i], slopes)
+        r, w, along = z - points[i], weights[i], slopes[m]
+        d[i] = w * (along.real * along.real + along.imag * along.imag)
+        h[i] = w * (along.real * r.real + along.imag * r.imag)
+        for j in range(m):
+            s = slopes[j]
+            g[j] += w * (s.real * r.real + s.imag * r.imag)
+            c[i, j] = w * (along.real * s.real + along.imag * s.imag)
+            for k in range(j + 1):
+                a[j, k] += w * (s.real * slopes[k].real + s.imag * slopes[k].imag)
+
+
+@njit(**OPTIONS)
+def _add_guides(
+    family: int, x: Real, lengths: Real, chart: Real, longest: float, off: Real, off_slopes: Real, a: Real, g: Real
+) -> None:
+    """To A and g what fixed pivots outside their limits add, and lengths beyond the longest, each its own residual."""
+    m, logs, count = len(x), _first_log(family), _links(family)
+    guide = TOO_LONG * TOO_LONG
+    for i in range(4):
+        if off[i] != 0.0:
+            for j in range(m):
+                g[j] += off_slopes[i, j] * off[i]
+                for k in range(j + 1):
+                    a[j, k] += off_slopes[i, j] * off_slopes[i, k]
+    for k in range(count):
+        over = abs(lengths[k]) / longest - 1.0
+        if over > 0.0:
+            for j in range(count):
+                s = chart[k, j] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
+                g[logs + j] += guide * over * s
+                for i in range(j + 1):
+                    a[logs + j, logs + i] += guide * s * chart[k, i] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
+    arm = math.hypot(x[m - 2], x[m - 1])
+    if arm > longest:
+        for j in range(2):
+            s = x[m - 2 + j] / (arm * longest)
+            g[m - 2 + j] += guide * (arm / longest - 1.0) * s
+            for i in range(j + 1):
+                a[m - 2 + j, m - 2 + i] += guide * s * x[m - 2 + i] / (arm * longest)
+
+
+@njit(**OPTIONS)
+def _eliminated(
+    a: Real, g: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, work: Real, step: Real
+) -> bool:
+    """The damped step δx by Schur's complement of the crank angles, into ``step``; False where there is none."""
+    m, n = len(g), len(h)
+    work[:] = a
+    for j in range(m):
+        work[j, j] = a[j, j] * (1.0 + damping) + STILL_X
+        step[j] = -g[j]
+    for i in range(n):
+        inverse = 1.0 / (d[i] * (1.0 + damping) + STILL_TURN * weights[i])
+        for j in range(m):
+            cij = c[i, j] * inverse
+            step[j] += cij * h[i]
+            for k in range(j + 1):
+                work[j, k] -= cij * c[i, k]
+    solved: bool = solve_positive(work, step)
+    return solved
+
+
+@njit(**OPTIONS)
+def _move(
+    family: int, x: Real, theta: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, step: Real,
+    x_new: Real, theta_new: Real,
+) -> None:  # fmt: skip
+    """The linkage and crank angles a step away, no farther than the linear model means something."""
+    m, n, logs, count = len(x), len(theta), _first_log(family), _links(family)
+    shrink = 1.0
+    for j in range(logs, logs + count):
+        shrink = min(shrink, FURTHEST_LOG / max(FURTHEST_LOG, abs(step[j])))
+    for j in range(m):
+        x_new[j] = x[j] + shrink * step[j]
+    for j in range(logs, logs + count):
+        x_new[j] = min(max(x_new[j], MIN_LOG), MAX_LOG)
+    for i in range(n):
+        turn = -h[i]
+        for j in range(m):
+            turn -= c[i, j] * step[j]
+        turn *= shrink / (d[i] * (1.0 + damping) + STILL_TURN * weights[i])
+        theta_new[i] = theta[i] + min(max(turn, -FURTHEST_TURN), FURTHEST_TURN)
+
+
+@njit(**OPTIONS)
 def _descend(
     family: int,
     x: Real,
@@ -149,8 +259,7 @@ def _descend(
 ) -> float:
     """Descend in place; returns the sum of squared distances, infinite where the start does not close."""
     m, n = len(x), len(points)
-    logs = 4 if family == GEARED_FIVEBAR else 3
-    count = 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
+    count = _links(family)
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     slopes = np.empty(m + 1, np.complex128)
     a, g = np.empty((m, m)), np.empty(m)
@@ -168,71 +277,15 @@ def _descend(
     damping, idle = FIRST_DAMPING, 0
     for _ in range(iterations):
         natural(family, x, lengths, chart)
-        a[:] = 0.0
-        g[:] = 0.0
-        for i in range(n):
-            _, z = place_with_slopes(family, x, lengths, chart, sign, ratio, theta[i], slopes)
-            r, w, along = z - points[i], weights[i], slopes[m]
-            d[i] = w * (along.real * along.real + along.imag * along.imag)
-            h[i] = w * (along.real * r.real + along.imag * r.imag)
-            for j in range(m):
-                s = slopes[j]
-                g[j] += w * (s.real * r.real + s.imag * r.imag)
-                c[i, j] = w * (along.real * s.real + along.imag * s.imag)
-                for k in range(j + 1):
-                    a[j, k] += w * (s.real * slopes[k].real + s.imag * slopes[k].imag)
+        _normal_equations(family, x, lengths, chart, sign, ratio, theta, points, weights, slopes, a, g, c, d, h)
         _pivots_off(family, x, lengths, chart, within, off, off_slopes)
-        for i in range(4):
-            if off[i] != 0.0:
-                for j in range(m):
-                    g[j] += off_slopes[i, j] * off[i]
-                    for k in range(j + 1):
-                        a[j, k] += off_slopes[i, j] * off_slopes[i, k]
-        # The guide for long links, each a residual of its own.
-        for k in range(count):
-            over = abs(lengths[k]) / longest - 1.0
-            if over > 0.0:
-                for j in range(count):
-                    s = chart[k, j] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
-                    g[logs + j] += guide * over * s
-                    for i in range(j + 1):
-                        a[logs + j, logs + i] += guide * s * chart[k, i] * (1.0 if lengths[k] > 0.0 else -1.0) / longest
-        arm = math.hypot(x[m - 2], x[m - 1])
-        if arm > longest:
-            for j in range(2):
-                s = x[m - 2 + j] / (arm * longest)
-                g[m - 2 + j] += guide * (arm / longest - 1.0) * s
-                for i in range(j + 1):
-                    a[m - 2 + j, m - 2 + i] += guide * s * x[m - 2 + i] / (arm * longest)
+        _add_guides(family, x, lengths, chart, longest, off, off_slopes, a, g)
         accepted = False
         while damping < STIFFEST:
-            work[:] = a
-            for j in range(m):
-                work[j, j] = a[j, j] * (1.0 + damping) + 1e-14
-                step[j] = -g[j]
-            for i in range(n):
-                inverse = 1.0 / (d[i] * (1.0 + damping) + 1e-12 * weights[i])
-                for j in range(m):
-                    cij = c[i, j] * inverse
-                    step[j] += cij * h[i]
-                    for k in range(j + 1):
-                        work[j, k] -= cij * c[i, k]
-            if not solve_positive(work, step):
+            if not _eliminated(a, g, c, d, h, weights, damping, work, step):
                 damping *= STIFFENED
                 continue
-            shrink = 1.0
-            for j in range(logs, logs + count):
-                shrink = min(shrink, FURTHEST_LOG / max(FURTHEST_LOG, abs(step[j])))
-            for j in range(m):
-                x_new[j] = x[j] + shrink * step[j]
-            for j in range(logs, logs + count):
-                x_new[j] = min(max(x_new[j], MIN_LOG), MAX_LOG)
-            for i in range(n):
-                turn = -h[i]
-                for j in range(m):
-                    turn -= c[i, j] * step[j]
-                turn *= shrink / (d[i] * (1.0 + damping) + 1e-12 * weights[i])
-                theta_new[i] = theta[i] + min(max(turn, -FURTHEST_TURN), FURTHEST_TURN)
+            _move(family, x, theta, c, d, h, weights, damping, step, x_new, theta_new)
             natural(family, x_new, lengths, chart)
             distance_new = _cost(family, x_new, lengths, sign, ratio, theta_new, points, weights, cycle)
             distance_new += _pivots_off(family, x_new, lengths, chart, within, off, off_slopes)
@@ -247,7 +300,7 @@ def _descend(
         x[:] = x_new
         theta[:] = theta_new
         cost, distance = cost_new, distance_new
-        damping = max(damping * EASED, 1e-12)
+        damping = max(damping * EASED, MIN_DAMPING)
         idle = idle + 1 if gain <= ARRIVED * cost else 0
         if idle >= 2 or cost <= NOTHING:
             break
