@@ -51,7 +51,15 @@ class Segment:
 
 
 def law_segment(law: Law, angle: float, start: float, end: float) -> Segment:
-    """A rise or fall by a law; a fall is the law upside down."""
+    """A rise or fall by a law; a fall is the law upside down.
+
+    Peak velocity and acceleration of a cycloidal rise of 1 in 1 rad are 2 and 2π (Norton, Table 8-3):
+
+    >>> from kinematics.cam.motion_laws import LAWS
+    >>> rise = law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0)
+    >>> [round(float(rise.extremes(order).greatest), 2) for order in (1, 2)]
+    [2.0, 6.28]
+    """
     return Segment(law.name, law.pieces.scaled(_angle(angle), _finite("end", end) - start, _finite("start", start)))
 
 

@@ -347,7 +347,11 @@ def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
 
 
 def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:
-    """Fewest teeth that mesh with a rack, and with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8, Table 9-4)."""
+    """Fewest teeth that mesh with a rack, and with every gear: z ≥ 2 k / sin² φ (Norton, eq. 9.8, Table 9-4).
+
+    >>> [least_teeth_with_rack(math.radians(angle)) for angle in (14.5, 20.0, 25.0)]
+    [32, 18, 12]
+    """
     return _ceil(2.0 * addendum / math.sin(pressure_angle) ** 2)
 
 

@@ -229,6 +229,14 @@ def positions(linkage: Fourbar, input_angle: ArrayLike, assembly: ArrayLike = OP
         For an assembly that is neither +1 nor −1.
     ShapeError
         For angles or assemblies that do not broadcast with the designs.
+
+    Examples
+    --------
+    Norton, Table P4-1, row a, open:
+
+    >>> at = positions(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0), np.radians(30.0))
+    >>> [round(float(np.degrees(angle)), 1) for angle in (at.coupler_angle, at.output_angle)]
+    [88.8, 117.3]
     """
     return Positions(*swept_positions(kernels, linkage.blocks, input_angle, assembly))
 

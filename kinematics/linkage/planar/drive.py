@@ -122,6 +122,15 @@ def drive(
         toggle: two branches meet there, and only signs, which it has not, could say which one is meant.
     ShapeError
         For inputs that do not broadcast.
+
+    Examples
+    --------
+    The fourbar of Norton, Table P4-1, row a, from the catalogue:
+
+    >>> from kinematics.linkage import Fourbar, catalogue
+    >>> fourbar = catalogue.fourbar(Fourbar.from_lengths(2.0, 7.0, 9.0, 6.0), input_angle=0.5)
+    >>> float(np.degrees(drive(fourbar, np.radians([30.0])).angles["output"][0, 0]).round(1))
+    117.3
     """
     require("order", "0, 1, 2 or 3", np.asarray(order), np.bool_(order in (0, 1, 2, 3)))
     program = program_of(mechanism)
