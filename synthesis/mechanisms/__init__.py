@@ -16,7 +16,7 @@ from synthesis.mechanisms.geared_fivebar import GivenGearedFivebar
 from synthesis.mechanisms.skeleton import GivenSkeleton
 from synthesis.mechanisms.slider_crank import GivenInvertedSliderCrank, GivenQuickReturn, GivenSliderCrank
 
-_BY_TYPE: dict[str, str] = {
+BY_DIMENSIONS: dict[str, str] = {
     "fourbar": "<fourbar>",
     "slider_crank": "<slider_crank>",
     "inverted_slider_crank": "<inverted_slider_crank>",
@@ -24,6 +24,7 @@ _BY_TYPE: dict[str, str] = {
     "whitworth": "<quick_return>",
     "geared_fivebar": "<geared_fivebar>",
 }
+"""Types whose dimensions say all, and the tag of the model that reads them."""
 
 
 def _tag(statement: Any) -> str:
@@ -33,7 +34,7 @@ def _tag(statement: Any) -> str:
     kind = statement.get("type")
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():
         return "<skeleton>"
-    return _BY_TYPE.get(kind, "<skeleton>") if isinstance(kind, str) else "<skeleton>"
+    return BY_DIMENSIONS.get(kind, "<skeleton>") if isinstance(kind, str) else "<skeleton>"
 
 
 GivenMechanism = Annotated[
@@ -47,4 +48,4 @@ GivenMechanism = Annotated[
 ]
 """Any stated mechanism; the field ``type`` tells which."""
 
-__all__ = ["GivenFourbar", "GivenGearedFivebar", "GivenMechanism", "GivenSkeleton", "MechanismError"]
+__all__ = ["BY_DIMENSIONS", "GivenFourbar", "GivenGearedFivebar", "GivenMechanism", "GivenSkeleton", "MechanismError"]

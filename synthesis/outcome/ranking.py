@@ -1,7 +1,6 @@
 """Which of several sound designs to offer first, and which to leave out because they are nearly the same.
 
-``quality`` weighs what a designer looks at before anything else: how well force is transmitted, whether the linkage is
-small for its task, and whether its links can be built together. docs/ranking.md explains the numbers.
+docs/ranking.md explains the orders and what they are made of.
 """
 
 from __future__ import annotations
@@ -17,28 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from synthesis.outcome.sifting import Verified
 
 Ranked = TypeVar("Ranked", bound=Verified)
-
-BULKY = 3.0
-"""A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
-
-UNEVEN = 8.0
-"""A link ratio of this halves the quality; practice keeps link ratios below about 10."""
-
-
-@njit(cache=True, nogil=True)
-def quality(transmission_sine: float, reach: float, link_ratio: float) -> float:
-    """Quality between 0 and 1.
-
-    Parameters
-    ----------
-    transmission_sine : float
-        Sine of the least transmission angle over the used range.
-    reach : float
-        Longest link or coupler side, in task sizes.
-    link_ratio : float
-        Longest link over shortest.
-    """
-    return transmission_sine / ((1.0 + (reach / BULKY) ** 2) * (1.0 + (link_ratio / UNEVEN) ** 2))
 
 
 def distinct(joints: ArrayLike, count: int, apart: float) -> list[int]:

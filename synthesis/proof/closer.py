@@ -69,23 +69,36 @@ def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) 
     return least, -least_of(mechanism, inputs, -values, lambda found: -of(found))
 
 
-def least_angles(at: Callable[[Real], MechanismMotion], low: float, high: float) -> dict[str, float]:
-    """The least transmission angle at each closure between two inputs, radians; 0 where nothing closes.
+def least_angles(
+    at: Callable[[Real], MechanismMotion], inputs: Real, motion: MechanismMotion | None = None
+) -> dict[str, float]:
+    """The least transmission angle at each closure between the first input and the last; 0 where nothing closes.
 
-    ``at`` drives the mechanism to inputs (n,), of which ``low`` and ``high`` are the first and the last.
+    Parameters
+    ----------
+    at : callable
+        Drives the mechanism to inputs (n,).
+    inputs : ndarray, shape (m,), m >= 2
+        A grid of them; :data:`GRID` of them are enough for a turn.
+    motion : MechanismMotion, optional
+        The motion there, from a caller that has it.
+
+    Returns
+    -------
+    dict of str to float
+        Angles in radians, by the name of the closure's first link.
     """
-    grid = np.linspace(low, high, GRID)
-    found = {}
-    for link, sines in at(grid).sines.items():
+    angles = {}
+    for link, sines in (at(inputs) if motion is None else motion).sines.items():
 
         def sine(closer: Real, link: str = link) -> Real:
             return np.abs(at(closer).sines[link])
 
-        _, least = least_near(sine, grid, np.abs(sines))
-        found[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))
-    return found
+        _, least = least_near(sine, inputs, np.abs(sines))
+        angles[link] = 0.0 if math.isnan(least) else math.asin(min(least, 1.0))
+    return angles
 
 
-def sine_at(link: str) -> Quantity:
-    """Magnitude of the sine of the transmission angle at a closure."""
-    return lambda found: np.abs(found.sines[link])
+def turn_from(start: float) -> Real:
+    """Inputs of a whole turn, radians."""
+    return np.asarray(start + np.linspace(0.0, 2.0 * np.pi, GRID))

@@ -16,7 +16,8 @@ from synthesis.kinds.motion.screening import (
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.outcome.ranking import distinct, quality
+from synthesis.outcome.ranking import distinct
+from synthesis.proof.measures import quality
 from synthesis.registry import parse_problem
 from tests.synthesis.planted import plant
 

@@ -7,21 +7,15 @@ end of the output's way. Nothing is known of where they should be.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
-from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.planar.drive import MechanismMotion, drive
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.dwell.design import (
     DwellDesign,
     DwellMechanism,
@@ -29,16 +23,18 @@ from synthesis.kinds.dwell.design import (
     Rest,
 )
 from synthesis.kinds.dwell.problem import DwellProblem
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import at_most, constraint_checks
-from synthesis.proof.closer import (
-    extremes_of,
-    least_of,
-    sine_at,
+from synthesis.proof.closer import extremes_of, least_angles
+from synthesis.proof.measures import (
+    barker_of,
+    diagonal,
+    fixed_pivots,
+    measured,
+    reach_of,
 )
+from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
 
@@ -56,8 +52,6 @@ NO_TOGGLE = 1e-6
 
 END = 0.05
 """How far a dwell's mean may be from the end of the way, as a share of it."""
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class _Rest(NamedTuple):
@@ -83,16 +77,15 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     DwellDesign or None
         None where the dimensions are no mechanism whose crank turns through.
     """
-    try:
-        mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
-        return None  # ValidationError: a length beyond what any statement may hold
+    mechanism = rebuilt(design)
+    if mechanism is None:
+        return None
     inputs = float(mechanism.reference_input) + np.linspace(0.0, 2.0 * np.pi, GRID + 1)
     motion = drive(mechanism, inputs, order=2)
     if not motion.smooth.all():
         return None
-    joints = np.concatenate([jet[0] for jet in motion.joints.values()])
-    size = math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0))
+    places = np.concatenate([jet[0] for jet in motion.joints.values()])
+    size = diagonal(places)
     slides = design.type == "dwell_slider"
 
     def output(found: MechanismMotion) -> Real:
@@ -103,34 +96,30 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     closed = all(abs(jet[0, -1] - jet[0, 0]) <= CLOSED * size for jet in motion.joints.values())
     low, high = extremes_of(mechanism, inputs, values, output)
     way = high - low
-    least = {
-        link: math.degrees(math.asin(min(least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)), 1.0)))
-        for link in motion.sines
-    }
-    turns = closed and turned <= 0.5 * way and min(least.values()) > math.degrees(NO_TOGGLE)
+    transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
+    turns = closed and turned <= 0.5 * way and min(transmission.values()) > NO_TOGGLE
     rests = _rests(values[:-1], problem, low, high)
     if not rests:
         return None
     _, rate, second = motion.slides["D"] if slides else motion.angles["output"]
-    a, b, o4, o2 = (complex(mechanism.joints[name]) for name in ("A", "B", "O4", "O2"))
-    barker = barker_class(Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4)))
     lengths = _lengths(mechanism)
-    task = problem.way if slides else 2.0 * abs(a - o2)
-    least_sine = math.sin(math.radians(min(least.values())))
+    measures = measured(
+        lengths,
+        reach_of(mechanism),
+        problem.way if slides else 2.0 * lengths[1],
+        transmission,
+        places,
+        barker=barker_of(mechanism),
+        same_branch=turns,
+        visits_in_order=turns,  # a turn has one order
+        full_rotation=turns,
+    )
     metrics = DwellMetrics(
         way=way,
         jitter=max(rest.jitter for rest in rests),
         peak_velocity=float(np.abs(rate).max()),
         peak_acceleration=float(np.abs(second).max()),
-        grashof=barker.motion,
-        barker=barker.code,
-        min_transmission_angle=min(least.values()),
-        transmission_angles=least,
-        same_branch=turns,
-        full_rotation=turns,
-        link_ratio=max(lengths) / min(lengths),
-        size=size,
-        quality=quality(least_sine, max(lengths) / task, max(lengths) / min(lengths)),
+        **measures.within(DwellMetrics),
     )
     targets = [
         Rest(
@@ -167,8 +156,7 @@ def _checks(
         apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)
         checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
     pins = [complex(mechanism.joints[name]) for name in ("A", "B")]
-    pivots = [complex(mechanism.joints[name]) for name in mechanism.links[GROUND]]
-    return [*checks, *constraint_checks(problem.constraints, lengths, pivots, pins, metrics)]
+    return [*checks, *constraint_checks(problem.constraints, lengths, fixed_pivots(mechanism), pins, metrics)]
 
 
 def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:
@@ -216,7 +204,7 @@ def _width(values: Real, start: int, window: int, tolerance: float) -> float:
 
 
 def _lengths(mechanism: Mechanism) -> list[float]:
-    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5 and an output rocker."""
+    """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5 and the output."""
     place = {name: complex(z) for name, z in mechanism.joints.items()}
-    pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D")]
+    pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D"), ("O6", "C")]
     return [abs(place[one] - place[other]) for one, other in pairs if one in place and other in place]

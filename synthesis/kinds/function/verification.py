@@ -45,8 +45,8 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import TARGET_REACHED, constraint_checks
+from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -83,7 +83,6 @@ class _Drive(ABC):
     """A linkage that is driven at its input, by the analysis core."""
 
     assembly: int
-    lengths: list[float]
     pivots: list[complex]
     turns: float
     """A turn of the output, radians; infinite for a slider."""
@@ -118,12 +117,10 @@ class _Fourbar(_Drive):
         self.linkage, self.assembly = fourbar.linkage, fourbar.assembly
         if not can_assemble(self.linkage):
             raise DimensionError("input", "lengths that can be assembled", math.nan)
-        links = mechanism.links
-        self.lengths = [links.ground, links.input, links.coupler, links.output]
         self.pivots = [complex(self.linkage.input_pivot), complex(self.linkage.output_pivot)]
         self.frame = float(self.linkage.ground_angle)
         self.barker = barker_class(self.linkage)
-        self.full = self.barker.motion in ("double_crank", "crank_rocker")
+        self.full = self.barker.motion in TURNS_THROUGH
 
     def at(self, angles: Real, assembly: int) -> _Driven:
         found = positions(self.linkage, angles, assembly)
@@ -150,7 +147,6 @@ class _Slider(_Drive):
         foot = line + along * ((pivot - line) * along.conjugate()).real
         self.linkage = SliderCrank(pivot, foot, angle, mechanism.links.crank, mechanism.links.coupler)
         self.assembly = OPEN if mechanism.assembly == "open" else CROSSED
-        self.lengths = [mechanism.links.crank, mechanism.links.coupler]
         self.pivots = [pivot]
         self.frame = angle
         self.full = bool(slider_crank.full_rotation(self.linkage))
@@ -209,10 +205,10 @@ def verify_function(
         return None
     own = bool(np.all(assemblies == drive.assembly))
     errors = _off(met.place, targets.places, drive.turns)
-    measured = _structural_error(problem, dials, drive, targets, errors)
-    if measured is None:
+    structural = _structural_error(problem, dials, drive, targets, errors)
+    if structural is None:
         return None
-    error, whole = measured
+    error, whole = structural
     unit = _unit(problem)
     residuals = np.abs(errors) / (unit if problem.slides else 1.0)
     start, end = _range(problem, dials, targets)
@@ -222,22 +218,23 @@ def verify_function(
     steps = np.diff(targets.angles)
     in_order = on_circuit and bool(np.all(steps > 0.0) or np.all(steps < 0.0))
     joints = np.concatenate([met.a, met.b, drive.pivots])
-    ratio = max(drive.lengths) / min(drive.lengths)
-    barker = drive.barker
-    degrees = 1.0 if problem.slides else 180.0 / math.pi
-    metrics = FunctionMetrics(
-        grashof=None if barker is None else barker.motion,
-        barker=None if barker is None else barker.code,
-        min_transmission_angle=math.degrees(least),
-        transmission_angles={"coupler": math.degrees(least)},
+    lengths = link_lengths(mechanism)
+    measures = measured(
+        lengths,
+        max(lengths),
+        unit if problem.slides else math.inf,  # angles have no size
+        {"coupler": least},
+        joints,
+        barker=drive.barker,
         same_branch=same_branch,
         visits_in_order=in_order,
         full_rotation=drive.full,
+    )
+    degrees = 1.0 if problem.slides else 180.0 / math.pi
+    metrics = FunctionMetrics(
         input_rotation=math.degrees(end - start),
-        link_ratio=ratio,
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
-        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
-        quality=quality(math.sin(least), max(drive.lengths) / unit if problem.slides else 0.0, ratio),
+        **measures.within(FunctionMetrics),
         max_structural_error=error.max,
         rms_structural_error=error.rms,
         output_range=float(targets.places[-1] - targets.places[0]) * degrees,
@@ -254,7 +251,7 @@ def verify_function(
     kept = _dials_off(problem, dials, drive)
     checks.append(Check(name="dials", passed=kept <= DIAL_KEPT, value=kept, limit=DIAL_KEPT))
     first = [complex(met.a[0]), complex(met.b[0])]
-    checks += constraint_checks(problem.constraints, drive.lengths, drive.pivots, first, metrics)
+    checks += constraint_checks(problem.constraints, lengths, drive.pivots, first, metrics)
     return FunctionDesign(
         mechanism=mechanism,
         dials=dials,

@@ -32,7 +32,7 @@ from synthesis.model.linkage_answer import (
     SixbarMechanism,
 )
 from synthesis.model.linkages import driven_fourbar
-from synthesis.outcome.ranking import UNEVEN
+from synthesis.proof.measures import UNEVEN
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

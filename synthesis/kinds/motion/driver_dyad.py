@@ -39,12 +39,9 @@ from synthesis.model.linkage_answer import (
     SixbarMechanism,
 )
 from synthesis.model.linkages import driven_fourbar, to_complex
-from synthesis.outcome.ranking import (
-    BULKY,
-    UNEVEN,
-    ranked,
-)
+from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
+from synthesis.proof.measures import BULKY, UNEVEN
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -12,7 +12,7 @@ What has to be decided for a pair is whether one motion of the input meets the t
   cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the least
   transmission angle.
 
-The score of a sound pair is :func:`synthesis.outcome.ranking.quality`. The verdicts are for choosing among candidates
+The score of a sound pair is :func:`synthesis.proof.measures.quality`. The verdicts are for choosing among candidates
 only; what is returned to a client is verified by the analysis core from the dimensions.
 """
 
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.linkage_statement import Constraints
-from synthesis.outcome.ranking import quality
+from synthesis.proof.measures import quality
 
 REASONS = (
     "sound",

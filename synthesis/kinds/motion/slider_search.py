@@ -41,13 +41,9 @@ from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import inverted_slider_crank_mechanism, slider_crank_mechanism
-from synthesis.outcome.ranking import (
-    BULKY,
-    UNEVEN,
-    ranked,
-    widest_apart,
-)
+from synthesis.outcome.ranking import ranked, widest_apart
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, NUMERICAL, OUTRANKED, Sifting, reported
+from synthesis.proof.measures import BULKY, UNEVEN
 
 USABLE_TRANSMISSION_ANGLE = 30.0
 """Degrees; where the client sets no limit, pairs below this are tried only if none reaches it."""

@@ -42,7 +42,6 @@ from synthesis.model.linkages import (
     body_shift,
     driven_fourbar,
 )
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import (
     Driven,
     Side,
@@ -51,6 +50,7 @@ from synthesis.proof.checks import (
     motion_checks,
     targets,
 )
+from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5
 """A fitted target counts as met in the reference's own assembly unless the other one misses it this many times less."""
@@ -82,10 +82,6 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
     way = traverse(linkage, met.angles, met.assemblies)
     barker = BARKER[kind - 1]
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
-    links, point = mechanism.links, complex(linkage.coupler_point)
-    lengths = [links.ground, links.input, links.coupler, links.output]
-    reach = max(*lengths, abs(point), abs(point - links.coupler))
-    ratio = max(lengths) / min(lengths)
     pin_a, pin_b, p, o2, o4 = met.joints
     driven = Driven(
         p,
@@ -94,25 +90,26 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         Side(complex(o2[0]), pin_a),
         Side(complex(o4[0]), pin_b),
     )
-    span = np.ptp(met.joints.view(np.float64).reshape(-1, 2), axis=0)
-    metrics = LinkageMetrics(
-        grashof=barker.motion,
-        barker=barker.code,
-        min_transmission_angle=math.degrees(least),
-        transmission_angles={"coupler": math.degrees(least)},
+    measures = measured(
+        link_lengths(mechanism),
+        reach_of_fourbar(linkage),
+        target.size,
+        {"coupler": least},
+        met.joints,
+        barker=barker,
         same_branch=way.same_branch,
         visits_in_order=way.in_order,
-        full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        full_rotation=barker.motion in TURNS_THROUGH,
+    )
+    metrics = LinkageMetrics(
         input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
-        link_ratio=ratio,
         rms_residual=target.rms(driven.offsets),
-        size=math.hypot(*span),
-        quality=quality(math.sin(least), reach / target.size, ratio),
+        **measures.within(LinkageMetrics),
     )
     checks = [*motion_checks(target, driven, way.same_circuit), *choice_checks(problem, target, driven)]
     checks += constraint_checks(
         problem.constraints,
-        lengths,
+        measures.lengths,
         [complex(o2[0]), complex(o4[0])],
         [complex(pin_a[0]), complex(pin_b[0])],
         metrics,

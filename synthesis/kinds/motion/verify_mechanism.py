@@ -14,10 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 
-from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import Fourbar, barker_class
+from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion, drive
@@ -26,11 +24,7 @@ from kinematics.linkage.planar.limits import (
     holding_reference,
     limit_positions,
 )
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from synthesis.kinds.motion.closest import closest_inputs
 from synthesis.kinds.motion.demanded import (
     Complex,
@@ -38,7 +32,6 @@ from synthesis.kinds.motion.demanded import (
     Real,
 )
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import (
     InvertedSliderCrankMechanism,
@@ -49,7 +42,6 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import body_shift
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import (
     Driven,
     Side,
@@ -58,7 +50,9 @@ from synthesis.proof.checks import (
     motion_checks,
     targets,
 )
-from synthesis.proof.closer import least_angles
+from synthesis.proof.closer import GRID, least_angles
+from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
+from synthesis.proof.rebuilt import rebuilt
 
 OWN = 1.5
 """A target counts as met on the reference's branch unless another one misses it this many times less."""
@@ -72,8 +66,6 @@ the square of the crank's, so this is far above what rounding leaves and far bel
 
 RANGE_GRID = 721
 """Inputs at which the driven link's way is looked at."""
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class _Met(NamedTuple):
@@ -92,13 +84,13 @@ class _Way(NamedTuple):
 
 def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: Demanded) -> LinkageDesign | None:
     """Drive a linkage through a problem's targets and measure it; see :mod:`~synthesis.kinds.motion.verification`."""
-    # Where dimensions say it all the skeleton is not looked at; a sixbar's dimensions are its skeleton.
-    told = design.model_dump(exclude=None if isinstance(design, SixbarMechanism) else {"skeleton"})
+    mechanism = rebuilt(design)
+    if mechanism is None:
+        return None
     try:
-        mechanism = _GIVEN.validate_python(told).mechanism()
         found = branches(mechanism)
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
-        return None  # ValidationError: a length beyond what any statement may hold
+    except MechanismError:
+        return None
     here = holding_reference(mechanism, found)
     if here is None:
         return None
@@ -114,36 +106,30 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     driven = _driven(design, mechanism, joints, turns, target)
     whole = isinstance(design, SixbarMechanism)
     used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
-    least = least_angles(lambda inputs: body.drive(inputs, here), *used) if same_branch else {}
-    angle = min(least.values(), default=0.0)
-    lengths = _lengths(design)
-    arms = [float(abs(joints["P"][0] - joints[pin][0])) for pin in ("A", "B") if pin in joints]
-    ratio = max(lengths) / min(lengths)
-    everything = np.array(list(joints.values()))
-    span = np.ptp(everything.view(np.float64).reshape(-1, 2), axis=0)
-    barker = _barker(design)
+    measures = measured(
+        link_lengths(design),
+        reach_of(mechanism),
+        target.size,
+        least_angles(partial(body.drive, branch=here), np.linspace(*used, GRID)) if same_branch else {},
+        np.array(list(joints.values())),
+        barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) else None,
+        same_branch=same_branch,
+        visits_in_order=way.in_order,
+        full_rotation=here.full,
+    )
     slides = mechanism.driven_by_slide
     inputs = way.inputs if slides else np.degrees(way.inputs)
     gone = float(inputs[-1] - inputs[0])
     metrics = LinkageMetrics(
-        grashof=None if barker is None else barker[0],
-        barker=None if barker is None else barker[1],
-        min_transmission_angle=math.degrees(angle),
-        transmission_angles={link: math.degrees(x) for link, x in least.items()},
-        same_branch=same_branch,
-        visits_in_order=way.in_order,
-        full_rotation=here.full,
         input_rotation=None if slides else gone,
         input_travel=gone if slides else None,
-        link_ratio=ratio,
         rms_residual=target.rms(driven.offsets),
-        size=math.hypot(*span),
-        quality=quality(math.sin(angle), max([*lengths, *arms]) / target.size, ratio),
+        **measures.within(LinkageMetrics),
     )
     checks = [*motion_checks(target, driven, on_circuit), *choice_checks(problem, target, driven)]
     pins = [complex(joints[pin][0]) for pin in ("A", "B") if pin in joints]
     pivots = [complex(joints[joint][0]) for joint in fixed if joint != "O6"]
-    checks += constraint_checks(problem.constraints, lengths, pivots, pins, metrics)
+    checks += constraint_checks(problem.constraints, measures.lengths, pivots, pins, metrics)
     if isinstance(design, SixbarMechanism):
         checks += _driver_checks(problem, design, mechanism, here, way)
     return LinkageDesign(
@@ -248,21 +234,6 @@ def _driven(
     else:
         sides = (link, Side(complex(joints["O4"][0]), joints["B"]))
     return Driven(joints["P"], turns, target.offsets(joints["P"], turns), *sides)
-
-
-def _lengths(design: LinkageMechanism) -> list[float]:
-    """Lengths of the links; a block's arm of no length is none."""
-    links = design.links if isinstance(design, SixbarMechanism) else design.links.model_dump()
-    return [length for length in links.values() if length > 0.0]
-
-
-def _barker(design: LinkageMechanism) -> tuple[str, str] | None:
-    """Grashof's class and Barker's code of the fourbar that a sixbar drives."""
-    if not isinstance(design, SixbarMechanism):
-        return None
-    links = design.links
-    row = barker_class(Fourbar(0.0, links["ground"], links["input"], links["coupler"], links["output"]))
-    return row.motion, row.code
 
 
 def _driver_checks(

@@ -7,20 +7,14 @@ input's circle and P on the point, has B at the output's length from O4.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 
-from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
 from synthesis.kinds.parallel_motion.design import (
     ParallelMotionDesign,
@@ -29,19 +23,24 @@ from synthesis.kinds.parallel_motion.design import (
 )
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
 from synthesis.kinds.path.verification import verify_path
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import Target
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import constraint_checks
-from synthesis.proof.closer import least_of, sine_at
+from synthesis.proof.closer import GRID, least_angles, turn_from
+from synthesis.proof.measures import (
+    TURNS_THROUGH,
+    barker_of,
+    diagonal,
+    fixed_pivots,
+    link_lengths,
+    measured,
+    reach_of,
+)
+from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-GRID = 1441
-"""Inputs of the range that are looked at."""
 
 TRANSLATES = 1e-9
 """Most that the body may turn, radians, and most that P may be off the curve, as a share of the curve's size."""
@@ -54,8 +53,6 @@ NO_TOGGLE = 1e-6
 
 WITHIN = 0.01
 """An input between toggles is driven up to this share of its range from each."""
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class _Path(NamedTuple):
@@ -89,66 +86,50 @@ def verify_parallel_motion(
     ParallelMotionDesign or None
         None where the dimensions are no mechanism that can be driven.
     """
-    try:
-        mechanism = _GIVEN.validate_python(design.model_dump()).mechanism()
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
-        return None  # ValidationError: a length beyond what any statement may hold
+    mechanism = rebuilt(design)
+    if mechanism is None:
+        return None
     place = {name: complex(z) for name, z in mechanism.joints.items()}
     configuration = FourbarConfiguration(*(place[name] for name in ("O2", "A", "B", "O4", "P")))
     path = _path(problem, configuration)
     if problem.path is not None and path is None:
         return None
-    barker = barker_class(
-        Fourbar(
-            place["O2"],
-            place["O4"],
-            abs(place["A"] - place["O2"]),
-            abs(place["B"] - place["A"]),
-            abs(place["B"] - place["O4"]),
-        )
-    )
-    turns = barker.motion in ("double_crank", "crank_rocker")
+    barker = barker_of(mechanism)
+    turns = barker.motion in TURNS_THROUGH
     inputs = _inputs(mechanism, None if turns or path is None else path.rotation, turns=turns)
     motion = drive(mechanism, inputs, order=1)
     if not motion.smooth.all():
         return None
     p, q = motion.joints["P"][0], motion.joints["Q"][0]
-    curve_size = math.hypot(float(np.ptp(p.real)), float(np.ptp(p.imag)))
+    curve_size = diagonal(p)
     joints = np.concatenate([jet[0] for jet in motion.joints.values()])
     reach = float(np.abs(joints).max())
     body = motion.angles["body"][0]
     rotation = float(np.abs(np.angle(np.exp(1j * (body - body[0])))).max())
-    least = {
-        link: math.degrees(math.asin(min(least_of(mechanism, inputs, sine_at(link)(motion), sine_at(link)), 1.0)))
-        for link in motion.sines
-    }
-    same_branch = min(least.values()) > math.degrees(NO_TOGGLE) and (path is None or _kept(path, "same_branch"))
-    lengths = list(design.links.values())
+    transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
     off_curve = None if problem.linkage is None else float(_off_curve(problem.linkage, p).max())
     task = curve_size if problem.path is None else problem.path.task_size
-    metrics = ParallelMotionMetrics(
-        grashof=barker.motion,
-        barker=barker.code,
-        min_transmission_angle=min(least.values()),
-        transmission_angles=least,
-        same_branch=same_branch,
+    measures = measured(
+        link_lengths(design),
+        reach_of(mechanism),
+        task,
+        transmission,
+        joints,
+        barker=barker,
+        same_branch=min(transmission.values()) > NO_TOGGLE and (path is None or _kept(path, "same_branch")),
         visits_in_order=path is None or _kept(path, "visits_in_order"),
         full_rotation=turns,
+    )
+    metrics = ParallelMotionMetrics(
         input_rotation=math.degrees(float(inputs[-1] - inputs[0])),
-        link_ratio=max(lengths) / min(lengths),
         rms_residual=0.0 if path is None else path.rms,
-        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
-        quality=quality(
-            math.sin(math.radians(min(least.values()))),
-            max(*lengths, design.coupler_point.distance) / task,
-            max(lengths) / min(lengths),
-        ),
         base=base,
         input_side=input_side,
         rotation=math.degrees(rotation),
         translation=(float((q[0] - p[0]).real), float((q[0] - p[0]).imag)),
         curve_distance=off_curve,
         input_range=(math.degrees(float(inputs[0])), math.degrees(float(inputs[-1]))),
+        **measures.within(ParallelMotionMetrics),
     )
     limit = TRANSLATES + FAR * reach / abs(complex(q[0] - p[0]))
     checks = [Check(name="translates", passed=rotation <= limit, value=rotation, limit=limit)]
@@ -160,9 +141,8 @@ def verify_parallel_motion(
     if path is not None:
         checks += path.checks
     pins = [place[name] for name in ("A", "B", "C")]
-    pivots = [place[name] for name in mechanism.links[GROUND]]
     named = {check.name for check in checks}
-    own = constraint_checks(problem.constraints, lengths, pivots, pins, metrics)
+    own = constraint_checks(problem.constraints, measures.lengths, fixed_pivots(mechanism), pins, metrics)
     checks += [check for check in own if check.name not in named]
     return ParallelMotionDesign(
         mechanism=design,
@@ -193,7 +173,7 @@ def _inputs(mechanism: Mechanism, rotation: float | None, *, turns: bool) -> Rea
     """Inputs of the range: a whole turn, the path's rotation, or nearly from toggle to toggle."""
     at = float(mechanism.reference_input)
     if turns:
-        return np.asarray(np.linspace(at, at + 2.0 * np.pi, GRID))
+        return turn_from(at)
     if rotation is not None:
         return np.asarray(np.linspace(at, at + rotation, GRID))
     fourbar = Mechanism(

@@ -33,12 +33,12 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, Target
 from synthesis.model.linkages import DrivenFourbar, driven_fourbar
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import (
     CHOICE_KEPT,
     TARGET_REACHED,
     constraint_checks,
 )
+from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -88,28 +88,27 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     way = _way(linkage, passed)
     barker = barker_class(linkage)
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
-    links, point = mechanism.links, complex(linkage.coupler_point)
-    lengths = [links.ground, links.input, links.coupler, links.output]
-    reach = max(*lengths, abs(point), abs(point - links.coupler))
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
     residuals = passed.misses / size
-    metrics = PathMetrics(
-        grashof=barker.motion,
-        barker=barker.code,
-        min_transmission_angle=math.degrees(least),
-        transmission_angles={"coupler": math.degrees(least)},
+    measures = measured(
+        link_lengths(mechanism),
+        reach_of_fourbar(linkage),
+        size,
+        {"coupler": least},
+        joints,
+        barker=barker,
         same_branch=way.same_branch,
         visits_in_order=way.on_circuit and way.in_order,
-        full_rotation=barker.motion in ("double_crank", "crank_rocker"),
+        full_rotation=barker.motion in TURNS_THROUGH,
+    )
+    metrics = PathMetrics(
         input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
-        link_ratio=max(lengths) / min(lengths),
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
-        size=math.hypot(*np.ptp(joints.view(np.float64).reshape(-1, 2), axis=0)),
-        quality=quality(math.sin(least), reach / size, max(lengths) / min(lengths)),
         sum_of_squares=float(np.sum(passed.misses**2)),
         rms_distance=math.sqrt(float(np.mean(passed.misses**2))),
         max_distance=float(passed.misses.max()),
+        **measures.within(PathMetrics),
     )
     checks = []
     if not problem.fitted:
@@ -119,7 +118,7 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
         )
     checks.append(Check(name="same_circuit", passed=way.on_circuit))
     checks += constraint_checks(
-        problem.constraints, lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics
+        problem.constraints, measures.lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics
     )
     checks += _path_checks(problem, mechanism, linkage, metrics, size)
     inputs = np.degrees(way.angles)

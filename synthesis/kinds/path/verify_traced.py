@@ -10,23 +10,17 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 
-from kinematics.errors import DimensionError
+from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.limits import branches, holding_reference
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.path.design import PathDesign, PathMetrics
 from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_curve import astray
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import (
@@ -34,19 +28,18 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
     Target,
 )
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import (
     CHOICE_KEPT,
     TARGET_REACHED,
     at_most,
     constraint_checks,
 )
-from synthesis.proof.closer import least_angles
+from synthesis.proof.closer import GRID, least_angles
+from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class _Drive:
@@ -92,10 +85,12 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     PathDesign or None
         None where the dimensions make no mechanism that can be driven.
     """
+    mechanism = rebuilt(design)
+    if mechanism is None:
+        return None
     try:
-        mechanism = _GIVEN.validate_python(design.model_dump(exclude={"skeleton"})).mechanism()
         here = holding_reference(mechanism, branches(mechanism))
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
+    except MechanismError:
         return None
     if here is None:
         return None
@@ -113,37 +108,32 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     start, end = float(inputs.min()), float(inputs.max())
     whole = here.full and problem.closed
     used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism)) if whole else (start, end)
-    least = least_angles(driven.at, *used)
-    angle = min(least.values(), default=0.0)
-    lengths = [value for value in design.links.model_dump().values() if value > 0.0]
     pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
-    arms = [float(abs(joints["P"][0] - joints["A"][0]))]
-    fixed = [complex(joints[joint][0]) for joint in mechanism.links[GROUND]]
-    everything = np.concatenate(list(joints.values()))
-    turned = float(inputs[-1] - inputs[0])
+    fixed = fixed_pivots(mechanism)
     steps = np.diff(inputs)
     in_order = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0)
-    ratio = max(lengths) / min(lengths)
     residuals = misses / size
     worst = float(misses.max())
     gone = astray(driven.place, used, points, problem.closed, worst)._asdict() if problem.matched else {}
-    metrics = PathMetrics(
-        grashof=None,
+    measures = measured(
+        link_lengths(design),
+        reach_of(mechanism),
+        size,
+        least_angles(driven.at, np.linspace(*used, GRID)),
+        np.concatenate(list(joints.values())),
         barker=None,
-        min_transmission_angle=math.degrees(angle),
-        transmission_angles={link: math.degrees(value) for link, value in least.items()},
         same_branch=True,
         visits_in_order=in_order,
         full_rotation=here.full,
-        input_rotation=math.degrees(turned),
-        link_ratio=ratio,
+    )
+    metrics = PathMetrics(
+        input_rotation=math.degrees(float(inputs[-1] - inputs[0])),
         rms_residual=math.sqrt(float(np.mean(residuals**2))),
-        size=math.hypot(*np.ptp(everything.view(np.float64).reshape(-1, 2), axis=0)),
-        quality=quality(math.sin(angle), max([*lengths, *arms]) / size, ratio),
         sum_of_squares=float(np.sum(misses**2)),
         rms_distance=math.sqrt(float(np.mean(misses**2))),
         max_distance=worst,
         **gone,
+        **measures.within(PathMetrics),
     )
     checks = []
     if not problem.fitted:
@@ -152,8 +142,10 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
             Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
         )
     checks.append(Check(name="same_circuit", passed=True))
-    checks += constraint_checks(problem.constraints, lengths, fixed, [complex(joints[pin][0]) for pin in pins], metrics)
-    checks += _path_checks(problem, fixed, metrics, size, max(lengths))
+    checks += constraint_checks(
+        problem.constraints, measures.lengths, fixed, [complex(joints[pin][0]) for pin in pins], metrics
+    )
+    checks += _path_checks(problem, fixed, metrics, size, max(measures.lengths))
     degrees = np.degrees(inputs)
     return PathDesign(
         mechanism=design,

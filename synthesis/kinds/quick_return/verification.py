@@ -7,20 +7,16 @@ roots are the limit positions, and time ratio, swing and stroke follow from thes
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
 
-from kinematics.errors import DimensionError
+from kinematics.errors import MechanismError
 from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from kinematics.linkage.planar.strokes import Strokes, strokes
 from synthesis.kinds.quick_return.design import (
     DragLinkMechanism,
@@ -30,13 +26,13 @@ from synthesis.kinds.quick_return.design import (
     QuickReturnMetrics,
 )
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, RockerPosition
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.outcome.ranking import quality
 from synthesis.proof.checks import at_least, at_most
-from synthesis.proof.turning import turn_of
+from synthesis.proof.closer import least_angles, turn_from
+from synthesis.proof.measures import link_lengths, measured, reach_of
+from synthesis.proof.rebuilt import rebuilt
 
 RATIO_MET = 1e-9
 """Share by which the measured time ratio may differ from the demanded one; rounding leaves some 1e-14."""
@@ -60,8 +56,6 @@ OUTPUTS = {
 }
 """The output of each type: a link that swings, or the joint of a slide."""
 
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
-
 
 def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanisms) -> QuickReturnDesign | None:
     """Drive a mechanism through a turn of its crank and measure it.
@@ -78,50 +72,54 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     QuickReturnDesign or None
         None where the dimensions make no mechanism whose output reverses exactly twice while the crank turns through.
     """
-    told = design.model_dump(exclude=None if isinstance(design, DragLinkMechanism) else {"skeleton"})
     output = OUTPUTS[design.type]
-    try:
-        mechanism = _GIVEN.validate_python(told).mechanism()
-        # Where a body stands on the rocker, only the skeleton says.
-        carrier = None if problem.positions is None else _GIVEN.validate_python(design.model_dump()).mechanism()
-        here = holding_reference(mechanism, branches(mechanism))
-        measured = strokes(mechanism, output)
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
-        return None  # ValidationError: a length beyond what any statement may hold
-    if measured is None or here is None or not here.full:
+    mechanism = rebuilt(design)
+    if mechanism is None:
         return None
-    turn = turn_of(mechanism)
+    # Where a body stands on the rocker, only the skeleton says.
+    carrier = None if problem.positions is None else rebuilt(design, from_skeleton=True)
+    if problem.positions is not None and carrier is None:
+        return None
+    try:
+        here = holding_reference(mechanism, branches(mechanism))
+        reversals = strokes(mechanism, output)
+    except MechanismError:
+        return None
+    if reversals is None or here is None or not here.full:
+        return None
+    inputs = turn_from(float(mechanism.reference_input))
+    motion = drive(mechanism, inputs, order=1)
+    turns = bool(motion.smooth.all())
     swings = output in mechanism.links
-    travel = math.degrees(measured.travel) if swings else measured.travel
-    lengths = [length for length in _lengths(design) if length > 0.0]
-    ratio = max(lengths) / min(lengths)
-    least = min(turn.transmission.values(), default=0.0)
-    # The task's size: the way of the output's pin, as the chord of its arc or along its slide.
-    task = 2.0 * _rocker(design) * abs(math.sin(0.5 * measured.travel)) if swings else travel
-    barker = _barker(design)
+    travel = math.degrees(reversals.travel) if swings else reversals.travel
+    measures = measured(
+        link_lengths(design),
+        reach_of(mechanism),
+        # The way of the output's pin, as the chord of its arc or along its slide.
+        2.0 * _rocker(design) * abs(math.sin(0.5 * reversals.travel)) if swings else travel,
+        least_angles(partial(drive, mechanism, order=0), inputs, motion),
+        np.concatenate([jet[0] for jet in motion.joints.values()]),
+        barker=_barker(design),
+        same_branch=turns,
+        visits_in_order=turns,  # the output reverses twice in a turn: there is one order
+        full_rotation=turns,
+    )
     metrics = QuickReturnMetrics(
-        time_ratio=measured.time_ratio,
-        slow_rotation=math.degrees(measured.slow),
-        fast_rotation=math.degrees(measured.fast),
+        time_ratio=reversals.time_ratio,
+        slow_rotation=math.degrees(reversals.slow),
+        fast_rotation=math.degrees(reversals.fast),
         swing=travel if swings else None,
         stroke=None if swings else travel,
-        grashof=None if barker is None else barker.motion,
-        barker=None if barker is None else barker.code,
-        min_transmission_angle=math.degrees(least),
-        transmission_angles={link: math.degrees(angle) for link, angle in turn.transmission.items()},
-        full_rotation=turn.turns,
-        link_ratio=ratio,
-        size=turn.size,
-        quality=quality(math.sin(least), max(lengths) / task, ratio),
+        **measures.within(QuickReturnMetrics),
     )
     checks = [
         *_task_checks(problem, metrics),
-        *_body_checks(problem, design, carrier, measured),
-        *_constraint_checks(problem, mechanism, lengths, metrics),
+        *_body_checks(problem, design, carrier, reversals),
+        *_constraint_checks(problem, mechanism, measures.lengths, metrics),
     ]
     return QuickReturnDesign(
         mechanism=design,
-        targets=_limits(measured, float(mechanism.reference_input), swings=swings),
+        targets=_limits(reversals, float(mechanism.reference_input), swings=swings),
         verification=Verification(passed=all(check.passed for check in checks), checks=checks),
         metrics=metrics,
     )
@@ -210,11 +208,6 @@ def _constraint_checks(
     return checks
 
 
-def _lengths(design: QuickReturnMechanisms) -> list[float]:
-    links = design.links if isinstance(design.links, dict) else design.links.model_dump()
-    return list(links.values())
-
-
 def _rocker(design: QuickReturnMechanisms) -> float:
     """Length of the output link of a mechanism whose output swings."""
     return design.links["output"] if isinstance(design.links, dict) else float(design.links.model_dump()["output"])
@@ -223,7 +216,7 @@ def _rocker(design: QuickReturnMechanisms) -> float:
 def _barker(design: QuickReturnMechanisms) -> BarkerClass | None:
     """Grashof's class and Barker's code of the fourbar that the crank drives."""
     if isinstance(design, FourbarMechanism):
-        d, a, b, c = _lengths(design)
+        d, a, b, c = link_lengths(design)
     elif isinstance(design, DragLinkMechanism):
         d, a, b, c = (design.links[name] for name in ("ground", "input", "coupler", "driven_crank"))
     else:

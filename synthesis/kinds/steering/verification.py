@@ -12,27 +12,27 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 from scipy.interpolate import CubicSpline
 
-from kinematics.errors import DimensionError
+from kinematics.errors import DimensionError, MechanismError
 from kinematics.linkage.fourbar import positions, stays_on_branch, transmission_extremes
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 from kinematics.linkage.steering import outer_angle
 from synthesis.kinds.steering.design import (
+    DavisMechanism,
     SteeringDesign,
     SteeringMechanisms,
     SteeringMetrics,
     SteeringPosition,
 )
 from synthesis.kinds.steering.problem import SteeringProblem
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.checks import at_least, at_most
+from synthesis.proof.measures import diagonal, link_lengths
+from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
 
@@ -50,8 +50,6 @@ HALVINGS = 60
 
 EXACT = 1e-9
 """Degrees of steering error that are rounding: what Davis's gear may have."""
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class _Driven(NamedTuple):
@@ -79,7 +77,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     SteeringDesign or None
         None where the dimensions make no mechanism that reaches both locks.
     """
-    driven = _fourbar(problem, design) if isinstance(design, FourbarMechanism) else _gear(problem, design.model_dump())
+    driven = _fourbar(problem, design) if isinstance(design, FourbarMechanism) else _gear(problem, design)
     if driven is None:
         return None
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
@@ -93,7 +91,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     behind = arm.imag < 0.0
     required = float(outer_angle(lock, ratio))
     half = inner[to_left], outer[to_left], error[to_left], driven.inputs[to_left]
-    lengths = [length for length in _lengths(design) if length > 0.0]
+    lengths = link_lengths(design)
     metrics = SteeringMetrics(
         steering_error=worst,
         correct_at=_changes(np.degrees(half[0]), half[2]) if worst > EXACT else [],
@@ -105,7 +103,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         + 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance),
         min_transmission_angle=math.degrees(driven.transmission),
         link_ratio=max(lengths) / min(lengths),
-        size=math.hypot(*np.ptp(np.array(list(joints.values())).view(np.float64).reshape(-1, 2), axis=0)),
+        size=diagonal(np.array(list(joints.values()))),
         bar_travel=None if isinstance(design, FourbarMechanism) else float(np.abs(driven.inputs).max()),
     )
     checks = [
@@ -192,12 +190,14 @@ def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | No
     return _Driven(straight + left, left, moved, least, stays)
 
 
-def _gear(problem: SteeringProblem, told: dict[str, object]) -> _Driven | None:
+def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
     """Davis's gear driven at its bar, until the inner wheel locks on either side."""
+    mechanism = rebuilt(design)
+    if mechanism is None:
+        return None
     try:
-        mechanism: Mechanism = _GIVEN.validate_python(told).mechanism()
         drive(mechanism, np.zeros(1), order=0)
-    except (ValidationError, MechanismError, DimensionError, TopologyError):
+    except MechanismError:
         return None
     lock, size = math.radians(problem.lock), problem.pivot_distance
     # A bar behind the kingpins moves to the right for a turn to the left.
@@ -237,10 +237,6 @@ def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | No
         beyond = not float(right(np.array([middle]))[0]) > -lock
         low, high = (middle, high) if beyond else (low, middle)
     return high
-
-
-def _lengths(design: SteeringMechanisms) -> list[float]:
-    return list(design.links.values() if isinstance(design.links, dict) else design.links.model_dump().values())
 
 
 def _changes(inner: Real, error: Real) -> list[float]:

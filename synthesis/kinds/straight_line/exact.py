@@ -7,7 +7,7 @@ about the direction from O4 to O2, O4 A turns by θ/2, and P stands at D tan(θ/
     length = 2 D tan(β/4),
 
 and two proportions of the cell are left. They are searched on a grid for the best quality
-(:mod:`synthesis.outcome.ranking`): force transmission against size. With Scott-Russell's P is at 2r sin θ, and nothing
+(:mod:`synthesis.proof.measures`): force transmission against size. With Scott-Russell's P is at 2r sin θ, and nothing
 is left.
 """
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.outcome.ranking import quality
+from synthesis.proof.measures import quality
 
 Real = NDArray[np.float64]
 

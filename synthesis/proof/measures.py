@@ -1,0 +1,184 @@
+"""What an answer says of a driven linkage, whatever its kind: transmission, link ratio, size, and quality.
+
+    quality = sin μ / ((1 + (reach/3)²) · (1 + (ratio/8)²))
+
+weighs what a designer looks at before anything else: how well force is transmitted, whether the linkage is small for
+its task, and whether its links can be built together. docs/ranking.md explains the numbers and lists what each kind of
+problem takes as the size of its task.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from itertools import combinations
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+from kinematics.linkage.fourbar import Fourbar, barker_class
+from kinematics.linkage.fourbar.classification import BarkerClass
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+
+Complex = NDArray[np.complex128]
+
+BULKY = 3.0
+"""A reach of this many task sizes halves the quality: such a linkage is large for what it does."""
+
+UNEVEN = 8.0
+"""A link ratio of this halves the quality; practice keeps link ratios below about 10."""
+
+TURNS_THROUGH = ("double_crank", "crank_rocker")
+"""Grashof's classes of fourbars whose input turns through."""
+
+
+@njit(cache=True, nogil=True)
+def quality(transmission_sine: float, reach: float, link_ratio: float) -> float:
+    """Quality between 0 and 1.
+
+    Parameters
+    ----------
+    transmission_sine : float
+        Sine of the least transmission angle over the used range.
+    reach : float
+        Greatest distance between two joints of one link, in task sizes.
+    link_ratio : float
+        Longest link over shortest.
+    """
+    return transmission_sine / ((1.0 + (reach / BULKY) ** 2) * (1.0 + (link_ratio / UNEVEN) ** 2))
+
+
+class Dimensioned(Protocol):
+    """A mechanism of any answer: its link lengths, by name or as a model of them."""
+
+    @property
+    def links(self) -> Mapping[str, float] | BaseModel:
+        """Link lengths."""
+
+
+class Measures(NamedTuple):
+    """What is measured of every driven linkage; the names are those of the fields of an answer's metrics.
+
+    Attributes
+    ----------
+    grashof, barker : str or None
+        Class and code of the fourbar that the linkage is or contains; None for others.
+    min_transmission_angle : float
+        Over the used range, degrees; the least of ``transmission_angles``.
+    transmission_angles : dict of str to float
+        The least at each closure, by the name of its first link, degrees.
+    same_branch, visits_in_order, full_rotation : bool
+        Whether no toggle lies on the way, the way is gone through in order, and the input turns through.
+    link_ratio : float
+        Longest link over shortest.
+    size : float
+        Diagonal of the box around all joints.
+    quality : float
+        Between 0 and 1.
+    lengths : list of float
+        Of the links; no field of an answer.
+    """
+
+    grashof: str | None
+    barker: str | None
+    min_transmission_angle: float
+    transmission_angles: dict[str, float]
+    same_branch: bool
+    visits_in_order: bool
+    full_rotation: bool
+    link_ratio: float
+    size: float
+    quality: float
+    lengths: list[float]
+
+    def within(self, metrics: type[BaseModel]) -> dict[str, Any]:
+        """Of the measures those that a model of metrics has a field for."""
+        return {name: value for name, value in self._asdict().items() if name in metrics.model_fields}
+
+
+def measured(
+    lengths: list[float],
+    reach: float,
+    task: float,
+    transmission: Mapping[str, float],
+    places: Complex,
+    *,
+    barker: BarkerClass | None,
+    same_branch: bool,
+    visits_in_order: bool,
+    full_rotation: bool,
+) -> Measures:
+    """The measures of a driven linkage.
+
+    Parameters
+    ----------
+    lengths : list of float
+        Of the links, as :func:`link_lengths` lists them.
+    reach : float
+        Greatest distance between two joints of one link: of :func:`reach_of` or :func:`reach_of_fourbar`.
+    task : float
+        The size of the task, in length units; infinite where a task has none, so that reach does not count.
+    transmission : mapping of str to float
+        The least transmission angle at each closure over the used range, radians; empty where there is no such range.
+    places : complex, shape (n,)
+        Where the joints stand.
+    barker, same_branch, visits_in_order, full_rotation
+        As in :class:`Measures`.
+    """
+    least = min(transmission.values(), default=0.0)
+    ratio = max(lengths) / min(lengths)
+    return Measures(
+        grashof=None if barker is None else barker.motion,
+        barker=None if barker is None else barker.code,
+        min_transmission_angle=math.degrees(least),
+        transmission_angles={link: math.degrees(angle) for link, angle in transmission.items()},
+        same_branch=same_branch,
+        visits_in_order=visits_in_order,
+        full_rotation=full_rotation,
+        link_ratio=ratio,
+        size=diagonal(places),
+        quality=quality(math.sin(least), reach / task, ratio),
+        lengths=lengths,
+    )
+
+
+def link_lengths(mechanism: Dimensioned) -> list[float]:
+    """Lengths of the links as an answer states them; a block's arm of no length is no link."""
+    links = mechanism.links.model_dump() if isinstance(mechanism.links, BaseModel) else mechanism.links
+    return [length for length in links.values() if length > 0.0]
+
+
+def reach_of(mechanism: Mechanism) -> float:
+    """Greatest distance between two joints of one link, the ground and the coupler with its point among them."""
+    return max(
+        abs(complex(mechanism.joints[one] - mechanism.joints[other]))
+        for joints in mechanism.links.values()
+        for one, other in combinations(joints, 2)
+    )
+
+
+def reach_of_fourbar(linkage: Fourbar) -> float:
+    """The same of a fourbar that is driven in closed form."""
+    point, coupler = complex(linkage.coupler_point), float(linkage.coupler)
+    ground = abs(complex(linkage.output_pivot - linkage.input_pivot))
+    return max(ground, float(linkage.input), coupler, float(linkage.output), abs(point), abs(point - coupler))
+
+
+def diagonal(places: Complex) -> float:
+    """Diagonal of the box around places, those that are finite; 0 where there are none."""
+    known = places[np.isfinite(places)]
+    return math.hypot(np.ptp(known.real), np.ptp(known.imag)) if known.size else 0.0
+
+
+def fixed_pivots(mechanism: Mechanism) -> list[complex]:
+    """Joints of the ground."""
+    return [complex(mechanism.joints[name]) for name in mechanism.links[GROUND]]
+
+
+def barker_of(mechanism: Mechanism, *joints: str) -> BarkerClass:
+    """Grashof's class and Barker's code of the fourbar with the joints O2, A, B, O4, or others in that order."""
+    o2, a, b, o4 = (complex(mechanism.joints[name]) for name in joints or ("O2", "A", "B", "O4"))
+    return barker_class(Fourbar(o2, o4, abs(a - o2), abs(b - a), abs(b - o4)))

@@ -1,0 +1,154 @@
+"""Quality is the one that docs/ranking.md states, for every kind: recomputed here from the skeleton of each answer."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synthesis.dispatch import solve
+from synthesis.registry import parse_problem
+
+CURVE = {
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
+    "links": {"input": 20.0, "coupler": 70.0, "output": 90.0},
+    "coupler_point": {"distance": 60.0, "angle": 30.0},
+}
+BODY = [(0.0, 0.0, 0.0), (40.0, 15.0, -25.0), (75.0, 5.0, -60.0)]
+OVAL = [(40.0, 30.0), (32.0, 42.0), (20.0, 45.0), (8.0, 40.0), (2.0, 30.0)]
+
+
+def line(mechanism: str) -> dict[str, Any]:
+    return {"kind": "straight_line", "length": 100.0, "mechanism": mechanism}
+
+
+def returning(mechanism: str, **way: float) -> dict[str, Any]:
+    return {"kind": "quick_return", "time_ratio": 1.3, "mechanism": mechanism, **way}
+
+
+def motion(**fields: Any) -> dict[str, Any]:
+    return {"kind": "motion", "positions": [{"x": x, "y": y, "angle": angle} for x, y, angle in BODY], **fields}
+
+
+def path(mechanism: str) -> dict[str, Any]:
+    points = [{"x": x, "y": y} for x, y in OVAL]
+    return {"kind": "path", "points": points, "mechanism": mechanism, "rounds": 1, "max_designs": 3}
+
+
+def joints_of(mechanism: Any) -> dict[str, complex]:
+    return {name: complex(*place) for name, place in mechanism.skeleton.joints.items()}
+
+
+def chord_of_the_output(design: Any, links: dict[str, float]) -> float:
+    """The way of the pin of an output that swings."""
+    return 2.0 * links["output"] * math.sin(math.radians(0.5 * design.metrics.swing))
+
+
+def span(points: list[Any]) -> float:
+    return max(math.dist(p[:2], q[:2]) for p, q in combinations(points, 2))
+
+
+CASES = {
+    "motion by a fourbar": (motion(), lambda design, links: span(BODY)),
+    "motion by a slider-crank": (motion(output_side={"dyad": "PR"}), lambda design, links: span(BODY)),
+    "motion by a block": (motion(output_side={"dyad": "RP"}), lambda design, links: span(BODY)),
+    "motion by a sixbar": (motion(driver_dyad={}), lambda design, links: span(BODY)),
+    "path of a fourbar": (path("fourbar"), lambda design, links: span(OVAL)),
+    "path of a slider-crank": (path("slider_crank"), lambda design, links: span(OVAL)),
+    "path of a geared fivebar": (path("geared_fivebar"), lambda design, links: span(OVAL)),
+    "function of a fourbar": (
+        {"kind": "function", "pairs": [{"input": 40.0, "output": 70.0}, {"input": 45.0, "output": 76.0}]},
+        lambda design, links: math.inf,
+    ),
+    "function of a slider-crank": (
+        {
+            "kind": "function",
+            "mechanism": "slider_crank",
+            "pairs": [{"input": x, "output": 10.0 * math.sin(x / 40.0)} for x in (0.0, 20.0, 40.0)],
+        },
+        lambda design, links: 10.0 * math.sin(1.0),
+    ),
+    "crank-rocker": (returning("fourbar", swing=60.0), chord_of_the_output),
+    "drag link with a rocker": (returning("drag_link_rocker", swing=60.0), chord_of_the_output),
+    "drag link with a slider": (returning("drag_link_slider", stroke=80.0), lambda design, links: 80.0),
+    "offset slider-crank": (returning("offset_slider_crank", stroke=80.0), lambda design, links: 80.0),
+    "crank-shaper": (returning("crank_shaper", stroke=80.0), lambda design, links: 80.0),
+    "whitworth": (returning("whitworth", stroke=80.0), lambda design, links: 80.0),
+    **{
+        name: (line(name), lambda design, links: 100.0)
+        for name in ("hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier", "hart", "scott_russell")
+    },
+    "dwell of a rocker": (
+        {"kind": "dwell", "dwell_angle": 60.0, "output": {"type": "rocker", "swing": 90.0}, "mechanism": "pseudo_arc"},
+        lambda design, links: 2.0 * links["input"],
+    ),
+    "dwell of a slot": (
+        {
+            "kind": "dwell",
+            "dwell_angle": 40.0,
+            "output": {"type": "rocker", "swing": 30.0},
+            "mechanism": "straight_slot",
+        },
+        lambda design, links: 2.0 * links["input"],
+    ),
+    "dwell of a slider": (
+        {"kind": "dwell", "dwell_angle": 60.0, "output": {"type": "slider", "stroke": 50.0}},
+        lambda design, links: 50.0,
+    ),
+    "parallel motion": ({"kind": "parallel_motion", "linkage": CURVE}, lambda design, links: None),
+}
+
+
+def restated(design: Any, task: float) -> float:
+    """Quality by the text of docs/ranking.md, from joints and links alone."""
+    joints, skeleton = joints_of(design.mechanism), design.mechanism.skeleton
+    links = design.mechanism.links if isinstance(design.mechanism.links, dict) else dict(design.mechanism.links)
+    lengths = [length for length in links.values() if length > 0.0]
+    ground = next(link.joints for link in skeleton.links if link.name == "ground")
+    if "ground" not in links and len(ground) == 2:
+        lengths.append(abs(joints[ground[0]] - joints[ground[1]]))
+    longest = max(
+        abs(joints[one] - joints[two]) for link in skeleton.links for one, two in combinations(link.joints, 2)
+    )
+    ratio = max(lengths) / min(lengths)
+    sine = math.sin(math.radians(design.metrics.min_transmission_angle))
+    return sine / ((1.0 + (longest / task / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_quality_is_the_documented_one(name: str) -> None:
+    statement, task = CASES[name]
+    designs = solve(parse_problem(statement)).designs
+    assert designs
+    for design in designs:
+        links = design.mechanism.links if isinstance(design.mechanism.links, dict) else dict(design.mechanism.links)
+        size = task(design, links)
+        if size is None:
+            size = size_of_the_curve(design)
+        assert design.metrics.quality == pytest.approx(restated(design, size), rel=1e-6)
+
+
+def size_of_the_curve(design: Any) -> float:
+    """Diagonal of the box around the coupler curve of the fourbar O2 A B O4 over the range that was driven."""
+    joints = joints_of(design.mechanism)
+    o2, o4, a, b, p = (joints[name] for name in ("O2", "O4", "A", "B", "P"))
+    side = math.copysign(1.0, ((o4 - a).conjugate() * (b - a)).imag)
+    pins = o2 + abs(a - o2) * np.exp(1j * np.radians(np.linspace(*design.metrics.input_range, 1441)))
+    reach = o4 - pins
+    along = (np.abs(reach) ** 2 + abs(b - a) ** 2 - abs(b - o4) ** 2) / (2.0 * np.abs(reach))
+    bs = pins + reach / np.abs(reach) * (along + 1j * side * np.sqrt(abs(b - a) ** 2 - along**2))
+    curve = pins + (bs - pins) * (p - a) / (b - a)
+    return math.hypot(np.ptp(curve.real), np.ptp(curve.imag))
+
+
+def test_a_long_side_of_the_coupler_counts() -> None:
+    """Evans's linkage has B–P three times as long as A–B; a dwell's coupler point is far from its pins."""
+    evans = solve(parse_problem(line("evans"))).designs[0]
+    assert evans.metrics.quality == pytest.approx(0.41638, abs=1e-5)
+    dwell = solve(parse_problem(CASES["dwell of a slider"][0])).designs[0]
+    coupler = abs(joints_of(dwell.mechanism)["P"] - joints_of(dwell.mechanism)["A"])
+    assert coupler > 1.5 * max(dwell.mechanism.links.values())
+    assert dwell.metrics.quality == pytest.approx(0.0775, abs=1e-4)
