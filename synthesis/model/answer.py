@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Generic, TypeVar
+from typing import Annotated, Generic, Self, TypeVar
 
 from pydantic import ConfigDict, Field
 
@@ -39,6 +39,11 @@ class Verification(Answer):
 
     passed: bool
     checks: list[Check]
+
+    @classmethod
+    def of(cls, checks: list[Check]) -> Self:
+        """The verification that checks make."""
+        return cls(passed=all(check.passed for check in checks), checks=checks)
 
 
 class Search(Answer):

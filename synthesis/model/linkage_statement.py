@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -72,6 +73,12 @@ class Constraints(Statement):
             detail = f"the input of a {self.grashof} linkage does not turn through; drop one of the demands"
             return [Contradiction("/constraints/full_rotation", detail)]
         return []
+
+    def of_another_class(self, classes: Collection[str], reason: str) -> list[Contradiction]:
+        """The refusal of a class that no linkage of a problem can have: all of them are of ``classes``."""
+        if self.grashof == "any" or self.grashof in classes:
+            return []
+        return [Contradiction("/constraints/grashof", f"{reason}; drop the demand")]
 
 
 class LinkageProblem(StatedProblem):

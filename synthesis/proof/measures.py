@@ -178,6 +178,12 @@ def fixed_pivots(mechanism: Mechanism) -> list[complex]:
     return [complex(mechanism.joints[name]) for name in mechanism.links[GROUND]]
 
 
+def moving_pivots(mechanism: Mechanism) -> list[complex]:
+    """All other joints but P, in the reference configuration."""
+    still = {*mechanism.links[GROUND], "P"}
+    return [complex(place) for name, place in mechanism.joints.items() if name not in still]
+
+
 def barker_of(mechanism: Mechanism, *joints: str) -> BarkerClass:
     """Grashof's class and Barker's code of the fourbar with the joints O2, A, B, O4, or others in that order."""
     o2, a, b, o4 = (complex(mechanism.joints[name]) for name in joints or ("O2", "A", "B", "O4"))

@@ -102,7 +102,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
             checks.append(at_least("hub_radius", radius, limits.hub_radius, LIMIT_SLACK, LENGTH))
         if limits.size is not None:
             checks.append(at_most("size", radius, limits.size, LIMIT_SLACK, LENGTH))
-    return Verification(passed=all(check.passed for check in checks), checks=checks), measured
+    return Verification.of(checks), measured
 
 
 def _measure(wall: UnrolledWall, radius: float, roller: float) -> Measure:

@@ -146,7 +146,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
 
         checks += rate_checks(problem, measure, lift, allowed)
         checks += _limit_checks(problem, mechanism, measured, roller)
-    return Verification(passed=all(check.passed for check in checks), checks=checks), measured
+    return Verification.of(checks), measured
 
 
 def _groove_checks(

@@ -76,11 +76,6 @@ class DwellMetrics(Answer):
         description="Between 0 and 1; see docs/ranking.md. The task's size is the stroke, or twice the crank."
     )
 
-    @property
-    def visits_in_order(self) -> bool:
-        """A turn has one order."""
-        return self.full_rotation
-
 
 class DwellDesign(Answer):
     """A dwell sixbar with the proof of what it does."""

@@ -143,7 +143,5 @@ class DwellProblem(LinkageProblem):
             found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))
-        if self.constraints.grashof not in ("any", "crank_rocker"):
-            detail = "the crank turns through: only crank-rockers are searched; drop the demand"
-            found.append(Contradiction("/constraints/grashof", detail))
-        return found
+        reason = "the crank turns through: only crank-rockers are searched"
+        return [*found, *self.constraints.of_another_class(("crank_rocker",), reason)]

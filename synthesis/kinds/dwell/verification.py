@@ -25,9 +25,11 @@ from synthesis.kinds.dwell.design import (
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
-from synthesis.proof.checks import at_most, constraint_checks
+from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import extremes_of, least_angles
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import (
+    Measures,
     barker_of,
     diagonal,
     fixed_pivots,
@@ -132,22 +134,22 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         )
         for k, rest in enumerate(rests)
     ]
-    checks = _checks(problem, mechanism, metrics, targets, lengths)
+    checks = _checks(problem, mechanism, measures, metrics.way, targets)
     return DwellDesign(
         mechanism=design,
         targets=targets,
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
 
 def _checks(
-    problem: DwellProblem, mechanism: Mechanism, metrics: DwellMetrics, targets: list[Rest], lengths: list[float]
+    problem: DwellProblem, mechanism: Mechanism, measures: Measures, way: float, targets: list[Rest]
 ) -> list[Check]:
-    off = abs(metrics.way - problem.way) / problem.way
+    off = abs(way - problem.way) / problem.way
     checks = [
-        Check(name="crank_turns", passed=metrics.full_rotation),
-        Check(name="way", passed=off <= WAY_MET, value=off, limit=WAY_MET),
+        Check(name="crank_turns", passed=measures.full_rotation),
+        tolerated("way", off, WAY_MET),
     ]
     for rest in targets:
         checks.append(at_most(f"dwell_{rest.index + 1}", rest.jitter, problem.allowed, OUTPUT))
@@ -156,7 +158,7 @@ def _checks(
         apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)
         checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
     pins = [complex(mechanism.joints[name]) for name in ("A", "B")]
-    return [*checks, *constraint_checks(problem.constraints, lengths, fixed_pivots(mechanism), pins, metrics)]
+    return [*checks, *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), pins)]
 
 
 def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:

@@ -272,6 +272,8 @@ class FunctionProblem(LinkageProblem):
     def contradictions(self) -> list[Contradiction]:
         """Faults of pairs, function and ranges, and demands that exclude one another."""
         found = [*self._asked(), *self._zeros_and_scales(), *self.constraints.contradictions()]
+        if self.slides:
+            found += self.constraints.of_another_class((), "classifies fourbars; a slider-crank has no class")
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:
             found.append(Contradiction("/fixed_pivots/output", "equal to the input's pivot; no ground link is left"))
         if self.range_limits[0] < LEAST_TURNED or self.range_limits[1] > MOST_TURNED:

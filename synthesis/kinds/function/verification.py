@@ -45,7 +45,8 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
-from synthesis.proof.checks import TARGET_REACHED, constraint_checks
+from synthesis.proof.checks import TARGET_REACHED, reaches_targets, tolerated
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured
 
 Real = NDArray[np.float64]
@@ -241,17 +242,14 @@ def verify_function(
     )
     checks = []
     if problem.aim == "precision":
-        residual = float(residuals.max())
-        checks.append(
-            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
-        )
+        checks.append(reaches_targets(float(residuals.max())))
     checks.append(Check(name="same_circuit", passed=on_circuit))
     if problem.function is not None:
         checks.append(Check(name="covers_range", passed=whole and drive.on_branch(start, end)))
     kept = _dials_off(problem, dials, drive)
-    checks.append(Check(name="dials", passed=kept <= DIAL_KEPT, value=kept, limit=DIAL_KEPT))
+    checks.append(tolerated("dials", kept, DIAL_KEPT))
     first = [complex(met.a[0]), complex(met.b[0])]
-    checks += constraint_checks(problem.constraints, lengths, drive.pivots, first, metrics)
+    checks += constraint_checks(problem.constraints, measures, drive.pivots, first)
     return FunctionDesign(
         mechanism=mechanism,
         dials=dials,
@@ -267,7 +265,7 @@ def verify_function(
             )
             for k in range(len(residuals))
         ],
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
         structural_error=error,
     )

@@ -66,7 +66,7 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
     ]
     return GearTrainDesign(
         mechanism=mechanism,
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 

@@ -54,7 +54,7 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
         checks.append(
             Check(name="cluster_difference", passed=passed, value=narrowest, limit=problem.cluster_difference)
         )
-    return Verification(passed=all(check.passed for check in checks), checks=checks)
+    return Verification.of(checks)
 
 
 def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list[float] | None) -> GearboxMetrics:

@@ -39,7 +39,7 @@ def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verificati
         checks.append(Check(name="reverse_fits", passed=_reverse_fits(mechanism)))
     if problem.interference == "refuse":
         checks.append(Check(name="interference", passed=not _interfering(mechanism)))
-    return Verification(passed=all(check.passed for check in checks), checks=checks)
+    return Verification.of(checks)
 
 
 def measure(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> LayshaftMetrics:

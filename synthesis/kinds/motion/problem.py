@@ -388,6 +388,7 @@ class MotionProblem(LinkageProblem):
             *self._coinciding_pivots(),
             *self._pivots_off_the_ground_line(),
             *self._pivots_outside_regions(),
+            *self._class_of_sliders(),
             *self.constraints.contradictions(),
         ]
 
@@ -482,6 +483,11 @@ class MotionProblem(LinkageProblem):
         if all(side.dyad in ("PR", "RP") for _, side in sides):
             found.append(Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins"))
         return found
+
+    def _class_of_sliders(self) -> list[Contradiction]:
+        if all(side.dyad not in ("PR", "RP") for side in (self.input_side, self.output_side)):
+            return []
+        return self.constraints.of_another_class((), "classifies fourbars; a linkage with a slider has no class")
 
     def _overstated_sides(self) -> list[Contradiction]:
         free = 5 - len(self.positions)

@@ -24,6 +24,7 @@ from kinematics.linkage.fourbar import (
     transmission_extremes,
     traverse,
 )
+from synthesis.kinds.motion.checks import Driven, Side, choice_checks, motion_checks, targets
 from synthesis.kinds.motion.closest import Motion, closest_inputs
 from synthesis.kinds.motion.demanded import (
     Complex,
@@ -42,14 +43,7 @@ from synthesis.model.linkages import (
     body_shift,
     driven_fourbar,
 )
-from synthesis.proof.checks import (
-    Driven,
-    Side,
-    choice_checks,
-    constraint_checks,
-    motion_checks,
-    targets,
-)
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5
@@ -109,17 +103,16 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
     checks = [*motion_checks(target, driven, way.same_circuit), *choice_checks(problem, target, driven)]
     checks += constraint_checks(
         problem.constraints,
-        measures.lengths,
+        measures,
         [complex(o2[0]), complex(o4[0])],
         [complex(pin_a[0]), complex(pin_b[0])],
-        metrics,
     )
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     return LinkageDesign(
         mechanism=mechanism,
         targets=targets(inputs, target, driven),
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 

@@ -25,6 +25,7 @@ from kinematics.linkage.planar.limits import (
     limit_positions,
 )
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.kinds.motion.checks import Driven, Side, choice_checks, motion_checks, targets
 from synthesis.kinds.motion.closest import closest_inputs
 from synthesis.kinds.motion.demanded import (
     Complex,
@@ -42,15 +43,9 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import body_shift
-from synthesis.proof.checks import (
-    Driven,
-    Side,
-    choice_checks,
-    constraint_checks,
-    motion_checks,
-    targets,
-)
+from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
@@ -129,13 +124,13 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     checks = [*motion_checks(target, driven, on_circuit), *choice_checks(problem, target, driven)]
     pins = [complex(joints[pin][0]) for pin in ("A", "B") if pin in joints]
     pivots = [complex(joints[joint][0]) for joint in fixed if joint != "O6"]
-    checks += constraint_checks(problem.constraints, measures.lengths, pivots, pins, metrics)
+    checks += constraint_checks(problem.constraints, measures, pivots, pins)
     if isinstance(design, SixbarMechanism):
         checks += _driver_checks(problem, design, mechanism, here, way)
     return LinkageDesign(
         mechanism=design,
         targets=targets(inputs, target, driven, slides=slides),
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
@@ -250,7 +245,7 @@ def _driver_checks(
     beyond = math.inf if span is None else (span[1] - span[0]) - abs(float(turned[-1] - turned[0]))
     checks = [
         Check(name="crank_turns", passed=here.full),
-        Check(name="limits", passed=beyond <= AT_LIMIT, value=beyond, limit=AT_LIMIT),
+        tolerated("limits", beyond, AT_LIMIT),
     ]
     wanted = problem.driver
     if wanted is not None and wanted.pivot_region is not None:

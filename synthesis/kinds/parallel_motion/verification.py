@@ -26,8 +26,9 @@ from synthesis.kinds.path.verification import verify_path
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import Target
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.proof.checks import constraint_checks
+from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles, turn_from
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import (
     TURNS_THROUGH,
     barker_of,
@@ -132,7 +133,7 @@ def verify_parallel_motion(
         **measures.within(ParallelMotionMetrics),
     )
     limit = TRANSLATES + FAR * reach / abs(complex(q[0] - p[0]))
-    checks = [Check(name="translates", passed=rotation <= limit, value=rotation, limit=limit)]
+    checks = [tolerated("translates", rotation, limit)]
     if off_curve is not None:
         limit = TRANSLATES + FAR * reach / curve_size
         checks.append(
@@ -141,13 +142,16 @@ def verify_parallel_motion(
     if path is not None:
         checks += path.checks
     pins = [place[name] for name in ("A", "B", "C")]
-    named = {check.name for check in checks}
-    own = constraint_checks(problem.constraints, measures.lengths, fixed_pivots(mechanism), pins, metrics)
-    checks += [check for check in own if check.name not in named]
+    # What the path demands as well as the body's motion is told once: as failed, where either is.
+    own = {
+        check.name: check for check in constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), pins)
+    }
+    checks = [check for check in checks if not check.passed or check.name not in own]
+    checks += [check for name, check in own.items() if name not in {check.name for check in checks}]
     return ParallelMotionDesign(
         mechanism=design,
         targets=[] if path is None else path.targets,
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 

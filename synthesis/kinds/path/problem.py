@@ -401,10 +401,10 @@ class PathProblem(LinkageProblem):
             return found
         if self.prescribed:
             found.append(Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free"))
-        if self.constraints.grashof != "any":
-            found.append(Contradiction("/constraints/grashof", f"classifies fourbars; a {self.mechanism} has no class"))
+        found += self.constraints.of_another_class((), f"classifies fourbars; a {self.mechanism} has no class")
         if self.constraints.coupler_point is not None:
-            found.append(Contradiction("/constraints/coupler_point", "is for fourbars"))
+            detail = f"says where P lies on a fourbar's coupler; leave it out for a {self.mechanism}"
+            found.append(Contradiction("/constraints/coupler_point", detail))
         if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
             found.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
         return found

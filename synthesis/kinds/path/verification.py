@@ -33,11 +33,8 @@ from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, Target
 from synthesis.model.linkages import DrivenFourbar, driven_fourbar
-from synthesis.proof.checks import (
-    CHOICE_KEPT,
-    TARGET_REACHED,
-    constraint_checks,
-)
+from synthesis.proof.checks import CHOICE_KEPT, reaches_targets, tolerated
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 Real = NDArray[np.float64]
@@ -112,14 +109,9 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     )
     checks = []
     if not problem.fitted:
-        residual = float(residuals.max())
-        checks.append(
-            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
-        )
+        checks.append(reaches_targets(float(residuals.max())))
     checks.append(Check(name="same_circuit", passed=way.on_circuit))
-    checks += constraint_checks(
-        problem.constraints, measures.lengths, pivots, [complex(passed.a[0]), complex(passed.b[0])], metrics
-    )
+    checks += constraint_checks(problem.constraints, measures, pivots, [complex(passed.a[0]), complex(passed.b[0])])
     checks += _path_checks(problem, mechanism, linkage, metrics, size)
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
@@ -129,7 +121,7 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
             Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
             for k, (at, miss) in enumerate(zip(inputs, passed.misses, strict=True))
         ],
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
@@ -189,14 +181,14 @@ def _path_checks(
         for pivot, stated in ((o2, problem.fixed_pivots.input), (o4, problem.fixed_pivots.output)):
             for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
                 gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
-        checks.append(Check(name="fixed_pivots", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+        checks.append(tolerated("fixed_pivots", gap, CHOICE_KEPT))
     if problem.crank_phase != "free":
         stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0
         if problem.crank_phase == "ground_line":
             stands -= math.degrees(math.atan2((o4 - o2).imag, (o4 - o2).real))
         signs = (1.0, -1.0) if problem.crank_direction == "either" else (1.0,)
         gap = min(abs(math.radians(math.remainder(stands - sign * wanted, 360.0))) for sign in signs)
-        checks.append(Check(name="crank_phase", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+        checks.append(tolerated("crank_phase", gap, CHOICE_KEPT))
     if problem.closed and not limits.full_rotation:
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     return checks

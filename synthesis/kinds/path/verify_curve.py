@@ -67,7 +67,7 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
     return design.model_copy(
         update={
             "metrics": design.metrics.model_copy(update=gone._asdict()),
-            "verification": Verification(passed=all(check.passed for check in checks), checks=checks),
+            "verification": Verification.of(checks),
         }
     )
 

@@ -28,13 +28,9 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
     Target,
 )
-from synthesis.proof.checks import (
-    CHOICE_KEPT,
-    TARGET_REACHED,
-    at_most,
-    constraint_checks,
-)
+from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
 from synthesis.proof.closer import GRID, least_angles
+from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
@@ -137,14 +133,9 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     )
     checks = []
     if not problem.fitted:
-        residual = float(residuals.max())
-        checks.append(
-            Check(name="reaches_targets", passed=residual <= TARGET_REACHED, value=residual, limit=TARGET_REACHED)
-        )
+        checks.append(reaches_targets(float(residuals.max())))
     checks.append(Check(name="same_circuit", passed=True))
-    checks += constraint_checks(
-        problem.constraints, measures.lengths, fixed, [complex(joints[pin][0]) for pin in pins], metrics
-    )
+    checks += constraint_checks(problem.constraints, measures, fixed, [complex(joints[pin][0]) for pin in pins])
     checks += _path_checks(problem, fixed, metrics, size, max(measures.lengths))
     degrees = np.degrees(inputs)
     return PathDesign(
@@ -153,7 +144,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
             Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
             for k, (at, miss) in enumerate(zip(degrees, misses, strict=True))
         ],
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
@@ -171,7 +162,7 @@ def _path_checks(
         for pivot, stated in zip(fixed, (problem.fixed_pivots.input, problem.fixed_pivots.output), strict=False):
             for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
                 gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
-        checks.append(Check(name="fixed_pivots", passed=gap <= CHOICE_KEPT, value=gap, limit=CHOICE_KEPT))
+        checks.append(tolerated("fixed_pivots", gap, CHOICE_KEPT))
     if problem.closed and not problem.constraints.full_rotation:
         checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
     limit = problem.constraints.link_length

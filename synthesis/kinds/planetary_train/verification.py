@@ -43,7 +43,7 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
                     dimension=LENGTH,
                 )
             )
-    return Verification(passed=all(check.passed for check in checks), checks=checks)
+    return Verification.of(checks)
 
 
 def exact_ratio_of(mechanism: PlanetaryMechanism) -> Fraction | None:

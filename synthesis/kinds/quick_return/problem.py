@@ -31,6 +31,13 @@ SLIDERS: tuple[QuickReturnType, ...] = ("offset_slider_crank", "crank_shaper", "
 """Types whose output slides."""
 
 
+CLASSES: dict[QuickReturnType, str] = {
+    "fourbar": "crank_rocker",
+    "drag_link_rocker": "double_crank",
+    "drag_link_slider": "double_crank",
+}
+"""Grashof's class of the fourbar that the crank drives, of each type that has one."""
+
 LEAST_ROTATION = 1e-4
 """Degrees that a body must turn at least: for less the rotopole is a million times as far away as the body goes."""
 
@@ -178,7 +185,7 @@ class QuickReturnProblem(LinkageProblem):
     def contradictions(self) -> list[Contradiction]:
         """An output that is not the type's, and demands that exclude one another."""
         if self.positions is not None:
-            return [*self._of_positions(), *self.constraints.contradictions()]
+            return [*self._of_positions(), *self._of_constraints()]
         found = []
         if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDERS):
             found.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
@@ -193,7 +200,14 @@ class QuickReturnProblem(LinkageProblem):
             found += self._one("swing", "stroke", "swings")
         if self.mechanism in SLIDERS:
             found += self._one("stroke", "swing", "slides")
-        return [*found, *self.constraints.contradictions()]
+        return [*found, *self._of_constraints()]
+
+    def _of_constraints(self) -> list[Contradiction]:
+        """Classes of fourbars that the types do not have."""
+        classes = {CLASSES[name] for name in self.types if name in CLASSES}
+        listed = " or ".join(sorted(classes)).replace("_", "-") or "of no class of fourbars"
+        reason = f"its crank turns through, and the mechanism that is asked for is {listed}"
+        return [*self.constraints.of_another_class(classes, reason), *self.constraints.contradictions()]
 
     def _of_positions(self) -> list[Contradiction]:
         """What two positions of a body exclude."""

@@ -16,7 +16,7 @@ from kinematics.linkage.fourbar import Fourbar, barker_class
 from kinematics.linkage.fourbar.classification import BarkerClass
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.linkage.planar.mechanism import Mechanism
 from kinematics.linkage.planar.strokes import Strokes, strokes
 from synthesis.kinds.quick_return.design import (
     DragLinkMechanism,
@@ -27,11 +27,12 @@ from synthesis.kinds.quick_return.design import (
 )
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, RockerPosition
 from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.proof.checks import at_least, at_most
+from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import least_angles, turn_from
-from synthesis.proof.measures import link_lengths, measured, reach_of
+from synthesis.proof.constraints import constraint_checks
+from synthesis.proof.measures import fixed_pivots, link_lengths, measured, moving_pivots, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
 RATIO_MET = 1e-9
@@ -115,12 +116,12 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
     checks = [
         *_task_checks(problem, metrics),
         *_body_checks(problem, design, carrier, reversals),
-        *_constraint_checks(problem, mechanism, measures.lengths, metrics),
+        *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), moving_pivots(mechanism)),
     ]
     return QuickReturnDesign(
         mechanism=design,
         targets=_limits(reversals, float(mechanism.reference_input), swings=swings),
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
@@ -139,14 +140,14 @@ def _task_checks(problem: QuickReturnProblem, metrics: QuickReturnMetrics) -> li
     off = abs(metrics.time_ratio / problem.time_ratio - 1.0)
     checks = [
         Check(name="crank_turns", passed=metrics.full_rotation),
-        Check(name="time_ratio", passed=off <= RATIO_MET, value=off, limit=RATIO_MET),
+        tolerated("time_ratio", off, RATIO_MET),
     ]
     if problem.swing_angle is not None:
         off = math.inf if metrics.swing is None else abs(metrics.swing - problem.swing_angle)
-        checks.append(Check(name="swing", passed=off <= SWING_MET, value=off, limit=SWING_MET, dimension=ANGLE))
+        checks.append(tolerated("swing", off, SWING_MET, ANGLE))
     if problem.stroke is not None:
         off = math.inf if metrics.stroke is None else abs(metrics.stroke / problem.stroke - 1.0)
-        checks.append(Check(name="stroke", passed=off <= STROKE_MET, value=off, limit=STROKE_MET))
+        checks.append(tolerated("stroke", off, STROKE_MET))
     return checks
 
 
@@ -174,38 +175,7 @@ def _body_checks(
 
     first, second = problem.positions
     worst = min(max(missed(k, first), missed(1 - k, second)) for k in (0, 1))
-    return [Check(name="reaches_targets", passed=worst <= BODY_MET, value=worst, limit=BODY_MET)]
-
-
-def _constraint_checks(
-    problem: QuickReturnProblem, mechanism: Mechanism, lengths: list[float], metrics: QuickReturnMetrics
-) -> list[Check]:
-    limits, checks = problem.constraints, []
-    if limits.min_transmission_angle is not None:
-        checks.append(
-            at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle, ANGLE)
-        )
-    if limits.grashof != "any":
-        wanted = "rocker_rocker" if limits.grashof == "non_grashof" else limits.grashof
-        checks.append(Check(name="grashof", passed=metrics.grashof == wanted))
-    if limits.full_rotation:
-        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
-    if limits.link_length is not None:
-        if limits.link_length.min > 0.0:
-            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min, LENGTH))
-        if limits.link_length.max is not None:
-            checks.append(at_most("longest_link", max(lengths), limits.link_length.max, LENGTH))
-    if limits.max_link_ratio is not None:
-        checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
-    fixed = set(mechanism.links[GROUND])
-    for name, region, joints in (
-        ("fixed_pivot_region", limits.fixed_pivot_region, fixed),
-        ("moving_pivot_region", limits.moving_pivot_region, mechanism.joints.keys() - fixed - {"P"}),
-    ):
-        if region is not None:
-            places = [complex(mechanism.joints[joint]) for joint in joints]
-            checks.append(Check(name=name, passed=all(map(region.contains, places))))
-    return checks
+    return [tolerated("reaches_targets", worst, BODY_MET)]
 
 
 def _rocker(design: QuickReturnMechanisms) -> float:

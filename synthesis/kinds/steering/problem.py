@@ -89,4 +89,13 @@ class SteeringProblem(LinkageProblem):
         if self.arms[1] >= 0.5:
             detail = "arms of half the pivot distance could meet; shorter ones are needed"
             found.append(Contradiction("/arm_length/max", detail))
+        if self.constraints.full_rotation:
+            detail = "a steering mechanism goes from lock to lock and does not turn through; drop the demand"
+            found.append(Contradiction("/constraints/full_rotation", detail))
+        if self.mechanism == "davis":
+            found += self.constraints.of_another_class((), "Davis's gear has slides and no class of fourbars")
+        else:
+            # The arms are equal and the tie rod differs from the ground: S + L > P + Q always.
+            reason = "Ackermann's linkage, with two equal arms, is never Grashof"
+            found += self.constraints.of_another_class(("non_grashof",), reason)
         return [*found, *self.constraints.contradictions()]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from kinematics.errors import DimensionError, MechanismError
-from kinematics.linkage.fourbar import positions, stays_on_branch, transmission_extremes
+from kinematics.linkage.fourbar import BarkerClass, barker_class, positions, stays_on_branch, transmission_extremes
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.steering import outer_angle
 from synthesis.kinds.steering.design import (
@@ -27,11 +27,12 @@ from synthesis.kinds.steering.design import (
 )
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
-from synthesis.proof.checks import at_least, at_most
-from synthesis.proof.measures import diagonal, link_lengths
+from synthesis.proof.checks import at_most
+from synthesis.proof.constraints import constraint_checks
+from synthesis.proof.measures import link_lengths, measured
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -58,8 +59,9 @@ class _Driven(NamedTuple):
     inputs: Real
     left: Real
     right: Real
-    transmission: float
+    transmission: dict[str, float]
     on_branch: bool
+    barker: BarkerClass | None = None
 
 
 def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> SteeringDesign | None:
@@ -91,7 +93,17 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     behind = arm.imag < 0.0
     required = float(outer_angle(lock, ratio))
     half = inner[to_left], outer[to_left], error[to_left], driven.inputs[to_left]
-    lengths = link_lengths(design)
+    measures = measured(
+        link_lengths(design),
+        problem.pivot_distance,
+        math.inf,  # steering has no quality
+        driven.transmission,
+        np.array(list(joints.values())),
+        barker=driven.barker,
+        same_branch=driven.on_branch,
+        visits_in_order=bool(np.all(np.diff(driven.left) > 0.0) and np.all(np.diff(driven.right) > 0.0)),
+        full_rotation=False,
+    )
     metrics = SteeringMetrics(
         steering_error=worst,
         correct_at=_changes(np.degrees(half[0]), half[2]) if worst > EXACT else [],
@@ -101,9 +113,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         tie_rod="behind" if behind else "ahead",
         turning_radius=problem.wheelbase / math.sin(required)
         + 0.5 * ((problem.track or problem.pivot_distance) - problem.pivot_distance),
-        min_transmission_angle=math.degrees(driven.transmission),
-        link_ratio=max(lengths) / min(lengths),
-        size=diagonal(np.array(list(joints.values()))),
+        **measures.within(SteeringMetrics),
         bar_travel=None if isinstance(design, FourbarMechanism) else float(np.abs(driven.inputs).max()),
     )
     checks = [
@@ -114,7 +124,9 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         checks.append(at_most("steers_correctly", worst, EXACT, ANGLE))
     if problem.max_steering_error is not None:
         checks.append(at_most("steering_error", worst, problem.max_steering_error, ANGLE))
-    checks += _constraint_checks(problem, design, lengths, metrics)
+    fixed = [joints.pop(name) for name in ("O2", "O4")]
+    of_constraints = constraint_checks(problem.constraints, measures, fixed, list(joints.values()))
+    checks += [check for check in of_constraints if check.name != "same_branch"]  # demanded in any case
     listed = np.linspace(0, len(half[0]) - 1, SHOWN).round().astype(int)
     turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
@@ -131,37 +143,9 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
             )
             for n, k in enumerate(listed)
         ],
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
-
-
-def _constraint_checks(
-    problem: SteeringProblem, design: SteeringMechanisms, lengths: list[float], metrics: SteeringMetrics
-) -> list[Check]:
-    limits, checks = problem.constraints, []
-    if limits.min_transmission_angle is not None:
-        checks.append(
-            at_least("transmission_angle", metrics.min_transmission_angle, limits.min_transmission_angle, ANGLE)
-        )
-    if limits.full_rotation or limits.grashof not in ("any", "non_grashof", "double_rocker"):
-        checks.append(Check(name="full_rotation", passed=False))
-    if limits.link_length is not None:
-        if limits.link_length.min > 0.0:
-            checks.append(at_least("shortest_link", min(lengths), limits.link_length.min, LENGTH))
-        if limits.link_length.max is not None:
-            checks.append(at_most("longest_link", max(lengths), limits.link_length.max, LENGTH))
-    if limits.max_link_ratio is not None:
-        checks.append(at_most("link_ratio", metrics.link_ratio, limits.max_link_ratio))
-    fixed = {name: complex(*design.skeleton.joints[name]) for name in ("O2", "O4")}
-    moving = {name: complex(*place) for name, place in design.skeleton.joints.items() if name not in fixed}
-    for name, region, places in (
-        ("fixed_pivot_region", limits.fixed_pivot_region, fixed),
-        ("moving_pivot_region", limits.moving_pivot_region, moving),
-    ):
-        if region is not None:
-            checks.append(Check(name=name, passed=all(map(region.contains, places.values()))))
-    return checks
 
 
 def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | None:
@@ -187,7 +171,7 @@ def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | No
         return None
     least = float(transmission_extremes(linkage, straight + low, straight + lock)[0])
     stays = bool(stays_on_branch(linkage, straight + low, straight + lock))
-    return _Driven(straight + left, left, moved, least, stays)
+    return _Driven(straight + left, left, moved, {"coupler": least}, stays, barker_class(linkage))
 
 
 def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
@@ -222,8 +206,8 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
     left, right = arm("left_arm", travel), arm("right_arm", travel)
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
         return None
-    sines = [float(np.abs(sine).min()) for sine in motion.sines.values()]
-    return _Driven(straight + sense * travel, left, right, math.asin(min(*sines, 1.0)), bool(motion.smooth.all()))
+    least = {link: math.asin(min(float(np.abs(sine).min()), 1.0)) for link, sine in motion.sines.items()}
+    return _Driven(straight + sense * travel, left, right, least, bool(motion.smooth.all()))
 
 
 def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | None:

@@ -22,6 +22,9 @@ LineMechanism = Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peau
 
 LINE_MECHANISMS: tuple[LineMechanism, ...] = get_args(LineMechanism)
 
+EXACT_LINES: tuple[LineMechanism, ...] = ("peaucellier", "hart", "scott_russell")
+"""Types with slides or more than four links, whose line is exact."""
+
 DEFAULT_RANGE: dict[LineMechanism, float] = {
     "hoeken": 120.0,
     "chebyshev": 50.0,
@@ -119,4 +122,7 @@ class StraightLineProblem(LinkageProblem):
             found.append(
                 Contradiction("/length", "too short beside the coordinates of the start; move the origin nearer")
             )
+        if self.mechanism in EXACT_LINES:
+            reason = f"classifies fourbars; a {self.mechanism} mechanism has no class"
+            found += self.constraints.of_another_class((), reason)
         return found

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.straight_line.design import (
     ExactLineMechanism,
     LinePoint,
@@ -27,9 +27,10 @@ from synthesis.kinds.straight_line.problem import LineMechanism, StraightLinePro
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, PERCENT
 from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.proof.checks import at_most, constraint_checks
+from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import GRID, extremes_of, least_angles, turn_from
-from synthesis.proof.measures import barker_of, fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.constraints import constraint_checks
+from synthesis.proof.measures import Measures, barker_of, fixed_pivots, link_lengths, measured, moving_pivots, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -121,7 +122,7 @@ def verify_straight_line(
         cycle_transmission_angle=whole,
         **measures.within(StraightLineMetrics),
     )
-    checks = _checks(problem, driven, metrics, sense, mechanism, measures.lengths)
+    checks = _checks(problem, driven, metrics, sense, mechanism, measures)
     return StraightLineDesign(
         mechanism=design,
         targets=[
@@ -129,7 +130,7 @@ def verify_straight_line(
             for k, (at, local) in enumerate(zip(inputs[[0, -1]].tolist(), driven.ends, strict=True))
             for place in [start + along * local]
         ],
-        verification=Verification(passed=all(check.passed for check in checks), checks=checks),
+        verification=Verification.of(checks),
         metrics=metrics,
     )
 
@@ -140,15 +141,15 @@ def _checks(
     metrics: StraightLineMetrics,
     sense: int,
     mechanism: Mechanism,
-    lengths: list[float],
+    measures: Measures,
 ) -> list[Check]:
     length = problem.length
     limit = REACHED + ROUNDING * float(np.abs(driven.joints).max()) / length
     gap = max(abs(driven.ends[0].real), abs(driven.ends[1].real - length)) / length
-    checks = [Check(name="reaches_ends", passed=gap <= limit, value=gap, limit=limit)]
+    checks = [tolerated("reaches_ends", gap, limit)]
     if metrics.proportions == "exact":
         off = metrics.deviation / length
-        checks.append(Check(name="exact_line", passed=off <= limit, value=off, limit=limit))
+        checks.append(tolerated("exact_line", off, limit))
     if problem.max_deviation is not None:
         checks.append(at_most("deviation", metrics.deviation, problem.max_deviation, LENGTH))
     if problem.max_velocity_variation is not None:
@@ -157,8 +158,10 @@ def _checks(
         )
     if problem.rotation != "any":
         checks.append(Check(name="rotation", passed=(sense > 0) == (problem.rotation == "ccw")))
-    pins = [complex(mechanism.joints[name]) for name in mechanism.joints if name not in (*mechanism.links[GROUND], "P")]
-    return [*checks, *constraint_checks(problem.constraints, lengths, fixed_pivots(mechanism), pins, metrics)]
+    return [
+        *checks,
+        *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), moving_pivots(mechanism)),
+    ]
 
 
 def _sense(mechanism: Mechanism, along: complex) -> int | None:

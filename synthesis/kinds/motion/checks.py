@@ -1,0 +1,137 @@
+"""What is checked of a linkage that carries a body: the targets, the motion, what the client fixed of its sides."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from synthesis.kinds.motion.demanded import Complex, Demanded, Real
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.model.answer import Check
+from synthesis.model.linkage_answer import Target
+from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
+
+
+class Side(NamedTuple):
+    """One dyad as the driven linkage shows it.
+
+    Attributes
+    ----------
+    pivot : complex or None
+        The fixed pivot; None where the pin slides on the ground.
+    pins : complex, shape (targets,), or None
+        The moving pivot at the targets; None where a line of the body slides through the pivot's block.
+    slide_angle : float or None
+        Angle of the slide's line at the first target, radians; None for a link with two pins.
+    """
+
+    pivot: complex | None
+    pins: Complex | None
+    slide_angle: float | None = None
+
+
+class Driven(NamedTuple):
+    """What is measured of the linkage at the targets.
+
+    Attributes
+    ----------
+    points, turns : complex and float, shape (targets,)
+        P, and the body's rotation from the first demanded position.
+    offsets : float, shape (targets, 3)
+        Deviations in x, y (length units) and angle (radians).
+    input_side, output_side : Side
+        The dyads.
+    """
+
+    points: Complex
+    turns: Real
+    offsets: Real
+    input_side: Side
+    output_side: Side
+
+
+def targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool = False) -> list[Target]:
+    """Targets as they are met; inputs in degrees, or in length units where the input slides."""
+    residuals = target.residuals(driven.offsets)
+    return [
+        Target(
+            index=k,
+            input_angle=None if slides else float(at),
+            input_place=float(at) if slides else None,
+            residual=float(residual),
+            point_residual=math.hypot(offset[0], offset[1]),
+            angle_residual=math.degrees(abs(offset[2])),
+        )
+        for k, (at, residual, offset) in enumerate(zip(inputs, residuals, driven.offsets, strict=True))
+    ]
+
+
+def motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[Check]:
+    """What the task itself demands: held coordinates are met, others within their tolerance, all on one circuit."""
+    checks = []
+    if target.held.any():
+        held = np.where(target.held, driven.offsets, 0.0)
+        checks.append(reaches_targets(float(target.residuals(held).max())))
+    tolerated = np.isfinite(target.limits) & ~target.held
+    if tolerated.any():
+        used = float(np.max(np.abs(driven.offsets[tolerated]) / target.limits[tolerated]))
+        checks.append(at_most("within_tolerance", used, 1.0))
+    return [*checks, Check(name="same_circuit", passed=on_circuit)]
+
+
+def choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> list[Check]:
+    """Whether the driven linkage keeps what the client fixed of each side: shares of the task's size, and radians.
+
+    Places on the body are compared with the body in the demanded first position, which a fit may miss a little.
+    """
+    back = cmath.exp(-1j * float(driven.turns[0]))
+    checks = []
+    for name, choices, side in (
+        ("input_side", problem.input_side, driven.input_side),
+        ("output_side", problem.output_side, driven.output_side),
+    ):
+        if choices.count() == 0:
+            continue
+        point = complex(target.points[0])
+        pin = None if side.pins is None else point + back * complex(side.pins[0] - driven.points[0])
+        gap = max(_gaps(choices, side, point, pin, target.size))
+        checks.append(tolerated(name, gap, CHOICE_KEPT))
+    if problem.ground_line is not None:
+        pivots = [side.pivot for side in (driven.input_side, driven.output_side) if side.pivot is not None]
+        gap = max(abs(problem.ground_line.offset(pivot)) for pivot in pivots) / target.size
+        checks.append(tolerated("ground_line", gap, CHOICE_KEPT))
+    return checks
+
+
+def _gaps(choices: DyadChoices, side: Side, point: complex, pin: complex | None, size: float) -> list[float]:
+    """Deviations from each stated number; infinite where the dyad has no such thing."""
+    gaps = [0.0]
+    for found, stated in ((side.pivot, choices.fixed_pivot), (pin, choices.moving_pivot)):
+        coordinates = (math.inf, math.inf) if found is None else (found.real, found.imag)
+        for value, wanted in zip(coordinates, stated or (None, None), strict=True):
+            if wanted is not None:
+                gaps.append(abs(value - wanted) / size)
+    if choices.slide_angle is not None:
+        turned = math.inf if side.slide_angle is None else side.slide_angle - math.radians(choices.slide_angle)
+        gaps.append(abs(math.remainder(turned, math.pi)) if math.isfinite(turned) else math.inf)
+    links = None if side.pivot is None or side.pins is None else side.pins - side.pivot
+    if choices.link_angle is not None:
+        gaps.append(math.inf if links is None else _turn(complex(links[0]), choices.link_angle))
+    for k, rotation in enumerate(choices.rotations or [], start=1):
+        if rotation is not None:
+            gaps.append(math.inf if links is None else _turn(complex(links[k] / links[0]), rotation))
+    if choices.coupler_vector is not None:
+        length, angle = choices.coupler_vector.length, choices.coupler_vector.angle
+        if length is not None:
+            gaps.append(math.inf if pin is None else abs(abs(point - pin) - length) / size)
+        if angle is not None:
+            gaps.append(math.inf if pin is None else _turn(point - pin, angle))
+    return gaps
+
+
+def _turn(vector: complex, degrees: float) -> float:
+    """Angle between a vector and a direction, radians, 0 to π."""
+    return abs(cmath.phase(vector * cmath.exp(-1j * math.radians(degrees))))

@@ -1,0 +1,62 @@
+"""The client's constraints as checks: one module for every kind of problem.
+
+A constraint becomes a check of what was measured, or the statement is refused because no linkage of its kind could have
+such a property (``contradictions`` of each kind). There is no third way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from synthesis.model.answer import Check
+from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.linkage_statement import Constraints
+from synthesis.proof.checks import at_least, at_most
+from synthesis.proof.measures import Measures
+
+
+def constraint_checks(
+    constraints: Constraints,
+    measures: Measures,
+    fixed_pivots: Sequence[complex],
+    moving_pivots: Sequence[complex],
+) -> list[Check]:
+    """A check for each constraint that is stated, or demanded by default.
+
+    Parameters
+    ----------
+    constraints : Constraints
+        What the client demands.
+    measures : Measures
+        What was measured of the driven linkage.
+    fixed_pivots, moving_pivots : sequence of complex
+        Where they are at the first target, in length units.
+    """
+    checks = []
+    if constraints.same_branch:
+        checks.append(Check(name="same_branch", passed=measures.same_branch))
+    if constraints.in_order:
+        checks.append(Check(name="visits_in_order", passed=measures.visits_in_order))
+    if constraints.min_transmission_angle is not None:
+        checks.append(
+            at_least("transmission_angle", measures.min_transmission_angle, constraints.min_transmission_angle, ANGLE)
+        )
+    if constraints.grashof != "any":
+        wanted = "rocker_rocker" if constraints.grashof == "non_grashof" else constraints.grashof
+        checks.append(Check(name="grashof", passed=measures.grashof == wanted))
+    if constraints.full_rotation:
+        checks.append(Check(name="full_rotation", passed=measures.full_rotation))
+    if constraints.link_length is not None:
+        if constraints.link_length.min > 0.0:
+            checks.append(at_least("shortest_link", min(measures.lengths), constraints.link_length.min, LENGTH))
+        if constraints.link_length.max is not None:
+            checks.append(at_most("longest_link", max(measures.lengths), constraints.link_length.max, LENGTH))
+    if constraints.max_link_ratio is not None:
+        checks.append(at_most("link_ratio", measures.link_ratio, constraints.max_link_ratio))
+    for name, region, pivots in (
+        ("fixed_pivot_region", constraints.fixed_pivot_region, fixed_pivots),
+        ("moving_pivot_region", constraints.moving_pivot_region, moving_pivots),
+    ):
+        if region is not None:
+            checks.append(Check(name=name, passed=all(map(region.contains, pivots))))
+    return checks
