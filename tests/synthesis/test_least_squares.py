@@ -299,6 +299,22 @@ def test_a_fit_says_whether_it_has_converged() -> None:
     assert np.abs(fitting.gradient(whole.point)).max() < 1e-6
 
 
+@pytest.mark.parametrize("seed", [8, 20, 29])
+def test_a_fit_that_has_lost_a_pose_has_not_converged(seed: int) -> None:
+    """Noise of 5 % puts a pose where no nearest one is reached; its cost of 1e12 hides every other gain."""
+    rng = np.random.default_rng(seed)
+    planted = plant_many(rng, 20)
+    problem = motion(noisy(planted, 0.05, rng))
+    task = motion_task(problem)
+    dyads = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
+             for s in (planted.input_side, planted.output_side)]  # fmt: skip
+    fitting = PoseFit(fit_demands(problem, task), (dyads[0][0], dyads[1][0]))
+    ended = fitting.minimum(fitting.start(dyads[0][1], dyads[1][1]))
+    assert ended is not None
+    assert ended.cost > 1e11, "otherwise this seed tests nothing"
+    assert ended.status is Status.IMPOSSIBLE
+
+
 def test_five_poses_give_all_planted_dyads_by_linear_algebra() -> None:
     rng = np.random.default_rng(9)
     for _ in range(15):

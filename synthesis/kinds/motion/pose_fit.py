@@ -148,6 +148,10 @@ class PoseFit:
         out[self._loose, self._axis] += x[2 * NUMBERS :] * self.demands.tolerances[self._loose, self._axis]
         return out
 
+    def has_lost_poses(self, x: Real) -> bool:
+        """Whether a demanded pose has no nearest pose that the dyads allow: its residuals are :data:`LOST`."""
+        return bool(np.any(np.all(self._nearest(x, LINEARIZATIONS)[0] == LOST, axis=1)))
+
     def _nearest(self, x: Real, linearizations: int) -> tuple[Real, Real, Real]:
         """Residuals, their Jacobian and the nearest poses; those of the last point are kept, as both are asked for."""
         key = (linearizations, x.tobytes())
@@ -234,7 +238,9 @@ class _Chart:
         x = self._at(ended.point)[0]
         if x is None:
             return Fit(self.x0, self.problem.cost(self.x0), Status.IMPOSSIBLE)
-        return Fit(x, ended.cost, ended.status)
+        # A lost pose has the cost 1e12 and no gradient: beside it no other gain counts, and any end seems converged.
+        status = Status.IMPOSSIBLE if self.problem.has_lost_poses(x) else ended.status
+        return Fit(x, ended.cost, status)
 
     def _at(self, y: Real) -> tuple[Real | None, Real | None]:
         """x(y) and dx/dy; None where Newton's method does not find it."""
