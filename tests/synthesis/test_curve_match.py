@@ -260,6 +260,43 @@ def test_a_demanded_link_ratio_costs_no_more_accuracy_than_it_must():
         assert max(links) <= 3.0 * min(links) * (1.0 + 1e-8)
 
 
+def place_on_the_coupler(design):
+    """P along the line from A to B, and across it."""
+    point = design.mechanism.coupler_point
+    return point.distance * np.exp(1j * math.radians(point.angle))
+
+
+def test_a_limit_of_the_coupler_point_steers_the_match():
+    """The best linkages and all their cognates have P elsewhere: if the limit only rejected, nothing would be left."""
+    case = CASES["yu1_20"]
+    size = math.hypot(np.ptp(case["curve"].real), np.ptp(case["curve"].imag))
+    box = {"along": [0.2 * size, 0.5 * size], "across": [0.1 * size, 0.3 * size]}
+    for design in matched(case["curve"], True, rank_by="accuracy").designs:
+        free = place_on_the_coupler(design)
+        assert not (box["along"][0] <= free.real <= box["along"][1] and box["across"][0] <= free.imag)
+    held = matched(case["curve"], True, rank_by="accuracy", constraints={"coupler_point": box}).designs
+    assert held
+    assert held[0].metrics.rms_distance < 0.005 * size
+    for design in held:
+        assert design.verification.passed
+        at = place_on_the_coupler(design)
+        assert box["along"][0] * (1.0 - 1e-9) <= at.real <= box["along"][1] * (1.0 + 1e-9)
+        assert box["across"][0] * (1.0 - 1e-9) <= at.imag <= box["across"][1] * (1.0 + 1e-9)
+
+
+def test_a_curve_of_free_size_is_sized_to_its_limit_of_the_coupler_point():
+    """As with lengths: the shape is kept, and the size nearest to the drawn one is taken that has P within limits."""
+    curve = curve_of(EGG, 40)
+    across = [0.4, 0.5]
+    limits = {"coupler_point": {"across": across}}
+    designs = matched(curve, True, constraints=limits, placement_free=["size"]).designs
+    assert designs
+    for design in designs:
+        assert design.verification.passed
+        assert design.metrics.max_distance < 1e-8
+        assert across[0] * (1.0 - 1e-9) <= place_on_the_coupler(design).imag <= across[1] * (1.0 + 1e-9)
+
+
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}

@@ -2,7 +2,7 @@
 
 Tracing a shape somewhere is tracing it anywhere: a linkage is moved, turned and sized with its curve. With everything
 free both fixed pivots can be given, as z → αz + β is known from two points. With the position free one pivot can, or a
-region for pivots; with the size free the limits of link lengths are met by scale.
+region for pivots; with the size free the limits of link lengths and of the coupler point are met by scale.
 """
 
 from __future__ import annotations
@@ -13,6 +13,9 @@ from synthesis.kinds.path.design import CurvePlacement, PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage_statement import Region
 from synthesis.model.linkages import FourbarConfiguration, to_point
+
+ROUNDING = 1e-9
+"""Share of a limit's range that rounding may take: cognates repeat a curve to some roundings."""
 
 
 def searched(problem: PathProblem) -> PathProblem:
@@ -105,18 +108,35 @@ def _whole(problem: PathProblem) -> dict[str, tuple[float, float]]:
 
 
 def _scale(problem: PathProblem, joints: FourbarConfiguration) -> float:
-    """The size nearest to 1 at which the links are within their limits; 1 where there is none."""
+    """The size nearest to 1 at which links and coupler point are within their limits; 1 where there is none."""
+    least, most = 0.0, math.inf
     limit = problem.constraints.link_length
-    if limit is None:
-        return 1.0
-    links = (
-        abs(joints.o4 - joints.o2),
-        abs(joints.a - joints.o2),
-        abs(joints.b - joints.a),
-        abs(joints.b - joints.o4),
-    )
-    least, most = limit.min / min(links), math.inf if limit.max is None else limit.max / max(links)
+    if limit is not None:
+        least = limit.min / min(joints.lengths)
+        most = math.inf if limit.max is None else limit.max / max(joints.lengths)
+    box = problem.constraints.coupler_point
+    if box is not None:
+        coupler = joints.b - joints.a
+        local = (joints.p - joints.a) * coupler.conjugate() / abs(coupler)
+        for coordinate, interval in ((local.real, box.along), (local.imag, box.across)):
+            if interval is not None:
+                smallest, largest = _scales_into(coordinate, interval)
+                least, most = max(least, smallest), min(most, largest)
     return min(max(1.0, least), most) if least <= most else 1.0
+
+
+def _scales_into(coordinate: float, interval: tuple[float, float]) -> tuple[float, float]:
+    """The least and greatest factor that bring a coordinate into an interval; the least is greater where none does.
+
+    The interval is drawn in by :data:`ROUNDING`, so that what rounding leaves lies inside.
+    """
+    low, high = interval
+    if coordinate < 0.0:
+        coordinate, low, high = -coordinate, -high, -low
+    margin = ROUNDING * min(high - low, max(abs(low), abs(high)))
+    if coordinate == 0.0:
+        return (0.0, math.inf) if low <= 0.0 <= high else (math.inf, 0.0)
+    return max(0.0, (low + margin) / coordinate), (high - margin) / coordinate
 
 
 def _into(region: Region | None, pivots: list[complex]) -> complex:
