@@ -27,11 +27,15 @@ def tolerated(name: str, error: float, tolerance: float, dimension: Dimension | 
     return Check(name=name, passed=error <= tolerance, value=error, limit=tolerance, dimension=dimension)
 
 
-def at_least(name: str, value: float, limit: float, dimension: Dimension | None = None) -> Check:
-    """A check of a value against a lower limit."""
-    return Check(name=name, passed=value >= limit * (1.0 - LIMIT_SLACK), value=value, limit=limit, dimension=dimension)
+def at_least(
+    name: str, value: float, limit: float, dimension: Dimension | None = None, slack: float = LIMIT_SLACK
+) -> Check:
+    """A check of a value against a lower limit; ``slack`` is relative."""
+    return Check(name=name, passed=value >= limit * (1.0 - slack), value=value, limit=limit, dimension=dimension)
 
 
-def at_most(name: str, value: float, limit: float, dimension: Dimension | None = None) -> Check:
-    """A check of a value against an upper limit."""
-    return Check(name=name, passed=value <= limit * (1.0 + LIMIT_SLACK), value=value, limit=limit, dimension=dimension)
+def at_most(
+    name: str, value: float, limit: float, dimension: Dimension | None = None, slack: float = LIMIT_SLACK
+) -> Check:
+    """A check of a value against an upper limit; ``slack`` is relative."""
+    return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit, dimension=dimension)

@@ -25,7 +25,7 @@ from synthesis.kinds.cam.answer import (
     segments_of,
 )
 from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barrel
-from synthesis.kinds.cam.composition import Composition
+from synthesis.kinds.cam.composition import Composition, least_pitch_radius
 from synthesis.kinds.cam.critical import smallest_allowed
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
@@ -39,19 +39,16 @@ from synthesis.kinds.cam.mechanism import (
     refined,
 )
 from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
+from synthesis.kinds.cam.reproduction import REPRODUCED, reported
 from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (
     LARGEST,
     MARGIN,
     Size,
 )
-from synthesis.kinds.cam.verification import REPRODUCED
 from synthesis.model.kind import Progress
 
 Real = NDArray[np.float64]
-
-NO_UNDERCUT = 1.02
-"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 a wall has a cusp."""
 
 
 def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composition, progress: Progress) -> CamResult:
@@ -100,9 +97,9 @@ def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Progra
         return Size(follower.cylinder_radius, proven=True)
     limits, v, roller = problem.limits, program.peaks[1], follower.roller_radius
     rise = math.tan(math.radians(limits.pressure_angle))
-    fall = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
+    fall = math.tan(math.radians(limits.falling_pressure_angle))
     least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
-    rho = max(limits.curvature_ratio, NO_UNDERCUT) * roller
+    rho = least_pitch_radius(limits, roller)
     stop = LARGEST * (least + program.peaks[2].largest + rho)
     found = smallest_allowed(program, _curvature(rho), least, stop)
     return None if found is None else Size(found * (1.0 + MARGIN), proven=True)
@@ -121,7 +118,7 @@ def _metrics(
     problem: CamProblem, program: Program, mechanism: BarrelCamMechanism, measured: MeasuredBarrel
 ) -> BarrelMetrics:
     roller = mechanism.follower.roller_radius
-    least = min(measured.least_radius, 1e9)
+    least = reported(measured.least_radius)
     return BarrelMetrics(
         lift=program.lift,
         groove_width=2.0 * roller,

@@ -43,6 +43,7 @@ from synthesis.kinds.cam.optimal import (
 )
 from synthesis.kinds.cam.problem import (
     BarrelRoller,
+    CamLimits,
     CamProblem,
     Dwell,
     LengthRange,
@@ -58,6 +59,9 @@ ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 FITS = 1e-9
 """Jump at a joint, as a share of the segments' own rates, up to which an automatic law fits."""
+
+NO_UNDERCUT = 1.02
+"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 the cam has a cusp."""
 
 EDGE = 0.02
 """Radius of curvature, as a share of the travel, below which the cam under a flat face is an edge and no cam."""
@@ -520,7 +524,7 @@ def _smallest(
         return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest, told=told)
     assert isinstance(problem.follower, TranslatingRoller)
     rising = math.tan(math.radians(limits.pressure_angle))
-    falling = math.tan(math.radians(limits.pressure_angle_fall or limits.pressure_angle))
+    falling = math.tan(math.radians(limits.falling_pressure_angle))
     rest_rows = []
     for segment in given:
         for k, sign in ((rising, 1), (falling, -1)):
@@ -584,3 +588,8 @@ def least_face_radius(problem: CamProblem) -> float:
     travel = max(heights) - min(heights)
     reach = getattr(problem.follower, "pivot_distance", 1.0)
     return max(problem.limits.min_radius, EDGE * travel * reach)
+
+
+def least_pitch_radius(limits: CamLimits, roller_radius: float) -> float:
+    """Least radius of curvature of the pitch curve: the client's, or as little as leaves the profile without a cusp."""
+    return max(limits.curvature_ratio, NO_UNDERCUT) * roller_radius

@@ -123,7 +123,7 @@ def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
     start = 0.0
     for index, (segment, heights) in enumerate(zip(problem.segments, problem.heights(), strict=True)):
         span = math.radians(segment.angle)
-        if isinstance(segment, Move) and segment.law in ("auto", "optimal"):
+        if isinstance(segment, Move) and segment.follows_criterion:
             s, v = measure(start + span * np.arange(GRID + 1) / GRID)
             yield _Open(index, segment, start, span, heights, s, v)
         start += span

@@ -122,6 +122,11 @@ class Move(Statement):
     conditions: list[ProgramCondition] = Field(default=[], description="Interior conditions of an optimal motion.")
     bands: list[DisplacementBand] = Field(default=[], description="Bands of an optimal motion.")
 
+    @property
+    def follows_criterion(self) -> bool:
+        """Whether no law is stated, so that the criterion chooses the motion, within the limits."""
+        return self.law in ("auto", "optimal")
+
 
 class ConstantVelocity(Statement):
     """A stretch of constant velocity."""
@@ -240,6 +245,11 @@ class CamLimits(Statement):
     )
     acceleration: Annotated[PositiveNumber, ACCELERATION] | None = None
     jerk: Annotated[PositiveNumber, JERK] | None = None
+
+    @property
+    def falling_pressure_angle(self) -> float:
+        """The limit while falling, degrees: that of the rise where none is stated."""
+        return self.pressure_angle_fall or self.pressure_angle
 
 
 class FollowerDynamics(Statement):
@@ -429,7 +439,7 @@ class CamProblem(StatedProblem):
                 found.append(law_ends("constant_velocity", angle, start, end))
             elif isinstance(segment, Dwell):
                 found.append(((start, 0.0, 0.0), (end, 0.0, 0.0)))
-            elif segment.law in ("auto", "optimal"):
+            elif segment.follows_criterion:
                 found.append(None)
             else:
                 found.append(law_ends(segment.law, angle, start, end))

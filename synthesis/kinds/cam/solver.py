@@ -27,6 +27,7 @@ from synthesis.kinds.cam.composition import (
     NoProgram,
     compose,
     least_face_radius,
+    least_pitch_radius,
     roller_radius_range,
 )
 from synthesis.kinds.cam.design import (
@@ -49,6 +50,7 @@ from synthesis.kinds.cam.problem import (
     TranslatingFlat,
     TranslatingRoller,
 )
+from synthesis.kinds.cam.reproduction import REPRODUCED
 from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (
     RollerLimits,
@@ -62,9 +64,7 @@ from synthesis.kinds.cam.sizing import (
 )
 from synthesis.kinds.cam.verification import (
     MEASURED_SLACK,
-    REPRODUCED,
     Measured,
-    pitch_radius,
     verify,
 )
 from synthesis.model.kind import Progress
@@ -87,8 +87,8 @@ JERK_SHARE = 25.0
 NEAR_BOUND = 0.01
 """A cam within this share of the bound is small enough."""
 
-NO_UNDERCUT = 1.02
-"""Radius of curvature of the pitch curve over the roller's at least, whatever is asked: at 1 the cam has a cusp."""
+NOT_ZERO = 1e-300
+"""Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
 
 LEAST_BASE = 1e-3
 """Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
@@ -204,8 +204,8 @@ def _shape_fails(problem: CamProblem, cam: Cam) -> bool:
     """Whether the exact curves break a limit on curvature: then more points of the profile would not help."""
     limits = problem.limits
     if cam.roller_radius > 0.0:
-        ratio = max(limits.curvature_ratio, NO_UNDERCUT)
-        return cam.pitch_curvature_extremes.largest * ratio * cam.roller_radius > 1.0 + MEASURED_SLACK
+        rho = least_pitch_radius(limits, cam.roller_radius)
+        return cam.pitch_curvature_extremes.largest * rho > 1.0 + MEASURED_SLACK
     return cam.radius_extremes.least < least_face_radius(problem) * (1.0 - MEASURED_SLACK)
 
 
@@ -218,8 +218,8 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
             return _flat_cam(problem, program)
         least = rollers[0] + max(limits.hub_radius, LEAST_BASE * program.lift)
         rise = math.radians(limits.pressure_angle)
-        fall = math.radians(limits.pressure_angle_fall or limits.pressure_angle)
-        roller_limits = RollerLimits(rise, fall, max(limits.curvature_ratio, NO_UNDERCUT) * rollers[0], least)
+        fall = math.radians(limits.falling_pressure_angle)
+        roller_limits = RollerLimits(rise, fall, least_pitch_radius(limits, rollers[0]), least)
         size: Size | None
         made: core.Roller
         if isinstance(follower, TranslatingRoller):
@@ -282,9 +282,8 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
     assert isinstance(follower, core.TranslatingRoller | core.OscillatingRoller)
     if largest <= follower.roller_radius:
         return cam
-    found = cam.pitch_curvature_extremes
-    steepest = max(found.largest, 1e-300)
-    allowed = 1.0 / steepest / max(problem.limits.curvature_ratio, NO_UNDERCUT)
+    curvature = max(cam.pitch_curvature_extremes.largest, NOT_ZERO)
+    allowed = 1.0 / curvature / least_pitch_radius(problem.limits, 1.0)
     hub = max(problem.limits.hub_radius, LEAST_BASE * cam.program.lift)
     radius = max(min(largest, allowed, follower.prime_radius - hub), follower.roller_radius)
     return replace(cam, follower=replace(follower, roller_radius=radius))
@@ -292,18 +291,15 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
 
 def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
     program = cam.program
-    roller = cam.roller_radius
-    angles = {}
-    for name, where in (("rise", measured.rising), ("fall", ~measured.rising)):
-        angles[name] = math.degrees(float(np.nanmax(measured.pressure_angle[where], initial=0.0))) if roller else None
+    roller = cam.roller_radius > 0.0
     return CamMetrics(
         size=measured.radius,
         lift=program.lift / problem.displacement_unit,
-        max_pressure_angle_rise=angles["rise"],
-        max_pressure_angle_fall=angles["fall"],
+        max_pressure_angle_rise=measured.rising if roller else None,
+        max_pressure_angle_fall=measured.falling if roller else None,
         min_convex_radius=measured.convex_radius,
         min_concave_radius=None if math.isinf(measured.concave_radius) else measured.concave_radius,
-        curvature_ratio=pitch_radius(measured, roller) / roller if roller else None,
+        curvature_ratio=measured.curvature_ratio if roller else None,
         face_width=None if roller else measured.sweep,
         **motion_metrics(problem, program),
     )

@@ -17,46 +17,17 @@ from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
 from kinematics.cam.follower import Follower
-from kinematics.cam.motion_laws import LAWS
-from kinematics.cam.program import TURN
-from kinematics.cam.segments import Condition as PolynomialCondition
-from kinematics.cam.segments import dwell, law_segment, polynomial_segment
 from kinematics.errors import DimensionError, ShapeError
-from synthesis.kinds.cam.design import CamMechanism, ProgramTable
+from synthesis.kinds.cam.design import CamMechanism
 from synthesis.kinds.cam.measured_rates import rate_checks
-from synthesis.kinds.cam.mechanism import (
-    core_follower,
-    points_of,
-    profile_points,
-    table_angles,
-)
-from synthesis.kinds.cam.problem import (
-    CamProblem,
-    Dwell,
-    Move,
-    OscillatingRoller,
-    Polynomial,
-    TranslatingRoller,
-)
+from synthesis.kinds.cam.mechanism import core_follower, points_of
+from synthesis.kinds.cam.problem import CamLimits, CamProblem, OscillatingRoller, TranslatingRoller
+from synthesis.kinds.cam.reproduction import FINER, TABLE_SLACK, Reproduction, reported
 from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, VELOCITY, Dimension
+from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.proof.checks import at_least, at_most
 
 Real = NDArray[np.float64]
-
-FINER = 4
-"""Cam angles of the verification for each one of the design."""
-
-REPRODUCED = 1e-6
-"""Deviation of the measured displacement from the program, as a share of the lift: a micrometre in a metre of lift."""
-
-REPRODUCED_WITH_JUMPS = 1e-4
-"""The same where the client accepted jumps in velocity or acceleration, which no curve through points can follow."""
-
-STATED = 1e-7
-"""Deviation of the program from the statement, as a share of the lift."""
-
-LIMIT_SLACK = 1e-6
-"""Relative slack of limits on the motion where the program's table has it, which keeps them exactly."""
 
 MEASURED_SLACK = 2e-3
 """Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points: where
@@ -65,18 +36,30 @@ the acceleration bends, its local fifth degree is off by that much."""
 
 @dataclass(frozen=True)
 class Measured:
-    """What the finished profile does, at the finer cam angles.
+    """What the finished profile does.
 
-    ``off`` is the greatest deviation of the displacement from the program, at each angle of its table and from there to
-    the next, as a share of the lift; NaN where the follower touches nothing.
+    Attributes
+    ----------
+    rising, falling : float
+        Greatest pressure angles, degrees.
+    convex_radius, concave_radius : float
+        Least radii of curvature of the profile; infinite where no part is convex, or concave.
+    curvature_ratio : float
+        Least radius of curvature of the pitch curve over the roller's; infinite under a flat face.
+    sweep : float
+        Length on a flat face that the contact sweeps.
+    radius : float
+        Greatest radius of the profile.
+    off : float64, shape (n,)
+        Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
+        a share of the lift; NaN where the follower touches nothing.
     """
 
-    angle: Real
-    s: Real
-    pressure_angle: Real
-    rising: NDArray[np.bool_]
+    rising: float
+    falling: float
     convex_radius: float
     concave_radius: float
+    curvature_ratio: float
     sweep: float
     radius: float
     off: Real
@@ -97,102 +80,69 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     Verification, Measured or None
         None where the follower cannot be laid against the profile at all.
     """
+    demanded = Reproduction.of(problem, mechanism.program)
     try:
-        contour = Contour(profile_points(mechanism))
+        contour = Contour(points_of(mechanism.profile))
         follower = core_follower(mechanism)
-        angle = finer(table_angles(mechanism.program))
-        contact = contour.follow(follower, angle, mechanism.rotation)
+        contact = contour.follow(follower, demanded.angle, mechanism.rotation)
     except (DimensionError, ShapeError):
-        return Verification(passed=False, checks=[Check(name="follower_can_be_laid_on", passed=False)]), None
-    table = np.array(mechanism.program.s) * problem.displacement_unit
-    lift = float(np.ptp(table)) or 1.0
-    checks = program_checks(problem, mechanism.program, lift)
+        return Verification.of([Check(name="follower_can_be_laid_on", passed=False)]), None
     touches = bool(contact.valid.all())
-    program = between(table_angles(mechanism.program), table, mechanism.program)
-    off = np.abs(contact.s - program).reshape(-1, FINER).max(axis=1) / lift
-    gap = float(off.max()) if touches else math.inf
-    allowed = REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED
-    checks += [
+    off = demanded.deviation(contact.s)
+    checks = [
+        *demanded.checks,
         Check(name="touches_everywhere", passed=touches),
-        Check(name="reproduces_program", passed=gap <= allowed, value=min(gap, 1e9), limit=allowed),
+        demanded.check("reproduces_program", off, touches),
         Check(name="no_cusp", passed=not contour.cusped),
         Check(name="does_not_cross_itself", passed=len(contour.crossings) == 0),
     ]
     if problem.closure == "form":
-        found, gaps = _groove_checks(mechanism, follower, angle, program, lift, allowed)
-        checks += found
-        off = np.maximum(off, gaps.reshape(-1, FINER).max(axis=1))
+        wall_checks, wall_off = _groove_checks(mechanism, follower, demanded)
+        checks += wall_checks
+        off = np.maximum(off, wall_off)
     curvature = _curvature(contour)
-    rising = np.repeat(np.array(mechanism.program.v), FINER) >= 0.0
-    roller = isinstance(problem.follower, TranslatingRoller | OscillatingRoller)
+    rising, falling = demanded.steepest(contact.pressure_angle)
+    convex = float(1.0 / curvature.max()) if curvature.max() > 0.0 else math.inf
     concave = float(-1.0 / curvature.min()) if curvature.min() < 0.0 else math.inf
-    reach = _reach(mechanism, contact.point, angle)
+    roller = mechanism.follower.roller_radius or 0.0
     measured = Measured(
-        angle,
-        contact.s,
-        contact.pressure_angle,
         rising,
-        float(1.0 / curvature.max()) if curvature.max() > 0.0 else math.inf,
+        falling,
+        convex,
         concave,
-        float(np.ptp(reach)),
+        # The pitch curve lies a roller's radius outside the profile.
+        min(convex + roller, concave - roller) / roller if roller else math.inf,
+        float(np.ptp(_reach(mechanism, contact.point, demanded.angle))),
         float(np.abs(contour.points).max()),
         off,
     )
     if touches:
 
         def measure(angle: Real) -> tuple[Real, Real]:
-            found = contour.follow(follower, angle, mechanism.rotation)
-            return found.s, found.v
+            along = contour.follow(follower, angle, mechanism.rotation)
+            return along.s, along.v
 
-        checks += rate_checks(problem, measure, lift, allowed)
-        checks += _limit_checks(problem, mechanism, measured, roller)
+        checks += rate_checks(problem, measure, demanded.lift, demanded.tolerance)
+        checks += _limit_checks(problem, mechanism, measured)
     return Verification.of(checks), measured
 
 
-def _groove_checks(
-    mechanism: CamMechanism, follower: Follower, angle: Real, program: Real, lift: float, allowed: float
-) -> tuple[list[Check], Real]:
+def _groove_checks(mechanism: CamMechanism, follower: Follower, demanded: Reproduction) -> tuple[list[Check], Real]:
     """The roller against the outer wall, from within: the same program comes back. Also how far it is off."""
-    none = [Check(name="outer_wall_reproduces_program", passed=False)], np.zeros_like(angle)
+    name, unmeasured = "outer_wall_reproduces_program", np.zeros(len(demanded.angle) // FINER)
     if mechanism.outer_wall is None:
-        return none
+        return [Check(name=name, passed=False)], unmeasured
     try:
         wall = Contour(points_of(mechanism.outer_wall))
-        found = wall.within(follower, angle, mechanism.rotation)
+        displacement = wall.within(follower, demanded.angle, mechanism.rotation)
     except (DimensionError, ShapeError):
-        return none
-    gaps = np.abs(found - program) / lift
-    gap = float(gaps.max()) if np.isfinite(found).all() else math.inf
+        return [Check(name=name, passed=False)], unmeasured
+    off = demanded.deviation(displacement)
     sound = not wall.cusped and len(wall.crossings) == 0
     return [
-        Check(name="outer_wall_reproduces_program", passed=gap <= allowed, value=min(gap, 1e9), limit=allowed),
+        demanded.check(name, off, bool(np.isfinite(displacement).all())),
         Check(name="outer_wall_is_sound", passed=sound),
-    ], gaps
-
-
-def finer(angle: Real) -> Real:
-    """Each interval of a closed series of angles in equal parts."""
-    step = np.diff(np.append(angle, TURN + angle[0]))
-    return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
-
-
-def between(angle: Real, s: Real, program: ProgramTable) -> Real:
-    """Displacement at the finer angles, from the table's s, v, a at both ends of each interval: its quintic.
-
-    The profile's points are the contacts at the table's angles, so that between them alone it can go astray.
-    """
-    step = np.diff(np.append(angle, TURN + angle[0]))[:, None]
-    begin = s[:, None], step * np.array(program.v)[:, None], step**2 * np.array(program.a)[:, None]
-    end = tuple(np.roll(values, -1, axis=0) for values in (s, np.array(program.v), np.array(program.a)))
-    rest = end[0][:, None] - begin[0] - begin[1] - 0.5 * begin[2]
-    rest1 = step * end[1][:, None] - begin[1] - begin[2]
-    rest2 = step**2 * end[2][:, None] - begin[2]
-    u = np.arange(FINER) / FINER
-    third = 10.0 * rest - 4.0 * rest1 + 0.5 * rest2
-    fourth = -15.0 * rest + 7.0 * rest1 - rest2
-    fifth = 6.0 * rest - 3.0 * rest1 + 0.5 * rest2
-    found = begin[0] + u * (begin[1] + u * (0.5 * begin[2] + u * (third + u * (fourth + u * fifth))))
-    return np.asarray(found.reshape(-1), np.float64)
+    ], off
 
 
 def _curvature(contour: Contour) -> Real:
@@ -220,106 +170,42 @@ def _reach(mechanism: CamMechanism, contact: NDArray[np.complex128], angle: Real
     return np.asarray(np.sqrt(np.maximum(np.abs(ground - pivot) ** 2 - face**2, 0.0)))
 
 
-def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured, roller: bool) -> list[Check]:
-    limits, checks = problem.limits, []
-    if roller:
-        steepest = {}
-        for name, where in (("pressure_angle", measured.rising), ("pressure_angle_fall", ~measured.rising)):
-            steepest[name] = math.degrees(float(measured.pressure_angle[where].max())) if where.any() else 0.0
-        fall = limits.pressure_angle_fall or limits.pressure_angle
-        checks.append(
-            at_most("pressure_angle", steepest["pressure_angle"], limits.pressure_angle, MEASURED_SLACK, ANGLE)
-        )
-        checks.append(at_most("pressure_angle_fall", steepest["pressure_angle_fall"], fall, MEASURED_SLACK, ANGLE))
-        radius = mechanism.follower.roller_radius or 0.0
-        ratio = pitch_radius(measured, radius) / radius
-        checks.append(at_least("curvature_ratio", ratio, limits.curvature_ratio, MEASURED_SLACK))
-        base = (mechanism.prime_radius or 0.0) - radius
+def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured) -> list[Check]:
+    """The client's limits; which of them count is for the stated follower to say, not for the answer."""
+    limits = problem.limits
+    if isinstance(problem.follower, TranslatingRoller | OscillatingRoller):
+        checks = roller_checks(limits, measured.rising, measured.falling, measured.curvature_ratio)
+        size = mechanism.prime_radius or 0.0
     else:
-        checks.append(at_least("min_radius", measured.convex_radius, limits.min_radius, MEASURED_SLACK, LENGTH))
-        checks.append(Check(name="convex", passed=math.isinf(measured.concave_radius)))
+        checks = [
+            at_least("min_radius", reported(measured.convex_radius), limits.min_radius, LENGTH, MEASURED_SLACK),
+            Check(name="convex", passed=math.isinf(measured.concave_radius)),
+        ]
         if limits.face_width is not None:
-            checks.append(at_most("face_width", measured.sweep, limits.face_width, MEASURED_SLACK, LENGTH))
-        base = mechanism.base_radius or 0.0
+            checks.append(at_most("face_width", measured.sweep, limits.face_width, LENGTH, MEASURED_SLACK))
+        size = mechanism.base_radius or 0.0
     pivot = mechanism.follower.pivot_distance
     if pivot is not None:
         # The cam turns all around, so that its greatest radius comes to where the arm is borne.
-        checks.append(
-            Check(
-                name="clears_pivot",
-                passed=measured.radius < pivot,
-                value=measured.radius,
-                limit=pivot,
-                dimension=LENGTH,
-            )
-        )
+        clear = measured.radius < pivot
+        checks.append(Check(name="clears_pivot", passed=clear, value=measured.radius, limit=pivot, dimension=LENGTH))
+    return [*checks, *size_checks(limits, size - (mechanism.follower.roller_radius or 0.0), size)]
+
+
+def roller_checks(limits: CamLimits, rising: float, falling: float, curvature_ratio: float) -> list[Check]:
+    """Limits of every roller: pressure angles (degrees), least radius of the pitch curve over the roller's."""
+    return [
+        at_most("pressure_angle", rising, limits.pressure_angle, ANGLE, MEASURED_SLACK),
+        at_most("pressure_angle_fall", falling, limits.falling_pressure_angle, ANGLE, MEASURED_SLACK),
+        at_least("curvature_ratio", reported(curvature_ratio), limits.curvature_ratio, slack=MEASURED_SLACK),
+    ]
+
+
+def size_checks(limits: CamLimits, hub: float, size: float) -> list[Check]:
+    """Limits on a cam's dimensions, where they are stated: what the hub may take, and the cam's own radius."""
+    checks = []
     if limits.hub_radius > 0.0:
-        checks.append(at_least("hub_radius", base, limits.hub_radius, LIMIT_SLACK, LENGTH))
+        checks.append(at_least("hub_radius", hub, limits.hub_radius, LENGTH, TABLE_SLACK))
     if limits.size is not None:
-        checks.append(
-            at_most("size", mechanism.prime_radius or mechanism.base_radius or 0.0, limits.size, LIMIT_SLACK, LENGTH)
-        )
+        checks.append(at_most("size", size, limits.size, LENGTH, TABLE_SLACK))
     return checks
-
-
-def pitch_radius(measured: Measured, roller_radius: float) -> float:
-    """Least |radius of curvature| of the pitch curve: the roller's radius outside the profile."""
-    return min(measured.convex_radius + roller_radius, measured.concave_radius - roller_radius)
-
-
-def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> list[Check]:
-    """The program's table against the statement, segment by segment."""
-    angle, table = table_angles(program), np.array(program.s) * problem.displacement_unit
-    v, a, j = (np.array(values) for values in (program.v, program.a, program.j))
-    off, start = 0.0, 0.0
-    for segment, (low, high) in zip(problem.segments, problem.heights(), strict=True):
-        span = math.radians(segment.angle)
-        inside = (angle >= start - 1e-12) & (angle <= start + span + 1e-12)
-        at, s = np.clip(angle[inside] - start, 0.0, span), table[inside]
-        if isinstance(segment, Dwell):
-            known = dwell(span, low)
-        elif isinstance(segment, Polynomial):
-            conditions = [PolynomialCondition(*c) for c in problem.polynomial_conditions(segment)]
-            known = polynomial_segment(span, conditions)
-        elif isinstance(segment, Move) and segment.law in ("auto", "optimal"):
-            start += span
-            continue
-        else:
-            law = segment.law if isinstance(segment, Move) else "constant_velocity"
-            known = law_segment(LAWS[law], span, low, high)
-        if len(at):
-            off = max(off, float(np.abs(known.pieces.motion(at).s - s).max()))
-        start += span
-    checks = [Check(name="keeps_the_statement", passed=off / lift <= STATED, value=off / lift, limit=STATED)]
-    where = _open_angles(problem, angle)
-    if where.any():
-        for dimension, values in ((VELOCITY, v), (ACCELERATION, a), (JERK, j)):
-            limit = getattr(problem.limits, dimension)
-            if limit is not None:
-                peak = float(np.abs(values[where]).max())
-                checks.append(at_most(f"table_{dimension}", peak, limit, LIMIT_SLACK, dimension))
-    return checks
-
-
-def _open_angles(problem: CamProblem, angle: Real) -> NDArray[np.bool_]:
-    """Angles within automatic and optimal segments."""
-    where = np.zeros(len(angle), dtype=bool)
-    start = 0.0
-    for segment in problem.segments:
-        end = start + math.radians(segment.angle)
-        if isinstance(segment, Move) and segment.law in ("auto", "optimal"):
-            where |= (angle > start + 1e-12) & (angle < end - 1e-12)
-        start = end
-    return where
-
-
-def at_least(name: str, value: float, limit: float, slack: float, dimension: Dimension | None = None) -> Check:
-    """A measured value that may not fall below a limit."""
-    return Check(
-        name=name, passed=value >= limit * (1.0 - slack), value=min(value, 1e9), limit=limit, dimension=dimension
-    )
-
-
-def at_most(name: str, value: float, limit: float, slack: float, dimension: Dimension | None = None) -> Check:
-    """A measured value that may not exceed a limit."""
-    return Check(name=name, passed=value <= limit * (1.0 + slack), value=value, limit=limit, dimension=dimension)

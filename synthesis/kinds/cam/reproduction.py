@@ -1,0 +1,171 @@
+"""The motion program as a finished cam has to reproduce it: its table against the statement, a follower against it.
+
+Whatever the cam, its follower is measured at cam angles four times as close as the table's, and compared there with the
+quintic through the table's s, v, a on both sides. The deviations are shares of the lift.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.program import TURN
+from kinematics.cam.segments import Condition, dwell, law_segment, polynomial_segment
+from synthesis.kinds.cam.design import ProgramTable
+from synthesis.kinds.cam.mechanism import table_angles
+from synthesis.kinds.cam.problem import CamProblem, Dwell, Move, Polynomial
+from synthesis.model.answer import Check
+from synthesis.model.dimension import ACCELERATION, JERK, VELOCITY
+from synthesis.proof.checks import at_most, tolerated
+
+Real = NDArray[np.float64]
+
+FINER = 4
+"""Cam angles of the verification for each one of the design."""
+
+REPRODUCED = 1e-6
+"""Deviation of the measured displacement from the program, as a share of the lift: a micrometre in a metre of lift."""
+
+REPRODUCED_WITH_JUMPS = 1e-4
+"""The same where the client accepted jumps in velocity or acceleration, which no curve through points can follow."""
+
+STATED = 1e-7
+"""Deviation of the program from the statement, as a share of the lift."""
+
+TABLE_SLACK = 1e-6
+"""Relative slack of limits where the program's table or a dimension has the value, which keeps them exactly."""
+
+ANGLE_TOLERANCE = 1e-12
+"""Radians within which an angle of the table is the joint of two segments."""
+
+MAX_REPORTED = 1e9
+"""Stands in an answer for a value without bound, which JSON cannot write."""
+
+
+def reported(value: float) -> float:
+    """A measured value as a check can state it."""
+    return min(value, MAX_REPORTED)
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What a follower has to do at the verification's cam angles.
+
+    Attributes
+    ----------
+    angle : float64, shape (4 n,)
+        Cam angles, radians; n is the length of the program's table.
+    displacement : float64, shape (4 n,)
+        The program there, in radians for an arm.
+    rising : bool, shape (4 n,)
+        Whether the follower rises there or rests.
+    lift : float
+        The program's travel, by which deviations are divided.
+    tolerance : float
+        Deviation that passes, as a share of the lift.
+    checks : list of Check
+        The program's table against the statement.
+    """
+
+    angle: Real
+    displacement: Real
+    rising: NDArray[np.bool_]
+    lift: float
+    tolerance: float
+    checks: list[Check]
+
+    @classmethod
+    def of(cls, problem: CamProblem, program: ProgramTable) -> Reproduction:
+        """What the program's table of a finished cam asks of its follower."""
+        angle, displacement = table_angles(program), np.array(program.s) * problem.displacement_unit
+        lift = float(np.ptp(displacement)) or 1.0
+        return cls(
+            _finer(angle),
+            _between(angle, displacement, program),
+            np.repeat(np.array(program.v), FINER) >= 0.0,
+            lift,
+            REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED,
+            program_checks(problem, program, lift),
+        )
+
+    def deviation(self, measured: Real) -> Real:
+        """Greatest deviation of a measured displacement from each angle of the table to the next; share of the lift.
+
+        NaN where the follower touches nothing.
+        """
+        return np.asarray(np.abs(measured - self.displacement).reshape(-1, FINER).max(axis=1) / self.lift)
+
+    def check(self, name: str, deviation: Real, touches: bool) -> Check:
+        """Whether the program comes back; it does not where the follower touches nothing."""
+        worst = float(deviation.max()) if touches else math.inf
+        return tolerated(name, reported(worst), self.tolerance)
+
+    def steepest(self, pressure_angle: Real) -> tuple[float, float]:
+        """Greatest pressure angle in degrees while rising and while falling, of angles in radians; 0 without a move."""
+        rise, fall = (
+            math.degrees(float(np.nanmax(pressure_angle[part], initial=0.0))) for part in (self.rising, ~self.rising)
+        )
+        return rise, fall
+
+
+def _finer(angle: Real) -> Real:
+    """Each interval of a closed series of angles in equal parts."""
+    step = np.diff(np.append(angle, TURN + angle[0]))
+    return np.asarray((angle[:, None] + step[:, None] * (np.arange(FINER) / FINER)).reshape(-1), np.float64)
+
+
+def _between(angle: Real, s: Real, program: ProgramTable) -> Real:
+    """Displacement at the finer angles, from the table's s, v, a at both ends of each interval: its quintic.
+
+    The profile's points are the contacts at the table's angles, so that between them alone it can go astray.
+    """
+    step = np.diff(np.append(angle, TURN + angle[0]))[:, None]
+    begin = s[:, None], step * np.array(program.v)[:, None], step**2 * np.array(program.a)[:, None]
+    end = tuple(np.roll(values, -1, axis=0) for values in (s, np.array(program.v), np.array(program.a)))
+    rest = end[0][:, None] - begin[0] - begin[1] - 0.5 * begin[2]
+    rest1 = step * end[1][:, None] - begin[1] - begin[2]
+    rest2 = step**2 * end[2][:, None] - begin[2]
+    u = np.arange(FINER) / FINER
+    third = 10.0 * rest - 4.0 * rest1 + 0.5 * rest2
+    fourth = -15.0 * rest + 7.0 * rest1 - rest2
+    fifth = 6.0 * rest - 3.0 * rest1 + 0.5 * rest2
+    quintic = begin[0] + u * (begin[1] + u * (0.5 * begin[2] + u * (third + u * (fourth + u * fifth))))
+    return np.asarray(quintic.reshape(-1), np.float64)
+
+
+def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> list[Check]:
+    """The program's table against the statement, segment by segment."""
+    angle, table = table_angles(program), np.array(program.s) * problem.displacement_unit
+    worst, start = 0.0, 0.0
+    # Limits on the motion are those of automatic and optimal segments: the others are as the client states them.
+    limited = np.zeros(len(angle), dtype=bool)
+    for segment, (low, high) in zip(problem.segments, problem.heights(), strict=True):
+        span = math.radians(segment.angle)
+        end = start + span
+        inside = (angle >= start - ANGLE_TOLERANCE) & (angle <= end + ANGLE_TOLERANCE)
+        at, s = np.clip(angle[inside] - start, 0.0, span), table[inside]
+        if isinstance(segment, Move) and segment.follows_criterion:
+            limited |= (angle > start + ANGLE_TOLERANCE) & (angle < end - ANGLE_TOLERANCE)
+            start = end
+            continue
+        if isinstance(segment, Dwell):
+            exact = dwell(span, low)
+        elif isinstance(segment, Polynomial):
+            exact = polynomial_segment(span, [Condition(*c) for c in problem.polynomial_conditions(segment)])
+        else:
+            law = segment.law if isinstance(segment, Move) else "constant_velocity"
+            exact = law_segment(LAWS[law], span, low, high)
+        if len(at):
+            worst = max(worst, float(np.abs(exact.pieces.motion(at).s - s).max()))
+        start = end
+    checks = [tolerated("keeps_the_statement", worst / lift, STATED)]
+    for dimension, values in ((VELOCITY, program.v), (ACCELERATION, program.a), (JERK, program.j)):
+        limit = getattr(problem.limits, dimension)
+        if limit is not None and limited.any():
+            peak = float(np.abs(np.array(values)[limited]).max())
+            checks.append(at_most(f"table_{dimension}", peak, limit, dimension, TABLE_SLACK))
+    return checks
