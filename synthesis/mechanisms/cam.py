@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -30,10 +31,49 @@ MOST_POINTS = 20_000
 Coordinates = Annotated[list[Coordinate], Field(min_length=16, max_length=MOST_POINTS)]
 
 
+FollowerType = Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
+
+FOLLOWERS: dict[FollowerType, type[core.Follower]] = {
+    "translating_roller": core.TranslatingRoller,
+    "oscillating_roller": core.OscillatingRoller,
+    "translating_flat": core.TranslatingFlat,
+    "oscillating_flat": core.OscillatingFlat,
+}
+"""Followers of the analysis core by their types. All begin with the radius of their cam: prime or base circle."""
+
+
+def follower_type(follower: core.Follower) -> FollowerType:
+    """The type of a follower of the analysis core."""
+    return next(name for name, kind in FOLLOWERS.items() if isinstance(follower, kind))
+
+
+def dimensions_of(kind: type[core.Follower]) -> dict[str, Any]:
+    """Names of a follower's own dimensions, and what they are where nothing is stated."""
+    return {field.name: 0.0 if field.default is MISSING else field.default for field in fields(kind)[1:]}
+
+
+def follower_by_dimensions(name: FollowerType, radius: float, stated: object) -> core.Follower:
+    """A follower of the analysis core from a model with its dimensions, and the radius of its cam.
+
+    Raises
+    ------
+    DimensionError
+        For dimensions that no follower has.
+    """
+    # No field of another type of follower is read, so that a surplus dimension has no effect.
+    kind: Any = FOLLOWERS[name]
+    dimensions = {
+        dimension: default if getattr(stated, dimension) is None else getattr(stated, dimension)
+        for dimension, default in dimensions_of(kind).items()
+    }
+    follower: core.Follower = kind(radius, **dimensions)
+    return follower
+
+
 class GivenFollower(Statement):
     """A follower: what belongs to its type must be given."""
 
-    type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
+    type: FollowerType
     roller_radius: Annotated[NonNegative, LENGTH] | None = Field(default=None, description="0 for a knife edge.")
     offset: Coordinate | None = Field(default=None, description="Of a translating roller's slide; 0 if left out.")
     arm: PositiveLength | None = None
@@ -59,16 +99,8 @@ class GivenFollower(Statement):
         if radius is None:
             name = "prime_radius" if roller else "base_radius"
             raise MechanismError(f"/{name}", "where the displacement is zero is not stated without it")
-        sense, offset = self.sense or 1, self.offset or 0.0
         try:
-            if self.type == "translating_roller":
-                return core.TranslatingRoller(radius, self.roller_radius or 0.0, offset)
-            if self.type == "translating_flat":
-                return core.TranslatingFlat(radius)
-            pivot = self.pivot_distance or 0.0
-            if self.type == "oscillating_flat":
-                return core.OscillatingFlat(radius, pivot, self.face_offset or 0.0, sense)
-            return core.OscillatingRoller(radius, self.roller_radius or 0.0, self.arm or 0.0, pivot, sense)
+            return follower_by_dimensions(self.type, radius, self)
         except DimensionError as error:
             raise MechanismError("/follower", str(error)) from None
 

@@ -15,7 +15,6 @@ from synthesis.kinds.cam.design import CamMechanism
 from synthesis.kinds.cam.mechanism import (
     core_follower,
     points_of,
-    profile_points,
 )
 
 Real = NDArray[np.float64]
@@ -57,7 +56,7 @@ class CamScene:
     @cached_property
     def profile(self) -> Complex:
         """Points of the profile."""
-        return profile_points(self.mechanism)
+        return points_of(self.mechanism.profile)
 
     @cached_property
     def pitch_curve(self) -> Complex:

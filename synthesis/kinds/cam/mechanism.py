@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from kinematics.cam import follower as core
 from kinematics.cam.barrel import BarrelCam
+from kinematics.cam.pieces import Motion
 from kinematics.cam.profile import Cam, even_angles
 from kinematics.cam.program import TURN, Program
 from synthesis.kinds.cam.design import (
@@ -21,6 +22,7 @@ from synthesis.kinds.cam.design import (
     CamMechanism,
     ProgramTable,
 )
+from synthesis.mechanisms.cam import dimensions_of, follower_by_dimensions, follower_type
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -78,32 +80,28 @@ def refined(angle: Real, off: Real, allowed: float) -> Real:
 
 def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
     """A cam as the answer has it, at given cam angles; with both walls of its groove, or one profile."""
-    motion = cam.program.motion(angle)
     oscillating = isinstance(cam.follower, core.OscillatingRoller | core.OscillatingFlat)
     unit = 180.0 / math.pi if oscillating else 1.0
     degrees = np.degrees(angle).tolist()
     roller = isinstance(cam.follower, core.TranslatingRoller | core.OscillatingRoller)
     return CamMechanism(
-        follower=follower_model(cam.follower),
+        follower=CamFollower(
+            type=follower_type(cam.follower),
+            **{name: getattr(cam.follower, name) for name in dimensions_of(type(cam.follower))},
+        ),
         prime_radius=cam.size if roller else None,
         base_radius=None if roller else cam.size,
         rotation=cam.rotation,
         profile=_curve(degrees, cam.profile(angle)),
         outer_wall=_curve(degrees, cam.outer_wall(angle)) if groove else None,
         pitch_curve=_curve(degrees, cam.pitch_curve(angle)),
-        program=ProgramTable(
-            angle=degrees,
-            s=(motion.s * unit).tolist(),
-            v=motion.v.tolist(),
-            a=motion.a.tolist(),
-            j=motion.j.tolist(),
-        ),
+        program=_table(degrees, cam.program.motion(angle), unit),
     )
 
 
 def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: Real) -> BarrelCamMechanism:
     """A barrel cam as the answer has it, at given cam angles."""
-    motion, degrees = barrel.program.motion(angle), np.degrees(angle).tolist()
+    degrees = np.degrees(angle).tolist()
     return BarrelCamMechanism(
         follower=BarrelFollower(roller_radius=barrel.roller_radius),
         cylinder_radius=barrel.radius,
@@ -111,36 +109,23 @@ def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: R
         lower_wall=_curve(degrees, barrel.wall(angle, -1)),
         upper_wall=_curve(degrees, barrel.wall(angle, 1)),
         pitch_curve=_curve(degrees, barrel.pitch_curve(angle)),
-        program=ProgramTable(
-            angle=degrees, s=motion.s.tolist(), v=motion.v.tolist(), a=motion.a.tolist(), j=motion.j.tolist()
-        ),
+        program=_table(degrees, barrel.program.motion(angle), 1.0),
+    )
+
+
+def _table(degrees: list[float], motion: Motion, unit: float) -> ProgramTable:
+    """The program at cam angles; ``unit`` turns the displacement of the core into the answer's."""
+    return ProgramTable(
+        angle=degrees,
+        s=(motion.s * unit).tolist(),
+        v=motion.v.tolist(),
+        a=motion.a.tolist(),
+        j=motion.j.tolist(),
     )
 
 
 def _curve(degrees: list[float], points: Complex) -> CamCurve:
     return CamCurve(angle=degrees, x=points.real.tolist(), y=points.imag.tolist())
-
-
-def follower_model(follower: core.Follower) -> CamFollower:
-    """The follower as the answer has it."""
-    if isinstance(follower, core.TranslatingRoller):
-        return CamFollower(type="translating_roller", roller_radius=follower.roller_radius, offset=follower.offset)
-    if isinstance(follower, core.OscillatingRoller):
-        return CamFollower(
-            type="oscillating_roller",
-            roller_radius=follower.roller_radius,
-            arm=follower.arm,
-            pivot_distance=follower.pivot_distance,
-            sense=_sense(follower.sense),
-        )
-    if isinstance(follower, core.TranslatingFlat):
-        return CamFollower(type="translating_flat")
-    return CamFollower(
-        type="oscillating_flat",
-        pivot_distance=follower.pivot_distance,
-        face_offset=follower.face_offset,
-        sense=_sense(follower.sense),
-    )
 
 
 def core_follower(mechanism: CamMechanism) -> core.Follower:
@@ -151,35 +136,14 @@ def core_follower(mechanism: CamMechanism) -> core.Follower:
     DimensionError
         For dimensions that no follower can have.
     """
-    follower = mechanism.follower
-    prime, base = mechanism.prime_radius or 0.0, mechanism.base_radius or 0.0
-    if follower.type == "translating_roller":
-        return core.TranslatingRoller(prime, follower.roller_radius or 0.0, follower.offset or 0.0)
-    if follower.type == "oscillating_roller":
-        return core.OscillatingRoller(
-            prime,
-            follower.roller_radius or 0.0,
-            follower.arm or 0.0,
-            follower.pivot_distance or 0.0,
-            follower.sense or 1,
-        )
-    if follower.type == "translating_flat":
-        return core.TranslatingFlat(base)
-    return core.OscillatingFlat(base, follower.pivot_distance or 0.0, follower.face_offset or 0.0, follower.sense or 1)
-
-
-def _sense(sense: int) -> Literal[1, -1]:
-    return 1 if sense == 1 else -1
+    stated = mechanism.follower
+    radius = mechanism.prime_radius if stated.type.endswith("roller") else mechanism.base_radius
+    return follower_by_dimensions(stated.type, radius or 0.0, stated)
 
 
 def points_of(curve: CamCurve) -> Complex:
     """A curve as complex numbers."""
     return np.array(curve.x) + 1j * np.array(curve.y)
-
-
-def profile_points(mechanism: CamMechanism) -> Complex:
-    """The profile as complex numbers."""
-    return points_of(mechanism.profile)
 
 
 def table_angles(program: ProgramTable) -> Real:
