@@ -13,12 +13,10 @@ from pydantic import ConfigDict, Field
 
 from kinematics.cam.unrolled import UnrolledWall
 from kinematics.errors import DimensionError
-from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.cam import MOST_EFFORT, FollowerSeries, ForceSeries, Load, force_series
-from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
-from synthesis.model.answer import Answer
 
 
 def _wall(mean: float, sign: float) -> dict[str, Any]:
@@ -34,7 +32,7 @@ def _wall(mean: float, sign: float) -> dict[str, Any]:
     }
 
 
-class BarrelCamAnalysisRequest(AnalysisRequest):
+class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
     """A barrel cam and how it turns; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
@@ -56,13 +54,7 @@ class BarrelCamAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenBarrelCam
-    motion: StatedMotion = Sweep()
     load: Load | None = None
-
-    def faults(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
-        return self.motion.faults()
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`BarrelCamAnalysis`."""
@@ -107,11 +99,9 @@ class BarrelCamAnalysisRequest(AnalysisRequest):
             raise MechanismError(f"/{name}", "neighbouring points must be different") from None
 
 
-class BarrelCamAnalysis(Answer):
+class BarrelCamAnalysis(DrivenAnalysis):
     """Everything that the analysis core measures on a barrel cam over the motion; null where nothing is touched."""
 
-    input_angle: list[float]
-    time: list[float] | None
     valid: list[bool]
     follower: FollowerSeries
     play: list[float | None] = Field(

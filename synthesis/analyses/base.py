@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, NamedTuple, Self
+from typing import Any, Generic, NamedTuple, Self, TypeVar
 
+from pydantic import Field
+
+from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.model.answer import Answer
 from synthesis.model.statement import Statement
 
@@ -35,6 +38,36 @@ class AnalysisRequest(Statement, ABC):
     def example(cls) -> Self:
         """The example of the API documentation."""
         return cls.model_validate(cls.model_json_schema()["examples"][0])
+
+
+Given = TypeVar("Given", bound=Statement)
+
+
+class DrivenRequest(AnalysisRequest, Generic[Given]):
+    """A given mechanism whose input moves as stated: a full turn in 360 steps by default."""
+
+    mechanism: Given
+    motion: StatedMotion = Sweep()
+
+    def faults(self) -> list[tuple[str, str]]:
+        """Those of the motion, and what no single field shows."""
+        return self.motion.faults()
+
+
+class DrivenAnalysis(Answer):
+    """The positions of the input for which everything else is told."""
+
+    input_angle: list[float]
+    time: list[float] | None
+
+
+class TurningPart(Answer):
+    """What turns at a fixed ratio to the input, over the positions."""
+
+    speed_ratio: float = Field(description="Speed over the input's; negative: the other way.")
+    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
+    omega: list[float] = Field(description="rad/s")
+    alpha: list[float] = Field(description="rad/s²")
 
 
 class Family(NamedTuple):

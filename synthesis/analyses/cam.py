@@ -20,8 +20,7 @@ from kinematics.cam.measured import measured_program
 from kinematics.cam.profile import even_angles
 from kinematics.cam.response import FollowerTrain, Response
 from kinematics.errors import DimensionError
-from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.model.answer import Answer
@@ -94,7 +93,7 @@ EXAMPLE: dict[str, Any] = {
 """A circle that turns about a point off its centre."""
 
 
-class CamAnalysisRequest(AnalysisRequest):
+class CamAnalysisRequest(DrivenRequest[GivenCam]):
     """A cam and how it turns; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
@@ -111,8 +110,6 @@ class CamAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenCam
-    motion: StatedMotion = Sweep()
     load: Load | None = None
     train: Train | None = Field(
         default=None, description="Steady vibration at the speed of the motion's first position."
@@ -121,7 +118,7 @@ class CamAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.motion.faults()
+        found = super().faults()
         if self.train is not None and self.motion.rate <= 0.0:
             found.append(("/motion/speed", "a vibration needs a speed that is positive"))
         return found
@@ -309,11 +306,9 @@ class ProfileFacts(Answer):
     crossings: list[tuple[float, float]]
 
 
-class CamAnalysis(Answer):
+class CamAnalysis(DrivenAnalysis):
     """Everything that the analysis core measures on a cam over the motion."""
 
-    input_angle: list[float]
-    time: list[float] | None
     valid: list[bool]
     follower: FollowerSeries
     contact: CurvePoints

@@ -10,9 +10,8 @@ from pydantic import ConfigDict, Field
 
 from kinematics.cam.dynamics import Camshaft, RunningCam
 from kinematics.cam.measured import measured_program
-from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.base import DrivenRequest, Family
 from synthesis.analyses.cam import EXAMPLE, Load
-from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.mechanisms import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.model.answer import Answer
@@ -42,7 +41,7 @@ class GivenCamshaft(Statement):
     )
 
 
-class CamshaftAnalysisRequest(AnalysisRequest):
+class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
     """Several cams and the speed of their shaft."""
 
     model_config = ConfigDict(
@@ -68,12 +67,9 @@ class CamshaftAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenCamshaft
-    motion: StatedMotion = Sweep()
-
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.motion.faults()
+        found = super().faults()
         if self.motion.rate <= 0.0:
             found.append(("/motion/speed", "the shaft must turn with a speed that is positive"))
         if self.motion.acceleration != 0.0:

@@ -9,13 +9,12 @@ from pydantic import ConfigDict, Field
 
 from kinematics.cam.extremes import extremes
 from kinematics.cam.follower import TranslatingRoller
-from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.cam import GivenContourCam
 from synthesis.model.answer import Answer
 
 
-class ContourCamAnalysisRequest(AnalysisRequest):
+class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
     """A contour with a translating follower and how it turns; a full turn in 360 steps by default."""
 
     model_config = ConfigDict(
@@ -39,13 +38,6 @@ class ContourCamAnalysisRequest(AnalysisRequest):
             ]
         },
     )
-
-    mechanism: GivenContourCam
-    motion: StatedMotion = Sweep()
-
-    def faults(self) -> list[tuple[str, str]]:
-        """What no single field shows."""
-        return self.motion.faults()
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`ContourCamAnalysis`."""
@@ -96,11 +88,9 @@ class Peaks(Answer):
     a: float
 
 
-class ContourCamAnalysis(Answer):
+class ContourCamAnalysis(DrivenAnalysis):
     """What a cam of specified contour does to its follower."""
 
-    input_angle: list[float]
-    time: list[float] | None
     follower: ContourFollower
     pressure_angle: list[float] = Field(description="Degrees, positive while rising without offset.")
     base_radius: float

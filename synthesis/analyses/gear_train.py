@@ -16,8 +16,7 @@ from pydantic import ConfigDict, Field
 
 from kinematics.gear.teeth import Gear, Mesh
 from kinematics.gear.train import OrdinaryTrain, TrainStage
-from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries
 from synthesis.model.gear_statement import PressureAngle, ToothNumber
@@ -72,7 +71,7 @@ class GivenGearTrain(Statement):
         return OrdinaryTrain(stages, math.radians(self.pressure_angle))
 
 
-class GearTrainAnalysisRequest(AnalysisRequest):
+class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
     """A gear train, how its input turns, and what it carries."""
 
     model_config = ConfigDict(
@@ -95,8 +94,6 @@ class GearTrainAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenGearTrain
-    motion: StatedMotion = Sweep()
     length_unit: Literal["mm", "cm", "m", "in"] = "mm"
     input_torque: Number = Field(default=1.0, description="Torque on the input shaft, N m.")
     mesh_efficiency: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] | None = Field(
@@ -108,7 +105,7 @@ class GearTrainAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.motion.faults()
+        found = super().faults()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
                 found.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
@@ -123,7 +120,7 @@ class GearTrainAnalysisRequest(AnalysisRequest):
         return _analysis(self)
 
 
-class TurningGear(Answer):
+class TurningGear(TurningPart):
     """A gear and its motion; gears of one shaft turn alike."""
 
     stage: int
@@ -136,10 +133,6 @@ class TurningGear(Answer):
     base_diameter: float
     tooth_thickness: float = Field(description="On the pitch circle.")
     undercut: bool = Field(description="By a rack that cuts it.")
-    speed_ratio: float = Field(description="Speed over the input's; negative: the other way.")
-    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
-    omega: list[float] = Field(description="rad/s")
-    alpha: list[float] = Field(description="rad/s²")
 
 
 class LoadedMesh(MeshGeometry):
@@ -162,11 +155,9 @@ class Shaft(Answer):
     torque: float = Field(description="N m, with the losses before it.")
 
 
-class GearTrainAnalysis(Answer):
+class GearTrainAnalysis(DrivenAnalysis):
     """What the analysis core knows of a gear train; degrees, rad/s, length units."""
 
-    input_angle: list[float]
-    time: list[float] | None
     valid: list[bool]
     ratio: Ratio
     efficiency: float | None = Field(description="Output power over input power.")

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from kinematics.gear.gearbox import layshaft_ratios, spindle_speeds
-from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, TurningPart
 from synthesis.model.answer import Answer
 from synthesis.model.statement import Statement
 
@@ -79,14 +78,10 @@ class GivenLayshaftGearbox(Statement):
     centre_distance: Any = None
 
 
-class TurningShaft(Answer):
+class TurningShaft(TurningPart):
     """A shaft and its motion."""
 
     name: str
-    speed_ratio: float = Field(description="Speed over the input's.")
-    angle: list[float] = Field(description="From the position at input angle 0, degrees.")
-    omega: list[float] = Field(description="rad/s")
-    alpha: list[float] = Field(description="rad/s²")
 
 
 class EngagedSpeed(Answer):
@@ -97,18 +92,16 @@ class EngagedSpeed(Answer):
     exact_speed_ratio: str
 
 
-class GearboxAnalysis(Answer):
+class GearboxAnalysis(DrivenAnalysis):
     """What the analysis core knows of a gearbox with given pairs engaged."""
 
-    input_angle: list[float]
-    time: list[float] | None
     valid: list[bool]
     engaged: list[int]
     shafts: list[TurningShaft]
     speeds: list[EngagedSpeed] = Field(description="Everything that can be engaged, slowest output first.")
 
 
-class GearboxAnalysisRequest(AnalysisRequest):
+class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
     """A machine-tool gearbox, the pairs that are engaged, and how the input turns."""
 
     model_config = ConfigDict(
@@ -130,15 +123,13 @@ class GearboxAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenGearbox
-    motion: StatedMotion = Sweep()
     engaged: list[Place] | None = Field(
         default=None, max_length=6, description="The engaged pair of each stage, from 0; null: the first of each."
     )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.motion.faults()
+        found = super().faults()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
             found.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
@@ -161,7 +152,7 @@ class GearboxAnalysisRequest(AnalysisRequest):
         return _shape(self, at, speed, time, engaged, ratios, speeds)
 
 
-class LayshaftAnalysisRequest(AnalysisRequest):
+class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
     """A layshaft gearbox, the gear that is engaged, and how the input turns."""
 
     model_config = ConfigDict(
@@ -182,13 +173,11 @@ class LayshaftAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenLayshaftGearbox
-    motion: StatedMotion = Sweep()
     gear: Annotated[int, Field(strict=True, ge=1, le=12)] | Literal["reverse"] = 1
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = self.motion.faults()
+        found = super().faults()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
                 found.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))

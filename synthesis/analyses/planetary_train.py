@@ -14,8 +14,7 @@ from pydantic import ConfigDict, Field
 from kinematics.gear.arrangements import ARRANGEMENTS
 from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, Train, speeds
 from kinematics.gear.power import PowerFlow, power_flow
-from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.motions import StatedMotion, Sweep
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
 from synthesis.model.statement import (
     Flag,
@@ -98,7 +97,7 @@ class GivenPlanetaryTrain(Statement):
         return []
 
 
-class PlanetaryAnalysisRequest(AnalysisRequest):
+class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
     """A planetary train, the speeds that are known, and what it carries."""
 
     model_config = ConfigDict(
@@ -122,8 +121,6 @@ class PlanetaryAnalysisRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenPlanetaryTrain
-    motion: StatedMotion = Sweep()
     speeds: dict[Body, Number] | None = Field(
         default=None,
         max_length=24,
@@ -146,7 +143,7 @@ class PlanetaryAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = [*self.mechanism.faults(), *self.motion.faults()]
+        found = [*self.mechanism.faults(), *super().faults()]
         return found or self._unknown_bodies()
 
     def _unknown_bodies(self) -> list[tuple[str, str]]:
@@ -202,11 +199,9 @@ class LoadedPlanetaryMesh(Answer):
     loss: float | None
 
 
-class PlanetaryAnalysis(Answer):
+class PlanetaryAnalysis(DrivenAnalysis):
     """What the analysis core knows of a planetary train."""
 
-    input_angle: list[float]
-    time: list[float] | None
     valid: list[bool] = Field(description="Whether the known speeds agree with the train and determine all others.")
     freedom: int = Field(description="Speeds that can be chosen before all others follow.")
     open_speeds: int = Field(description="Speeds that the known ones leave open.")

@@ -15,7 +15,7 @@ from kinematics.linkage.universal_joint import (
     shaft_extremes,
     shaft_motion,
 )
-from synthesis.analyses.base import AnalysisRequest, Family
+from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.model.answer import Answer
 from synthesis.model.statement import (
@@ -63,7 +63,7 @@ class GivenUniversalJoint(Statement):
         return [Joint(math.radians(joint.angle), math.radians(joint.offset)) for joint in self.joints]
 
 
-class UniversalJointRequest(AnalysisRequest):
+class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
     """Universal joints and the motion of the input shaft."""
 
     model_config = ConfigDict(
@@ -78,7 +78,6 @@ class UniversalJointRequest(AnalysisRequest):
         },
     )
 
-    mechanism: GivenUniversalJoint
     motion: StatedMotion = Field(
         default=Sweep(),
         description="Of the input, its angle from where the driver's fork lies in the plane of the first two shafts.",
@@ -87,7 +86,7 @@ class UniversalJointRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found, limits = self.motion.faults(), self.limits
+        found, limits = super().faults(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
             found.append(("/limits", "state the fluctuation, or a least or greatest ratio"))
         if self.mechanism.joints[0].offset != 0.0:
@@ -162,11 +161,9 @@ class JointExtremes(Answer):
     torques: list[float] | None = Field(description="Least and greatest of the output shaft; null without inertia.")
 
 
-class UniversalJointAnalysis(Answer):
+class UniversalJointAnalysis(DrivenAnalysis):
     """What universal joints do; degrees, rad/s, and the units of the stated inertia and torque."""
 
-    input_angle: list[float]
-    time: list[float] | None
     output_angle: list[float] = Field(description="Rotation from where the output stands at input angle 0, degrees.")
     speed_ratio: list[float] = Field(description="Output speed over input speed.")
     output_speed: list[float]
