@@ -18,6 +18,14 @@ from synthesis.model.answer import (
 )
 from synthesis.model.dimension import Angle, Length
 
+_BODY_ANGLE = Field(
+    default=None,
+    exclude_if=blank,
+    description="Angle of the body's line at the first target, absolute, degrees; "
+    "left out where it is the demanded one exactly.",
+)
+"""The same field of every mechanism that carries a body."""
+
 
 class Link(Answer):
     """A rigid link and the joints on it."""
@@ -84,12 +92,7 @@ class FourbarMechanism(Answer):
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
     reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: Angle | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="Angle of the body's line at the first target, absolute, degrees; "
-        "left out where it is the demanded one exactly.",
-    )
+    reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
 
 
@@ -124,9 +127,7 @@ class SliderCrankMechanism(Answer):
     assembly: Literal["open", "crossed"]
     driven_by: Literal["crank", "slider"]
     reference_input_angle: Angle = Field(description="Crank angle at the first target, absolute, degrees.")
-    reference_body_angle: Angle | None = Field(
-        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
-    )
+    reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
 
 
@@ -159,9 +160,7 @@ class InvertedSliderCrankMechanism(Answer):
     coupler_point: CouplerPoint
     assembly: Literal["open", "crossed"]
     reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: Angle | None = Field(
-        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
-    )
+    reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
 
 
@@ -189,9 +188,7 @@ class GearedFivebarMechanism(Answer):
     coupler_point: CouplerPoint = Field(description="P on coupler 1: its angle is from the line A → C.")
     assembly: Literal["open", "crossed"]
     reference_input_angle: Angle = Field(description="Input angle at the first target, absolute, degrees.")
-    reference_body_angle: Angle | None = Field(
-        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
-    )
+    reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
 
 
@@ -209,9 +206,7 @@ class SixbarMechanism(Answer):
         "driver_ground, its fixed pivot's distance from the driven link's (from O2 where the coupler is driven); "
         "driver_arm, C's distance from that pivot (from A where the coupler is driven)."
     )
-    reference_body_angle: Angle | None = Field(
-        default=None, exclude_if=blank, description="As for the fourbar: left out where it is the demanded one."
-    )
+    reference_body_angle: Angle | None = _BODY_ANGLE
     skeleton: Skeleton
 
 
@@ -262,20 +257,32 @@ class Target(DrivenTo):
     )
 
 
-class LinkageMetrics(Answer):
-    """Measured properties of a linkage that were not demanded."""
+class MotionMetrics(Answer):
+    """What is measured of every driven linkage (:class:`synthesis.proof.measures.Measures`), whatever it is for.
+
+    Angles and size are those of the motion that the design was verified along: from the first target to the last, or
+    the whole turn of a crank that turns through.
+    """
 
     grashof: (
         Literal["double_crank", "crank_rocker", "double_rocker", "rocker_crank", "rocker_rocker", "change_point"] | None
-    ) = Field(description="Of a fourbar, with a driver dyad too; null for others.")
-    barker: str | None = Field(description="Barker's code of a fourbar, e.g. GCRR.")
-    min_transmission_angle: Angle = Field(description="Over the used range of the input, degrees.")
+    ) = Field(description="Of the fourbar that the linkage is or contains; null for others.")
+    barker: str | None = Field(description="Barker's code of that fourbar, e.g. GCRR.")
+    min_transmission_angle: Angle = Field(description="Over the verified motion, degrees.")
     transmission_angles: dict[str, Angle] = Field(
-        description="The least at each dyad of links over that range, by the name of its first link, degrees."
+        description="The least at each dyad of links over that motion, by the name of its first link, degrees."
     )
+    full_rotation: bool
+    link_ratio: float = Field(description="Longest link over shortest.")
+    size: Length = Field(description="Diagonal of the box around all joints and the point P over that motion.")
+    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
+
+
+class LinkageMetrics(MotionMetrics):
+    """Measured properties of a linkage that were not demanded."""
+
     same_branch: bool
     visits_in_order: bool
-    full_rotation: bool
     input_rotation: Angle | None = Field(
         default=None,
         exclude_if=blank,
@@ -286,13 +293,10 @@ class LinkageMetrics(Answer):
         exclude_if=blank,
         description="The same of an input that slides, length units; left out where it turns.",
     )
-    link_ratio: float = Field(description="Longest link over shortest.")
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
         "angle is demanded, its difference in radians, added in squares."
     )
-    size: Length = Field(description="Diagonal of the box around all joints and the point P at all targets.")
-    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 
 class LinkageDesign(Answer):

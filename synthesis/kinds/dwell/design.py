@@ -19,7 +19,7 @@ from synthesis.model.dimension import (
     OutputPerRadian,
     OutputPerRadianSquared,
 )
-from synthesis.model.linkage_answer import CouplerPoint, Skeleton
+from synthesis.model.linkage_answer import CouplerPoint, MotionMetrics, Skeleton
 
 
 class DwellMechanism(Answer):
@@ -53,8 +53,12 @@ class Rest(Answer):
     off_end: float = Field(description="Distance of the mean from the nearer end of the way, as a share of the way.")
 
 
-class DwellMetrics(Answer):
-    """Measured properties of a dwell sixbar. The output is in degrees, or in length units of a slider."""
+class DwellMetrics(MotionMetrics):
+    """Measured properties of a dwell sixbar, over a full turn of the crank.
+
+    The output is in degrees, or in length units of a slider. For the quality the task's size is the stroke, or twice
+    the crank.
+    """
 
     way: Output = Field(description="Swing or stroke over a whole turn.")
     jitter: Output = Field(description="The largest of all dwells.")
@@ -62,19 +66,7 @@ class DwellMetrics(Answer):
         description="Of the output at a crank speed of 1 rad/s: rad/s, or length units/s."
     )
     peak_acceleration: OutputPerRadianSquared = Field(description="The same: rad/s², or length units/s².")
-    grashof: str | None = Field(description="Of the fourbar.")
-    barker: str | None
-    min_transmission_angle: Angle = Field(description="Over the whole turn, degrees.")
-    transmission_angles: dict[str, Angle] = Field(
-        description="The least over the turn at each dyad of links, by the name of its first link, degrees."
-    )
     same_branch: bool
-    full_rotation: bool
-    link_ratio: float = Field(description="Longest link over shortest.")
-    size: Length = Field(description="Diagonal of the box around all joints over the turn.")
-    quality: float = Field(
-        description="Between 0 and 1; see docs/ranking.md. The task's size is the stroke, or twice the crank."
-    )
 
 
 class DwellDesign(Answer):

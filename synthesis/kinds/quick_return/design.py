@@ -18,6 +18,7 @@ from synthesis.model.linkage_answer import (
     FixedPivots,
     FourbarMechanism,
     Line,
+    MotionMetrics,
     Skeleton,
     SliderCrankMechanism,
 )
@@ -76,24 +77,14 @@ class LimitPosition(Answer):
     output: Output = Field(description="Angle of the output link, degrees, or position along the slide from its point.")
 
 
-class QuickReturnMetrics(Answer):
-    """Measured properties of a quick-return mechanism."""
+class QuickReturnMetrics(MotionMetrics):
+    """Measured properties of a quick-return mechanism, over a full turn of the crank."""
 
     time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
     slow_rotation: Angle = Field(description="Crank rotation of the slow stroke, degrees.")
     fast_rotation: Angle = Field(description="Crank rotation of the fast stroke, degrees.")
     swing: Angle | None = Field(default=None, exclude_if=blank, description="Degrees; of an output that swings.")
     stroke: Length | None = Field(default=None, exclude_if=blank, description="Length; of an output that slides.")
-    grashof: str | None = Field(description="Of the fourbar that the crank drives; null for others.")
-    barker: str | None = Field(description="Its Barker code, e.g. GCRR.")
-    min_transmission_angle: Angle = Field(description="Over a full turn of the crank, degrees.")
-    transmission_angles: dict[str, Angle] = Field(
-        description="The least at each dyad of links over the turn, by the name of its first link, degrees."
-    )
-    full_rotation: bool
-    link_ratio: float = Field(description="Longest link over shortest.")
-    size: Length = Field(description="Diagonal of the box around all joints over the turn.")
-    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 
 class QuickReturnDesign(Answer):

@@ -15,7 +15,7 @@ from synthesis.model.answer import (
     blank,
 )
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
-from synthesis.model.linkage_answer import FourbarMechanism, Skeleton
+from synthesis.model.linkage_answer import FourbarMechanism, MotionMetrics, Skeleton
 
 
 class ExactLineMechanism(Answer):
@@ -46,8 +46,8 @@ class LinePoint(Answer):
     deviation: Length = Field(description="Distance from the demanded line, length units.")
 
 
-class StraightLineMetrics(Answer):
-    """Measured properties of a straight-line mechanism."""
+class StraightLineMetrics(MotionMetrics):
+    """Measured properties of a straight-line mechanism, while P is on the line."""
 
     family: LineMechanism
     proportions: Literal["optimal", "classical", "exact"] = Field(
@@ -65,21 +65,11 @@ class StraightLineMetrics(Answer):
     middle_velocity: LengthPerRadian = Field(description="The same in the middle of the input's range.")
     input_rotation: Angle = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
     moving_links: int
-    grashof: str | None = Field(description="Of a fourbar; null for others.")
-    barker: str | None
-    min_transmission_angle: Angle = Field(description="Along the line, degrees.")
-    transmission_angles: dict[str, Angle] = Field(
-        description="The least along the line at each dyad of links, by the name of its first link, degrees."
-    )
     cycle_transmission_angle: Angle | None = Field(
         default=None, exclude_if=blank, description="Over the whole turn of an input that turns through, degrees."
     )
     same_branch: bool
     visits_in_order: bool = Field(description="Whether P runs along the line without turning back.")
-    full_rotation: bool
-    link_ratio: float = Field(description="Longest link over shortest.")
-    size: Length = Field(description="Diagonal of the box around all joints while P is on the line.")
-    quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 
 class StraightLineDesign(Answer):
