@@ -6,6 +6,7 @@ import pytest
 
 from synthesis.registry import example
 from tests.service.answers import finished
+from tests.synthesis.test_constraints import TIMED_PATH
 
 STATED = {
     "max_link_ratio": 1e4,
@@ -16,7 +17,7 @@ CHECKED = {"same_branch", "visits_in_order", "link_ratio", "fixed_pivot_region",
 
 QUICK = {
     "motion": example("motion") | {"max_designs": 2},
-    "path": example("path") | {"max_designs": 2},
+    "path": TIMED_PATH,
     "function": example("function")
     | {"function": None, "input_range": None, "output_range": None, "criterion": None}
     | {"pairs": [{"input": 40.0, "output": 70.0}, {"input": 45.0, "output": 76.0}]},
@@ -29,7 +30,7 @@ QUICK = {
 
 REFUSED = {
     "motion": ({"output_side": {"dyad": "PR"}}, "grashof", "double_rocker"),
-    "path": ({"mechanism": "slider_crank"}, "grashof", "crank_rocker"),
+    "path": (example("path") | {"timing": "free", "mechanism": "slider_crank"}, "grashof", "crank_rocker"),
     "function": ({"mechanism": "slider_crank"}, "grashof", "crank_rocker"),
     "quick_return": ({}, "grashof", "double_rocker"),
     "straight_line": ({}, "grashof", "crank_rocker"),

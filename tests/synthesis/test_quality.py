@@ -33,9 +33,9 @@ def motion(**fields: Any) -> dict[str, Any]:
     return {"kind": "motion", "positions": [{"x": x, "y": y, "angle": angle} for x, y, angle in BODY], **fields}
 
 
-def path(mechanism: str) -> dict[str, Any]:
-    points = [{"x": x, "y": y} for x, y in OVAL]
-    return {"kind": "path", "points": points, "mechanism": mechanism, "rounds": 1, "max_designs": 3}
+def path(mechanism: str, points: int = len(OVAL)) -> dict[str, Any]:
+    places = [{"x": x, "y": y} for x, y in OVAL[:points]]
+    return {"kind": "path", "points": places, "mechanism": mechanism, "rounds": 1, "max_designs": 3}
 
 
 def joints_of(mechanism: Any) -> dict[str, complex]:
