@@ -62,7 +62,7 @@ def test_every_mechanism_is_drawn_and_analysed(kind: Kind) -> None:
     for model in (model for design in designs for model in models_within(design.model_fields["mechanism"].annotation)):
         for mechanism in get_args(model.model_fields["type"].annotation):
             assert mechanism in kind.mechanisms
-            assert "svg" in forms(kind.name, mechanism)
+            assert "svg" in forms(mechanism)
             assert (mechanism in FAMILIES and mechanism in FILES) or "skeleton" in model.model_fields
 
 

@@ -33,7 +33,7 @@ def _kinds() -> ProblemKinds:
                 description=inspect.getdoc(kind.problem) or "",
                 schema=kind.problem.model_json_schema(),
                 example=example(name),
-                files={type_: list(offered) for type_ in kind.mechanisms if (offered := forms(name, type_))},
+                files={type_: list(offered) for type_ in kind.mechanisms if (offered := forms(type_))},
             )
             for name, kind in KINDS.items()
         ]

@@ -15,10 +15,18 @@ Form = Literal["svg", "gif", "dxf", "csv"]
 Maker = Callable[[Any, Any, str], str | bytes]
 """Makes a file of a design, its problem and a title."""
 
-Loader = Callable[[], Maker]
-"""Gives a maker, which it imports when it is called: a server that starts does not wait for a drawing library."""
+LINKAGE = "linkage"
+"""The makers that serve every linkage; what its kind shows is in :mod:`service.render.linkage.kind_tables`."""
 
-Files = dict[Form, Loader]
+FILES: dict[str, tuple[Form, ...]] = {
+    "cam": ("svg", "gif", "dxf", "csv"),
+    "barrel_cam": ("svg", "gif", "dxf", "csv"),
+    "gear_train": ("svg", "gif", "dxf", "csv"),
+    "planetary_train": ("svg", "dxf", "csv"),
+    "gearbox": ("svg", "dxf", "csv"),
+    "layshaft_gearbox": ("svg", "dxf", "csv"),
+}
+"""The forms of files that there are of a type of mechanism that is no linkage; linkages have all."""
 
 
 class NoSuchExport(LookupError):
@@ -29,195 +37,86 @@ class NotBuilt(ValueError):
     """The design is of a size that is not taken for a mechanism's: one for lengths at the end of what can be stated."""
 
 
-def _linkage_sheet() -> Maker:
+# A server that starts does not wait for a drawing library: the makers of a form are imported when one is asked for.
+
+
+def _sheets() -> dict[str, Maker]:
+    from service.render.cam.sheet import barrel_sheet, cam_sheet
+    from service.render.gears.gearbox_sheet import gearbox_sheet, layshaft_sheet
+    from service.render.gears.planetary_sheet import planetary_sheet
+    from service.render.gears.train_sheet import gear_train_sheet
     from service.render.linkage.sheet import linkage_sheet
 
-    return linkage_sheet
+    return {
+        LINKAGE: linkage_sheet,
+        "cam": cam_sheet,
+        "barrel_cam": barrel_sheet,
+        "gear_train": gear_train_sheet,
+        "planetary_train": planetary_sheet,
+        "gearbox": gearbox_sheet,
+        "layshaft_gearbox": layshaft_sheet,
+    }
 
 
-def _linkage_animation() -> Maker:
+def _animations() -> dict[str, Maker]:
+    from service.render.cam.animation import barrel_animation, cam_animation
+    from service.render.gears.train_animation import gear_train_animation
     from service.render.linkage.animation import linkage_animation
 
-    return linkage_animation
+    return {
+        LINKAGE: linkage_animation,
+        "cam": cam_animation,
+        "barrel_cam": barrel_animation,
+        "gear_train": gear_train_animation,
+    }
 
 
-def _linkage_drawing() -> Maker:
+def _drawings() -> dict[str, Maker]:
+    from service.render.cam.dxf import barrel_drawing, cam_drawing
+    from service.render.gears.dxf import gear_train_drawing, planetary_drawing
+    from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
     from service.render.linkage.dxf import linkage_drawing
 
-    return linkage_drawing
-
-
-def _linkage_table() -> Maker:
-    from service.render.linkage.csv import linkage_table
-
-    return linkage_table
-
-
-def _function_table() -> Maker:
-    from service.render.linkage.csv import function_table
-
-    return function_table
-
-
-def _cam_sheet() -> Maker:
-    from service.render.cam.sheet import cam_sheet
-
-    return cam_sheet
-
-
-def _cam_animation() -> Maker:
-    from service.render.cam.animation import cam_animation
-
-    return cam_animation
-
-
-def _cam_drawing() -> Maker:
-    from service.render.cam.dxf import cam_drawing
-
-    return cam_drawing
-
-
-def _cam_table() -> Maker:
-    from service.render.cam.csv import cam_table
-
-    return cam_table
-
-
-def _barrel_sheet() -> Maker:
-    from service.render.cam.barrel_sheet import barrel_sheet
-
-    return barrel_sheet
-
-
-def _barrel_animation() -> Maker:
-    from service.render.cam.animation import barrel_animation
-
-    return barrel_animation
-
-
-def _barrel_drawing() -> Maker:
-    from service.render.cam.barrel_exports import barrel_drawing
-
-    return barrel_drawing
-
-
-def _barrel_table() -> Maker:
-    from service.render.cam.barrel_exports import barrel_table
-
-    return barrel_table
-
-
-def _gear_train_sheet() -> Maker:
-    from service.render.gears.train_sheet import gear_train_sheet
-
-    return gear_train_sheet
-
-
-def _gear_train_animation() -> Maker:
-    from service.render.gears.train_animation import gear_train_animation
-
-    return gear_train_animation
-
-
-def _gear_train_drawing() -> Maker:
-    from service.render.gears.train_dxf import gear_train_drawing
-
-    return gear_train_drawing
-
-
-def _gear_train_table() -> Maker:
-    from service.render.gears.csv import gear_train_table
-
-    return gear_train_table
-
-
-def _planetary_sheet() -> Maker:
-    from service.render.gears.planetary_sheet import planetary_sheet
-
-    return planetary_sheet
-
-
-def _planetary_drawing() -> Maker:
-    from service.render.gears.planetary_dxf import planetary_drawing
-
-    return planetary_drawing
-
-
-def _planetary_table() -> Maker:
-    from service.render.gears.csv import planetary_table
-
-    return planetary_table
-
-
-def _gearbox_sheet() -> Maker:
-    from service.render.gears.gearbox_sheet import gearbox_sheet
-
-    return gearbox_sheet
-
-
-def _gearbox_drawing() -> Maker:
-    from service.render.gears.gearbox_dxf import gearbox_drawing
-
-    return gearbox_drawing
-
-
-def _gearbox_table() -> Maker:
-    from service.render.gears.csv import gearbox_table
-
-    return gearbox_table
-
-
-def _layshaft_sheet() -> Maker:
-    from service.render.gears.gearbox_sheet import layshaft_sheet
-
-    return layshaft_sheet
-
-
-def _layshaft_drawing() -> Maker:
-    from service.render.gears.gearbox_dxf import layshaft_drawing
-
-    return layshaft_drawing
-
-
-def _layshaft_table() -> Maker:
-    from service.render.gears.csv import layshaft_table
-
-    return layshaft_table
-
-
-_LINKAGE: Files = {
-    "svg": _linkage_sheet,
-    "gif": _linkage_animation,
-    "dxf": _linkage_drawing,
-    "csv": _linkage_table,
+    return {
+        LINKAGE: linkage_drawing,
+        "cam": cam_drawing,
+        "barrel_cam": barrel_drawing,
+        "gear_train": gear_train_drawing,
+        "planetary_train": planetary_drawing,
+        "gearbox": gearbox_drawing,
+        "layshaft_gearbox": layshaft_drawing,
+    }
+
+
+def _tables() -> dict[str, Maker]:
+    from service.render.cam.csv import barrel_table, cam_table
+    from service.render.gears.csv import gear_train_table, gearbox_table, layshaft_table, planetary_table
+    from service.render.linkage.csv import function_table, linkage_table
+
+    return {
+        LINKAGE: linkage_table,
+        "function": function_table,
+        "cam": cam_table,
+        "barrel_cam": barrel_table,
+        "gear_train": gear_train_table,
+        "planetary_train": planetary_table,
+        "gearbox": gearbox_table,
+        "layshaft_gearbox": layshaft_table,
+    }
+
+
+_MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
+    "svg": _sheets,
+    "gif": _animations,
+    "dxf": _drawings,
+    "csv": _tables,
 }
-"""Of every linkage; what its kind shows on the sheet stands in :mod:`service.render.linkage.kind_tables`."""
-
-FILES: dict[str, Files] = {
-    "function": {**_LINKAGE, "csv": _function_table},
-    "cam": {"svg": _cam_sheet, "gif": _cam_animation, "dxf": _cam_drawing, "csv": _cam_table},
-    "barrel_cam": {"svg": _barrel_sheet, "gif": _barrel_animation, "dxf": _barrel_drawing, "csv": _barrel_table},
-    "gear_train": {
-        "svg": _gear_train_sheet,
-        "gif": _gear_train_animation,
-        "dxf": _gear_train_drawing,
-        "csv": _gear_train_table,
-    },
-    "planetary_train": {"svg": _planetary_sheet, "dxf": _planetary_drawing, "csv": _planetary_table},
-    "gearbox": {"svg": _gearbox_sheet, "dxf": _gearbox_drawing, "csv": _gearbox_table},
-    "layshaft_gearbox": {"svg": _layshaft_sheet, "dxf": _layshaft_drawing, "csv": _layshaft_table},
-}
-"""What makes the files of a type of mechanism, or of all designs of a kind, that are not those of any linkage."""
+"""The makers of each form, by type of mechanism or by kind of problem."""
 
 
-def forms(kind: str, mechanism: str) -> list[Form]:
-    """The forms of files that there are of a type of mechanism in answers to a kind of problem."""
-    files = _files(kind, mechanism)
-    return [form for form in get_args(Form) if form in files]
-
-
-def _files(kind: str, mechanism: str) -> Files:
-    return FILES.get(mechanism) or FILES.get(kind) or _LINKAGE
+def forms(mechanism: str) -> list[Form]:
+    """The forms of files that there are of a type of mechanism."""
+    return list(FILES.get(mechanism, get_args(Form)))
 
 
 def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
@@ -247,9 +146,10 @@ def exported(design: Any, problem: Any, title: str, form: Form) -> str | bytes:
     NotBuilt
         Where the design cannot be built.
     """
-    files = _files(problem.kind, design.mechanism.type)
-    if form not in files:
-        raise NoSuchExport(design.mechanism.type, form)
+    mechanism = design.mechanism.type
+    if form not in forms(mechanism):
+        raise NoSuchExport(mechanism, form)
     with IMPORTS:
-        make = files[form]()
+        makers = _MAKERS[form]()
+    make = makers.get(mechanism) or makers.get(problem.kind) or makers[LINKAGE]
     return make(design, problem, clean(title))

@@ -1,16 +1,41 @@
-"""The checks of a design on its sheet: each number with the unit of what it measures, and in words how many fail."""
+"""The checks of a design: value and limit with the unit of what they measure, and in words how many checks fail."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from service.render.outline import with_unit
 from service.render.page import blocks, sheet
 from service.render.page.numbers import length, small
 from service.render.page.svg import clean
 from service.units import symbols
-from synthesis.model.answer import Verification
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import Dimension
 from synthesis.model.statement import StatedProblem
 
-ROUNDING = 1e-3
-"""Values below are residuals, of which two digits tell all; of others four are shown."""
+DIGITS, MAX_DIGITS = 6, 17
+"""Significant digits of a number, and those that tell any two numbers of double precision apart."""
+
+RESIDUAL = 1e-3
+"""A value below this share of its limit is far within it; a limit of a pure number below it is a tolerance."""
+
+
+def compared(check: Check, units: Mapping[Dimension, str]) -> tuple[str, str]:
+    """Value and limit of a check with their unit; empty where there is none.
+
+    Where the check fails although both would read the same, they have as many digits as tell them apart.
+    """
+    unit = "" if check.dimension is None else units[check.dimension]
+    digits = DIGITS
+    value, limit = _read(check, digits)
+    while not check.passed and value == limit and check.value != check.limit and digits < MAX_DIGITS:
+        digits += 1
+        value, limit = _read(check, digits)
+    return with_unit(value, unit), with_unit(limit, unit)
+
+
+def _read(check: Check, digits: int) -> list[str]:
+    return ["" if number is None else length(number, digits=digits) for number in (check.value, check.limit)]
 
 
 def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
@@ -18,17 +43,18 @@ def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
     units = symbols(problem)
     listed = []
     for check in verification.checks:
-        unit = "" if check.dimension is None else units[check.dimension]
-        limit = None if check.value is None else check.limit
-        listed.append(blocks.CheckRow(check.name, check.passed, _amount(check.value, unit), _amount(limit, unit)))
+        value, limit = compared(check, units)
+        if check.value is not None and check.limit is not None:
+            # Two digits tell all of what is rounding, or within a tolerance, and leave room for the check's name.
+            unit = "" if check.dimension is None else units[check.dimension]
+            tolerance = check.passed and not unit and abs(check.limit) < RESIDUAL
+            if tolerance or abs(check.value) < RESIDUAL * abs(check.limit):
+                value = with_unit(small(check.value), unit)
+            if tolerance:
+                limit = small(check.limit)
+        # A limit alone is no measurement; the name of such a check says what is demanded.
+        listed.append(blocks.CheckRow(check.name, check.passed, value, limit if value else ""))
     return blocks.checks(listed)
-
-
-def _amount(value: float | None, unit: str) -> str:
-    if value is None:
-        return ""
-    digits = small(value) if abs(value) < ROUNDING else length(value, digits=4)
-    return f"{digits}{unit}" if unit in ("", "°") else f"{digits} {unit}"
 
 
 def verdict(verification: Verification) -> str:

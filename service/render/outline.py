@@ -12,13 +12,16 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import BaseModel
 
 from service.render.page.numbers import length
 from service.render.page.svg import clean
+from service.units import symbols
 from synthesis.model.dimension import Dimension, dimensions
+from synthesis.model.statement import StatedProblem
 
 MOST_ROWS = 40
 """Rows of a list at most; of longer ones so many are shown, evenly spread, with both ends."""
@@ -86,63 +89,89 @@ def written(value: Any) -> str:
         )
     if isinstance(value, float):
         return length(value) if math.isfinite(value) else "–"
-    if isinstance(value, tuple) and value and all(one is None or isinstance(one, int | float) for one in value):
-        return f"({', '.join('open' if one is None else written(one) for one in value)})"
+    if isinstance(value, tuple) and value and all(entry is None or isinstance(entry, int | float) for entry in value):
+        return f"({', '.join('open' if entry is None else written(entry) for entry in value)})"
     if isinstance(value, list | tuple):
-        return ("; " if any(isinstance(one, BaseModel) for one in value) else ", ").join(written(one) for one in value)
+        separator = "; " if any(isinstance(entry, BaseModel) for entry in value) else ", "
+        return separator.join(written(entry) for entry in value)
     if isinstance(value, Mapping):
-        return ", ".join(f"{words(str(key))} {written(one)}" for key, one in value.items())
+        return ", ".join(f"{words(str(key))} {written(entry)}" for key, entry in value.items())
     if isinstance(value, BaseModel):
-        return ", ".join(f"{words(key)} {written(one)}" for key, one in value if one is not None)
+        return ", ".join(f"{words(key)} {written(entry)}" for key, entry in value if entry is not None)
     return clean(str(value).replace("_", " "))
 
 
+def with_unit(text: str, unit: str) -> str:
+    """A number with its unit after a blank; signs of degrees stand close to it; nothing where there is none."""
+    if not text:
+        return ""
+    return f"{text}{unit}" if unit in ("", "°") else f"{text} {unit}"
+
+
+def entries(
+    model: BaseModel,
+    problem: StatedProblem,
+    leave_out: Iterable[str] = (),
+    titles: Mapping[str, str] = MappingProxyType({}),
+) -> list[tuple[str, str]]:
+    """The rows of a model as a sheet writes them: names in lower case, or as ``titles`` has them, values with units."""
+    rows = []
+    for row in outline(model, symbols(problem), leave_out).rows:
+        name = row.name[:1].lower() + row.name[1:]
+        rows.append((titles.get(name, name), with_unit(row.value, row.unit)))
+    return rows
+
+
 def outline(
-    model: BaseModel, symbols: Mapping[Dimension, str], leave_out: Iterable[str] = (), last: Iterable[str] = ()
+    model: BaseModel, units: Mapping[Dimension, str], leave_out: Iterable[str] = (), last: Iterable[str] = ()
 ) -> Outline:
     """A model as rows and lists; what is null is left out, and so are the fields of ``leave_out``.
 
     The fields of ``last`` come after the others.
     """
-    found = Outline()
+    collected = Outline()
     names = list(type(model).model_fields)
     late = frozenset(last)
-    _collect(found, model, symbols, "", frozenset(leave_out) | late)
-    _collect(found, model, symbols, "", frozenset(names) - late)
-    return found
+    _collect(collected, model, units, "", frozenset(leave_out) | late)
+    _collect(collected, model, units, "", frozenset(names) - late)
+    return collected
 
 
 def _collect(
-    found: Outline, model: BaseModel, symbols: Mapping[Dimension, str], prefix: str, leave_out: frozenset[str]
+    collected: Outline, model: BaseModel, units: Mapping[Dimension, str], prefix: str, leave_out: frozenset[str]
 ) -> None:
     columns = _columns(model)
     if columns:
-        found.lists.append(_table_of_columns(model, columns, symbols, prefix))
+        collected.lists.append(_table_of_columns(model, columns, units, prefix))
     for name, about in type(model).model_fields.items():
         value = getattr(model, name)
         if name in leave_out or name in columns or value is None:
             continue
         measured = dimensions(type(model)).get(name)
-        unit = "" if measured is None else symbols[measured]
+        unit = "" if measured is None else units[measured]
         title = words(f"{prefix}: {name}" if prefix else name)
         meaning = _meaning(about.description or "")
         if isinstance(value, BaseModel):
-            _collect(found, value, symbols, title, frozenset())
+            _collect(collected, value, units, title, frozenset())
         elif isinstance(value, Mapping):
-            for key, one in value.items():
-                if isinstance(one, BaseModel):
-                    _collect(found, one, symbols, f"{title}: {key}", frozenset())
+            for key, entry in value.items():
+                if isinstance(entry, BaseModel):
+                    _collect(collected, entry, units, f"{title}: {key}", frozenset())
                 else:
-                    found.rows.append(Row(f"{title}: {clean(str(key).replace('_', ' '))}", written(one), unit, meaning))
+                    collected.rows.append(
+                        Row(f"{title}: {clean(str(key).replace('_', ' '))}", written(entry), unit, meaning)
+                    )
                     meaning = ""
-        elif isinstance(value, list) and value and all(isinstance(one, BaseModel) for one in value):
-            found.lists.append(_table_of_members(title, value, symbols))
+        elif isinstance(value, list) and value and all(isinstance(entry, BaseModel) for entry in value):
+            collected.lists.append(_table_of_members(title, value, units))
         elif isinstance(value, list) and len(value) > MOST_NUMBERS:
-            found.rows.append(Row(title, f"{len(value)} values", unit, f"In the JSON of the result. {meaning}".strip()))
+            collected.rows.append(
+                Row(title, f"{len(value)} values", unit, f"In the JSON of the result. {meaning}".strip())
+            )
         elif isinstance(value, list | tuple) and not value:
             continue
         else:
-            found.rows.append(Row(title, written(value), unit if _numeric(value) else "", meaning))
+            collected.rows.append(Row(title, written(value), unit if _numeric(value) else "", meaning))
 
 
 def _meaning(description: str) -> str:
@@ -154,7 +183,7 @@ def _meaning(description: str) -> str:
 
 def _numeric(value: Any) -> bool:
     if isinstance(value, list | tuple):
-        return any(_numeric(one) for one in value)
+        return any(_numeric(entry) for entry in value)
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -166,43 +195,43 @@ def _columns(model: BaseModel) -> list[str]:
     return list(lists) if len(lists) > 1 and len(lengths) == 1 and numeric else []
 
 
-def _head(model: BaseModel, name: str, symbols: Mapping[Dimension, str], prefix: str = "") -> tuple[str, str]:
+def _head(model: BaseModel, name: str, units: Mapping[Dimension, str], prefix: str = "") -> tuple[str, str]:
     measured = dimensions(type(model)).get(name)
-    return words(f"{prefix} {name}".strip()), "" if measured is None else symbols[measured]
+    return words(f"{prefix} {name}".strip()), "" if measured is None else units[measured]
 
 
-def _table_of_columns(model: BaseModel, columns: list[str], symbols: Mapping[Dimension, str], prefix: str) -> List:
+def _table_of_columns(model: BaseModel, columns: list[str], units: Mapping[Dimension, str], prefix: str) -> List:
     values = [getattr(model, name) for name in columns]
     places, omitted = _thinned(len(values[0]))
     rows = [[written(column[k]) for column in values] for k in places]
-    return List(prefix, [_head(model, name, symbols) for name in columns], rows, omitted)
+    return List(prefix, [_head(model, name, units) for name in columns], rows, omitted)
 
 
-def _table_of_members(title: str, members: Sequence[BaseModel], symbols: Mapping[Dimension, str]) -> List:
+def _table_of_members(title: str, members: Sequence[BaseModel], units: Mapping[Dimension, str]) -> List:
     places, omitted = _thinned(len(members))
-    cells = [_cells(members[k], symbols, "") for k in places]
+    cells = [_cells(members[k], units, "") for k in places]
     heads: list[tuple[str, str]] = []
-    for one in cells:
-        heads.extend(head for head in one if head not in heads)
+    for row in cells:
+        heads.extend(head for head in row if head not in heads)
     shown = heads[:COLUMNS]
     if len(heads) > COLUMNS:
         left = ", ".join(name.lower() for name, _ in heads[COLUMNS:])
         omitted = f"{omitted} In the JSON only: {left}.".strip()
-    return List(title, shown, [[one.get(head, "") for head in shown] for one in cells], omitted)
+    return List(title, shown, [[row.get(head, "") for head in shown] for row in cells], omitted)
 
 
-def _cells(model: BaseModel, symbols: Mapping[Dimension, str], prefix: str) -> dict[tuple[str, str], str]:
+def _cells(model: BaseModel, units: Mapping[Dimension, str], prefix: str) -> dict[tuple[str, str], str]:
     """The values of a member of a list; those of a model within it stand among them."""
-    found = {}
+    cells = {}
     for name, value in model:
         if value is None or (isinstance(value, list) and not value):
             continue
         if isinstance(value, BaseModel):
-            found.update(_cells(value, symbols, f"{prefix} {name}"))
+            cells.update(_cells(value, units, f"{prefix} {name}"))
         else:
             text = f"{len(value)} values" if isinstance(value, list) and len(value) > MOST_NUMBERS else written(value)
-            found[_head(model, name, symbols, prefix)] = text
-    return found
+            cells[_head(model, name, units, prefix)] = text
+    return cells
 
 
 def _thinned(count: int) -> tuple[list[int], str]:

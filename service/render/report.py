@@ -17,8 +17,8 @@ from markupsafe import Markup
 from pydantic import BaseModel
 
 from service.render import NoSuchExport, NotBuilt, exported
-from service.render.outline import Outline, outline, words, written
-from service.render.page.numbers import length
+from service.render.checks import compared
+from service.render.outline import Outline, outline, with_unit, words, written
 from service.render.page.sheet import UNITS
 from service.render.page.svg import clean
 from service.units import symbols
@@ -39,6 +39,9 @@ _OWN_POLICY = f"default-src 'none'; style-src 'sha256-{_HASH}'; base-uri 'none';
 POLICY = f"{_OWN_POLICY}; frame-ancestors 'none'"
 """Nothing but the page's own style sheet; a page cannot state the last part for itself."""
 
+RANKED_BY = 4
+"""Quantities in a row of the table of all designs: more do not fit a page's width."""
+
 _ENVIRONMENT = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 _PAGE = _ENVIRONMENT.from_string(_HERE.joinpath("report.html").read_text(encoding="utf-8"))
 
@@ -54,7 +57,7 @@ class Occasion:
     finished: str | None
     version: str
 
-    def told(self) -> str:
+    def line(self) -> str:
         """The job in a line, its times to the second."""
         times = [f"accepted {_readable(self.accepted)}"]
         if self.finished is not None:
@@ -150,22 +153,17 @@ def _sheet(design: Any, n: int, problem: StatedProblem, title: str, units: dict[
         # The writers of drawings escape what they are given; a declaration has no place inside a page.
         drawing=Markup(drawing[drawing.index("<svg") :]) if drawing else "",
         checks=[_checked(check, units) for check in design.verification.checks],
-        parts=[(heading, found) for heading, found in parts if found.rows or found.lists],
+        parts=[(heading, part) for heading, part in parts if part.rows or part.lists],
     )
 
 
 def _checked(check: Check, units: dict[Dimension, str]) -> Checked:
-    unit = f" {units[check.dimension]}" if check.dimension is not None else ""
-
-    def amount(value: float | None) -> str:
-        return "" if value is None else f"{length(value)}{unit}"
-
-    return Checked(words(check.name), check.passed, amount(check.value), amount(check.limit))
+    return Checked(words(check.name), check.passed, *compared(check, units))
 
 
 def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int, str, bool, list[tuple[str, str]]]]:
     """All designs with the first of their quantities."""
-    found = []
+    ranked = []
     for n, design in enumerate(result.designs):
         metrics: BaseModel = design.metrics
         measures = dimensions(type(metrics))
@@ -174,16 +172,16 @@ def _ranking(result: Result[Any], units: dict[Dimension, str]) -> list[tuple[int
             for name, value in metrics
             if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool))
         ]
-        plain.sort(key=lambda one: one[0] not in _TELLING)
+        plain.sort(key=lambda quantity: quantity[0] not in _COMPARED_BY)
         figures = []
-        for name, value in plain[:4]:
+        for name, value in plain[:RANKED_BY]:
             measured = measures.get(name)
-            figures.append((words(name), written(value) + ("" if measured is None else f" {units[measured]}")))
-        found.append((n, words(design.mechanism.type), design.verification.passed, figures))
-    return found
+            figures.append((words(name), with_unit(written(value), "" if measured is None else units[measured])))
+        ranked.append((n, words(design.mechanism.type), design.verification.passed, figures))
+    return ranked
 
 
-_TELLING = {
+_COMPARED_BY = {
     "quality",
     "min_transmission_angle",
     "rms_residual",

@@ -172,7 +172,7 @@ def test_each_kind_is_stated_solved_moves_and_is_taken_home(studio, kind):
     job = page.url.rpartition("=")[2]
     design = json.loads(taken(page, "JSON").read_text())["result"]["designs"][0]
     offered = [one.inner_text() for one in page.locator("#downloads button").all()]
-    assert offered == [*(form.upper() for form in forms(kind, design["mechanism"]["type"])), "PNG", "JSON", "Report"]
+    assert offered == [*(form.upper() for form in forms(design["mechanism"]["type"])), "PNG", "JSON", "Report"]
     for name in offered:
         CHECKS[name](taken(page, name), job)
     assert page.locator("#downloads .error").inner_text() == ""

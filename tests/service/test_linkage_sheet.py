@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from service.render import exported
-from service.render.checks import checks
+from service.render.checks import checks, compared
+from service.units import symbols
 from synthesis.dispatch import solve
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
@@ -60,4 +61,26 @@ def test_numbers_of_checks_have_the_unit_of_what_they_measure() -> None:
     block, _ = checks(Verification(passed=False, checks=stated), problem)(0.0, 0.0, 370.0)
     words = list(ET.fromstring(block.write()).itertext())
     assert words[0] == "Checks: not all passed"
-    assert words[2::2] == ["41.23°  (limit 30°)", "120 in  (limit 100 in)", "1.2e−15  (limit 1e−9)"]
+    assert words[2::2] == ["41.234°  (limit 30°)", "120 in  (limit 100 in)", "1.2e−15  (limit 1e−9)"]
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "passed", "written"),
+    [
+        (350.05, 350.0, False, ("350.05 mm", "350 mm")),
+        (350.0000004, 350.0, False, ("350.0000004 mm", "350 mm")),
+        (350.0000004, 350.0, True, ("350 mm", "350 mm")),
+        (0.1 + 0.2, 0.3, False, ("0.30000000000000004 mm", "0.29999999999999999 mm")),
+        (350.0, 350.0, False, ("350 mm", "350 mm")),
+        (None, 350.0, False, ("", "350 mm")),
+    ],
+)
+def test_a_value_that_misses_its_limit_does_not_read_like_the_limit(
+    value: float | None, limit: float, passed: bool, written: tuple[str, str]
+) -> None:
+    problem = parse_problem({"kind": "motion", "positions": POSITIONS})
+    check = Check(name="longest_link", passed=passed, value=value, limit=limit, dimension=LENGTH)
+    assert compared(check, symbols(problem)) == written
+    block, _ = checks(Verification(passed=passed, checks=[check]), problem)(0.0, 0.0, 370.0)
+    words = list(ET.fromstring(block.write()).itertext())
+    assert words[2:] == ([f"{written[0]}  (limit {written[1]})"] if written[0] else [])

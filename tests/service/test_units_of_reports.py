@@ -183,7 +183,8 @@ def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
         section = f"Design {number}: {words(design.mechanism.type)}"
         (checks,) = page.under(section, "Checks")
         for row, check in zip(checks["rows"][1:], design.verification.checks, strict=True):
-            unit = "" if check.dimension is None else f" {units[check.dimension]}"
+            symbol = "" if check.dimension is None else units[check.dimension]
+            unit = symbol if symbol in ("", "°") else f" {symbol}"
             stated = ["" if value is None else f"{length(value)}{unit}" for value in (check.value, check.limit)]
             assert row == [words(check.name), "✓ passed" if check.passed else "✗ failed", *stated]
         assert check_written(page.under(section, "Dimensions"), design.mechanism, units, {"skeleton"}) or kind in (

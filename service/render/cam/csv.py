@@ -1,4 +1,4 @@
-"""The inspection table of a cam as CSV: program, contact and profile at each cam angle.
+"""Inspection tables of cams as CSV: program, contact and profile at each cam angle; a barrel cam's groove unrolled.
 
 Displacement and its derivatives are the program's; pressure angle and radius of curvature are measured on the profile
 by the analysis core. The polar columns are what a dial indicator on a rotary table shows. Columns name their units;
@@ -12,22 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from service.render.cam.scene import CamScene
 from service.render.page import table
-from synthesis.kinds.cam.design import CamDesign
+from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign, ProgramTable
 from synthesis.kinds.cam.problem import CamProblem
 
 
 def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The inspection table of a cam design; numbers in full precision, nothing where there is none."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
-    program, contact = design.mechanism.program, scene.contact
+    contact = scene.contact
     pitch, profile = scene.pitch_curve, contact.point
-    s_unit, rate = ("deg", "rad") if scene.oscillating else (unit, unit)
-    columns: dict[str, ArrayLike] = {
-        "cam_angle [deg]": program.angle,
-        f"s [{s_unit}]": program.s,
-        f"v [{rate}/rad]": program.v,
-        f"a [{rate}/rad^2]": program.a,
-        f"j [{rate}/rad^3]": program.j,
+    lift, rate = ("deg", "rad") if scene.oscillating else (unit, unit)
+    columns = _program(design.mechanism.program, lift, rate) | {
         "pressure_angle [deg]": np.degrees(contact.pressure_angle),
         f"radius_of_curvature [{unit}]": contact.radius,
         f"profile_x [{unit}]": profile.real,
@@ -51,6 +46,38 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     remarks += [", ".join(f"{name} {value:.12g}" for name, value in given.items())] if given else []
     remarks.append("x and y in the cam's own frame, the follower on +x at cam angle 0")
     return table.numbers([title or "Cam", *remarks], columns, table.short)
+
+
+def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
+    """The table of a barrel cam design; numbers in full precision."""
+    mechanism, unit = design.mechanism, problem.length_unit
+    program, radius = mechanism.program, mechanism.cylinder_radius
+    columns = _program(program, unit, unit) | {
+        "pressure_angle [deg]": np.degrees(np.arctan(np.abs(program.v) / radius)),
+    }
+    for name, curve in (
+        ("centre", mechanism.pitch_curve),
+        ("lower_wall", mechanism.lower_wall),
+        ("upper_wall", mechanism.upper_wall),
+    ):
+        columns |= {f"{name}_x [{unit}]": curve.x, f"{name}_y [{unit}]": curve.y}
+    remarks = [
+        f"barrel cam, cylinder radius {radius:.12g} {unit}, roller radius {mechanism.follower.roller_radius:.12g}, "
+        f"turns {mechanism.rotation}",
+        "x along the circumference of the cylinder on which the roller's middle runs, y along the axis",
+    ]
+    return table.numbers([title or "Barrel cam", *remarks], columns, table.short)
+
+
+def _program(program: ProgramTable, lift: str, rate: str) -> dict[str, ArrayLike]:
+    """The motion program, displacements in ``lift`` and derivatives in ``rate`` by the radian."""
+    return {
+        "cam_angle [deg]": program.angle,
+        f"s [{lift}]": program.s,
+        f"v [{rate}/rad]": program.v,
+        f"a [{rate}/rad^2]": program.a,
+        f"j [{rate}/rad^3]": program.j,
+    }
 
 
 def _radius(design: CamDesign) -> str:

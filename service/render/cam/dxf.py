@@ -14,6 +14,17 @@ CENTRE             cross at the cam's centre, and the mark of cam angle 0
 =================  ==================================================================
 
 Coordinates are the cam's own frame in the problem's unit, which the header names.
+
+A barrel cam is drawn unrolled, x along the circumference on which the roller's middle runs and y along the axis:
+
+============  ==================================================================
+layer         what is on it
+============  ==================================================================
+WALLS         both walls of the groove over one turn, as splines
+PITCH_CURVE   spline of the roller's centres
+FOLLOWER      the roller at cam angle 0
+BLANK         the rectangle that is wound around the cylinder
+============  ==================================================================
 """
 
 from __future__ import annotations
@@ -25,12 +36,13 @@ from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
+from kinematics.cam.unrolled import UnrolledWall
 from service.render.cam.scene import CamScene
 from service.render.page import dxf
-from synthesis.kinds.cam.design import CamDesign
+from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign
+from synthesis.kinds.cam.mechanism import points_of
 from synthesis.kinds.cam.problem import CamProblem
 
-Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 LAYERS = {
@@ -44,6 +56,14 @@ LAYERS = {
     "CENTRE": (7, "CONTINUOUS"),
 }
 """Colour index and line type of each layer."""
+
+BARREL_LAYERS = {
+    "WALLS": (5, "CONTINUOUS"),
+    "PITCH_CURVE": (6, "DASHED"),
+    "FOLLOWER": (30, "CONTINUOUS"),
+    "BLANK": (8, "DASHDOT"),
+}
+"""The same of a barrel cam's drawing."""
 
 ARC_TOLERANCE = 1e-5
 """Distance of the arcs from the points that they replace, as a share of the base radius: 0.4 µm for 40 mm."""
@@ -77,6 +97,25 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     arm = 0.08 * scene.base_radius
     dxf.add_cross(space, 0j, arm, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
+    return dxf.written(document)
+
+
+def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
+    """The drawing of a barrel cam design as a DXF document (R2010)."""
+    mechanism = design.mechanism
+    document = dxf.new_drawing(title or "Barrel cam", problem.length_unit, BARREL_LAYERS)
+    space, turn = document.modelspace(), math.tau * mechanism.cylinder_radius
+    for curve, layer in (
+        (mechanism.lower_wall, "WALLS"),
+        (mechanism.upper_wall, "WALLS"),
+        (mechanism.pitch_curve, "PITCH_CURVE"),
+    ):
+        wall = UnrolledWall(points_of(curve), turn)
+        over = np.append(wall.points, wall.points[0] + turn), np.append(wall.tangents, wall.tangents[0])
+        dxf.add_spline(space, *over, layer)
+    dxf.add_circle(space, points_of(mechanism.pitch_curve)[0], mechanism.follower.roller_radius, "FOLLOWER")
+    low, high = min(mechanism.lower_wall.y), max(mechanism.upper_wall.y)
+    dxf.add_outline(space, [1j * low, turn + 1j * low, turn + 1j * high, 1j * high], "BLANK")
     return dxf.written(document)
 
 

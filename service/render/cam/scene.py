@@ -61,8 +61,7 @@ class CamScene:
     @cached_property
     def pitch_curve(self) -> Complex:
         """Path of the roller's centre around the cam; the profile under a flat face."""
-        curve = self.mechanism.pitch_curve
-        return np.array(curve.x) + 1j * np.array(curve.y)
+        return points_of(self.mechanism.pitch_curve)
 
     @cached_property
     def outer_wall(self) -> Complex | None:

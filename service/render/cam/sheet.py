@@ -1,14 +1,16 @@
-"""The sheet of a cam design: title, drawing and key, tables beside them, diagrams over the cam angle below."""
+"""The sheets of cams: the drawing with its key, tables, diagrams over the cam angle below; a barrel cam unrolled."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from service.render.cam.scene import CamScene
-from service.render.cam.view import STYLES, panel
+from service.render.cam.view import FOOT, MARGIN, STYLES, barrel_box, barrel_panel, panel
 from service.render.checks import checks, outcome, verdict
+from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.blocks import (
     GAP,
@@ -20,10 +22,9 @@ from service.render.page.blocks import (
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import (
     NONE,
-    angle,
     length,
 )
-from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, sheet, stacked
+from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, in_columns, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
@@ -55,81 +56,124 @@ from synthesis.kinds.cam.problem import CamProblem
 DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0
 """Heights of the drawing, of a diagram and of the key below the drawing, pixels."""
 
+BARREL_HEIGHTS = 240.0, 620.0
+"""Least and greatest height of the drawing of a groove, pixels."""
+
+APART = 12.0, 4.0, 8.0
+"""Space above tables below a drawing, above the diagrams below these, and between diagrams, pixels."""
+
 FOLLOWERS = {
     "translating_roller": "translating roller follower",
     "oscillating_roller": "oscillating roller follower",
     "translating_flat": "translating flat-faced follower",
     "oscillating_flat": "oscillating flat-faced follower",
+    "barrel_roller": "roller along the axis",
 }
 
 ROTATIONS = {"ccw": "counter-clockwise", "cw": "clockwise"}
+
+CURVES = {"profile", "outer_wall", "lower_wall", "upper_wall", "pitch_curve", "program"}
+"""Fields of a mechanism that are drawn, and not listed."""
+
+TITLES = {
+    "size": "greatest radius",
+    "max pressure angle rise": "pressure angle, rise",
+    "max pressure angle fall": "pressure angle, fall",
+    "min convex radius": "least convex radius",
+    "min concave radius": "least hollow radius",
+    "min radius": "least radius of the pitch curve",
+    "curvature ratio": "pitch curve : roller radius",
+    "face width": "contact sweeps on the face",
+    "groove width": "width of the groove",
+    "length": "length along the axis",
+    "frequency ratio": "natural frequency : speed",
+}
+"""What quantities are called where the name of the field does not say enough."""
 
 
 def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a complete SVG document."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
+    base = [] if design.mechanism.base_radius is not None else [("base radius", f"{length(scene.base_radius)} {unit}")]
     tables, y = stacked(
         [
-            _dimensions(design, scene, unit),
-            segments_block(design),
+            _dimensions(design, problem, base),
+            _segments(design),
             checks(design.verification, problem),
-            _metrics(design, unit),
-            *([forces_block(design)] if design.metrics.forces else []),
+            *_measured(design, problem),
         ]
     )
     height = max(DRAWING_HEIGHT, y - TOP - KEY_HEIGHT)
     drawn = panel(scene, Box(EDGE, TOP, EDGE + beside(), TOP + height), unit)
     top = max(TOP + height + KEY_HEIGHT, y)
-    joints = [segment.start for segment in design.segments]
-    diagrams, bottom = in_two_columns(_diagrams(design, problem, scene), top, joints)
+    diagrams, bottom = _in_two_columns(_diagrams(design, problem, scene), top, design)
     parts = [*tables, drawn, _key(scene, TOP + height + 18.0), *diagrams]
-    return sheet(title or "Cam", _words(design, unit), _description(design, unit), parts, bottom)
+    return sheet(title or "Cam", _words("Cam", design, unit), _description(design, unit), parts, bottom)
 
 
-def _words(design: CamDesign, unit: str) -> str:
+def barrel_sheet(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
+    """The drawing of a barrel cam design as a complete SVG document."""
+    mechanism, unit = design.mechanism, problem.length_unit
+    shown, (least, greatest) = barrel_box(mechanism), BARREL_HEIGHTS
+    needed = (FULL - 2.0 * MARGIN) / shown.width * shown.height + 2.0 * MARGIN + FOOT
+    bottom = TOP + min(max(needed, least), greatest)
+    drawn = barrel_panel(mechanism, Box(EDGE, TOP, EDGE + FULL, bottom), unit)
+    columns = (
+        [_dimensions(design, problem), _segments(design)],
+        [checks(design.verification, problem)],
+        _measured(design, problem),
+    )
+    room = (FULL - 2.0 * GUTTER) / len(columns)
+    tables, bottom = in_columns(columns, [room] * len(columns), bottom + APART[0])
+    table = mechanism.program
+    diagrams = _motion_diagrams(table, unit, unit)
+    pressure = np.degrees(np.arctan(np.abs(table.v) / mechanism.cylinder_radius))
+    degrees, limit = np.append(np.asarray(table.angle), 360.0), problem.limits.pressure_angle
+    heading = "pressure angle (degrees)"
+    diagrams.append(Diagram(heading, "pressure_angle", degrees, _closed(pressure), DEMANDED, (limit,)))
+    parts, bottom = _in_two_columns(diagrams, bottom + APART[1], design)
+    described = (
+        f"Unrolled groove of a barrel cam, cylinder radius {mechanism.cylinder_radius:.6g} {unit}, "
+        f"turning {ROTATIONS[mechanism.rotation]}; {len(design.segments)} segments. {outcome(design.verification)}"
+    )
+    words = _words("Barrel cam, unrolled,", design, unit)
+    return sheet(title or "Barrel cam", words, described, [drawn, *tables, *parts], bottom)
+
+
+def _words(name: str, design: CamDesign | BarrelCamDesign, unit: str) -> str:
     turns = f"turns {ROTATIONS[design.mechanism.rotation]}"
     follower = FOLLOWERS[design.mechanism.follower.type]
-    return f"Cam with {follower}, {turns}; lengths in {UNITS[unit]}; {verdict(design.verification)}"
+    return f"{name} with {follower}, {turns}; lengths in {UNITS[unit]}; {verdict(design.verification)}"
 
 
 def _description(design: CamDesign, unit: str) -> str:
     mechanism = design.mechanism
-    name, radius = _radius(design)
+    name, radius = (
+        ("base", mechanism.base_radius) if mechanism.prime_radius is None else ("prime", mechanism.prime_radius)
+    )
     return (
-        f"Drawing of a cam with a {FOLLOWERS[mechanism.follower.type]}, {name} {radius:.6g} {unit}, "
+        f"Drawing of a cam with a {FOLLOWERS[mechanism.follower.type]}, {name} radius {radius:.6g} {unit}, "
         f"turning {ROTATIONS[mechanism.rotation]}; {len(design.segments)} segments. {outcome(design.verification)}"
     )
 
 
-def _radius(design: CamDesign) -> tuple[str, float]:
-    mechanism = design.mechanism
-    if mechanism.prime_radius is not None:
-        return "prime radius", mechanism.prime_radius
-    return "base radius", mechanism.base_radius or 0.0
+def _dimensions(
+    design: CamDesign | BarrelCamDesign, problem: CamProblem, derived: Sequence[tuple[str, str]] = ()
+) -> Block:
+    mechanism, follower = design.mechanism, design.mechanism.follower
+    rows = [("follower", FOLLOWERS[follower.type])]
+    rows += entries(mechanism, problem, {"type", "follower", "rotation", *CURVES})
+    rows += derived
+    rows += entries(follower, problem, {"type", "sense"})
+    if isinstance(design, CamDesign) and design.mechanism.follower.sense is not None:
+        outward = "with the cam" if design.mechanism.follower.sense == 1 else "against the cam"
+        rows.append(("arm swings outward", outward))
+    rows.append(("rotation", ROTATIONS[mechanism.rotation]))
+    rows.append(("points of a curve", f"{len(mechanism.pitch_curve.x)}"))
+    return blocks.rows("Dimensions", rows)
 
 
-def _dimensions(design: CamDesign, scene: CamScene, unit: str) -> Block:
-    follower, entries = design.mechanism.follower, [("follower", FOLLOWERS[design.mechanism.follower.type])]
-    if scene.roller:
-        entries.append(("prime radius", length(scene.roller.prime_radius)))
-    entries.append(("base radius", length(scene.base_radius)))
-    for name, value in (
-        ("roller radius", follower.roller_radius),
-        ("offset", follower.offset),
-        ("arm", follower.arm),
-        ("pivot distance", follower.pivot_distance),
-        ("face offset", follower.face_offset),
-    ):
-        if value is not None:
-            entries.append((name, length(value, scene.base_radius)))
-    if follower.sense is not None:
-        entries.append(("arm swings outward", "with the cam" if follower.sense == 1 else "against the cam"))
-    entries.append(("rotation", ROTATIONS[design.mechanism.rotation]))
-    entries.append(("points of the profile", f"{len(scene.profile)}"))
-    return blocks.rows(f"Dimensions ({unit})", entries)
-
-
-def segments_block(design: CamDesign | BarrelCamDesign) -> Block:
+def _segments(design: CamDesign | BarrelCamDesign) -> Block:
     """Every segment with its law, its place and its peaks."""
     shares = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
 
@@ -160,50 +204,25 @@ def segments_block(design: CamDesign | BarrelCamDesign) -> Block:
     return draw
 
 
-def _metrics(design: CamDesign, unit: str) -> Block:
-    found = design.metrics
-    entries = [("greatest radius", f"{length(found.size)} {unit}"), ("lift", length(found.lift))]
-    for name, value in (
-        ("pressure angle, rise", found.max_pressure_angle_rise),
-        ("pressure angle, fall", found.max_pressure_angle_fall),
-    ):
-        if value is not None:
-            entries.append((name, angle(value, 2)))
-    entries.append(("least convex radius", length(found.min_convex_radius, digits=4)))
-    if found.min_concave_radius is not None:
-        entries.append(("least hollow radius", length(found.min_concave_radius, digits=4)))
-    if found.curvature_ratio is not None:
-        entries.append(("pitch curve : roller radius", length(found.curvature_ratio, digits=4)))
-    if found.face_width is not None:
-        entries.append(("contact sweeps on the face", length(found.face_width, digits=4)))
-    peaks = (found.peak_velocity, found.peak_acceleration, found.peak_jerk)
-    entries.append(("peak v, a, j (per radian)", ", ".join(length(value, digits=4) for value in peaks)))
-    optimality = design.optimality
+def _measured(design: CamDesign | BarrelCamDesign, problem: CamProblem) -> list[Block]:
+    """What was measured, how near the best motion the program comes, and forces where the problem has a load."""
+    metrics, optimality = design.metrics, design.optimality
     gap = NONE if optimality.gap is None else f"{100.0 * optimality.gap:.3g} %"
-    entries.append((f"{clean(optimality.criterion.replace('_', ' '))}, above its bound", gap))
-    return blocks.rows("Metrics", entries)
+    rows = entries(metrics, problem, {"forces"}, TITLES)
+    rows.append((f"{clean(optimality.criterion.replace('_', ' '))}, above its bound", gap))
+    measured = [blocks.rows("Metrics", rows)]
+    if metrics.forces is not None:
+        # The warning is a sentence, which no row holds; the report and the JSON have it.
+        measured.append(blocks.rows("Forces", entries(metrics.forces, problem, {"warning"}, TITLES)))
+    return measured
 
 
-def forces_block(design: CamDesign | BarrelCamDesign) -> Block:
-    """Forces and torque of a design whose problem has a load."""
-    found = design.metrics.forces
-    assert found is not None, "only drawn where the problem has a load"
-    entries = [
-        ("preload", length(found.preload, digits=4)),
-        (
-            "contact force",
-            f"{length(found.min_contact_force, digits=4)} to {length(found.max_contact_force, digits=4)}",
-        ),
-        ("camshaft torque", f"{length(found.min_torque, digits=4)} to {length(found.max_torque, digits=4)}"),
-        ("natural frequency", f"{length(found.natural_frequency, digits=4)} rad/s"),
-        ("natural frequency : speed", length(found.frequency_ratio, digits=4)),
-    ]
-    return blocks.rows("Forces", entries)
-
-
-def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tuple[list[Element], float]:
-    """Diagrams side by side below each other, and the y below them."""
-    wide, step = 0.5 * (FULL - GUTTER), DIAGRAM_HEIGHT + 8.0
+def _in_two_columns(
+    shown: list[Diagram], top: float, design: CamDesign | BarrelCamDesign
+) -> tuple[list[Element], float]:
+    """Diagrams side by side below each other, the joints of the segments marked, and the y below them."""
+    joints = [segment.start for segment in design.segments]
+    wide, step = 0.5 * (FULL - GUTTER), DIAGRAM_HEIGHT + APART[2]
     parts = []
     for k, diagram in enumerate(shown):
         x, low = EDGE + (k % 2) * (wide + GUTTER), top + (k // 2) * step
@@ -211,20 +230,20 @@ def in_two_columns(shown: list[Diagram], top: float, joints: list[float]) -> tup
     return parts, top + math.ceil(len(shown) / 2) * step
 
 
-def closed(values: object) -> np.ndarray:
+def _closed(values: object) -> np.ndarray:
     """Values over a turn with the first again at its end."""
-    found = np.asarray(values, dtype=np.float64)
-    return np.append(found, found[0])
+    over_turn = np.asarray(values, dtype=np.float64)
+    return np.append(over_turn, over_turn[0])
 
 
-def motion_diagrams(table: ProgramTable, lift: str, rate: str) -> list[Diagram]:
+def _motion_diagrams(table: ProgramTable, lift: str, rate: str) -> list[Diagram]:
     """Displacement and its derivatives, as the program's table has them."""
     degrees = np.append(np.asarray(table.angle), 360.0)
     return [
-        Diagram(f"displacement s ({lift})", "s", degrees, closed(table.s), INPUT),
-        Diagram(f"velocity v ({rate}/rad)", "v", degrees, closed(table.v), OUTPUT),
-        Diagram(f"acceleration a ({rate}/rad²)", "a", degrees, closed(table.a), COUPLER),
-        Diagram(f"jerk j ({rate}/rad³)", "j", degrees, closed(table.j), CURVE),
+        Diagram(f"displacement s ({lift})", "s", degrees, _closed(table.s), INPUT),
+        Diagram(f"velocity v ({rate}/rad)", "v", degrees, _closed(table.v), OUTPUT),
+        Diagram(f"acceleration a ({rate}/rad²)", "a", degrees, _closed(table.a), COUPLER),
+        Diagram(f"jerk j ({rate}/rad³)", "j", degrees, _closed(table.j), CURVE),
     ]
 
 
@@ -233,15 +252,15 @@ def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[D
     table, unit = design.mechanism.program, problem.length_unit
     lift, rate = ("degrees", "rad") if scene.oscillating else (unit, unit)
     degrees = np.append(scene.angle, 360.0)
-    shown = motion_diagrams(table, lift, rate)
+    shown = _motion_diagrams(table, lift, rate)
     contact = scene.contact
     pressure = np.degrees(contact.pressure_angle)
     if scene.roller or design.mechanism.follower.face_offset:
         limits = (problem.limits.pressure_angle,) if scene.roller else ()
         words = "pressure angle (degrees), measured on the profile"
-        shown.append(Diagram(words, "pressure_angle", degrees, closed(pressure), DEMANDED, limits))
+        shown.append(Diagram(words, "pressure_angle", degrees, _closed(pressure), DEMANDED, limits))
     with np.errstate(divide="ignore"):
-        curvature = closed(1.0 / contact.radius)
+        curvature = _closed(1.0 / contact.radius)
     words = f"curvature of the profile (1/{unit}), convex positive"
     shown.append(Diagram(words, "curvature", degrees, curvature, INK))
     return shown

@@ -1,4 +1,4 @@
-"""The panel of a cam drawing: profile, pitch curve, prime and base circle, follower and its envelope, cam angles.
+"""The panels of cam drawings: profile, pitch curve, prime and base circle, follower and its envelope, cam angles.
 
 Line styles carry the meaning without colours too: profile heavy, pitch curve dashed, prime circle dotted, base circle
 dash-dotted, follower bold, its other positions thin. Parts are marked ``data-part``.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from service.render.cam.scene import CamScene
 from service.render.page.labels import Labels
 from service.render.page.numbers import angle
+from service.render.page.sheet import framed
 from service.render.page.svg import (
     Box,
     Element,
@@ -38,10 +40,12 @@ from service.render.page.symbols import (
     bearing,
     scale_bar,
 )
+from synthesis.kinds.cam.design import BarrelCamMechanism, CamCurve
+from synthesis.kinds.cam.mechanism import points_of
 
 Complex = NDArray[np.complex128]
 
-MARGIN, FOOT = 34.0, 22.0
+MARGIN, FOOT = 34.0, 24.0
 """Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
 
 ENVELOPE = 36
@@ -49,6 +53,9 @@ ENVELOPE = 36
 
 STATIONS = 30
 """Degrees between the cam angles that are written around the cam."""
+
+STATION, STATION_TEXT = 1.8, 9.5
+"""Radius of the points at these cam angles, and font size of the angles, pixels."""
 
 STEM = 0.8
 """Length of a translating follower's stem beyond its roller or face, as a share of the base radius."""
@@ -85,9 +92,7 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
     """The drawing in a box of the sheet."""
     viewport = Viewport.fit(shown_box(scene), box, MARGIN, FOOT)
     labels = Labels(box)
-    group = element("g", data_panel="cam", fill="none")
-    frame = {"x": box.left, "y": box.low, "width": box.width, "height": box.height}
-    group.add(element("rect", **frame, fill="#fff", stroke=PALE, stroke_width=1.0))
+    group = element("g", framed(box, "cam"), fill="none")
     group.add(_envelope(scene, viewport))
     centre = viewport.point(0j)
     group.add(circle(centre, viewport.scale * scene.base_radius, data_part="base circle", **STYLES["base circle"]))
@@ -99,7 +104,7 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
     group.add(_closed(scene.profile, viewport, "profile"))
     if scene.outer_wall is not None:
         group.add(_closed(scene.outer_wall, viewport, "outer wall"))
-    group.add(_stations(scene, viewport, labels))
+    group.add(_stations(scene.mechanism.pitch_curve, viewport, labels, centre))
     group.add(_follower(scene, viewport))
     symbol, _ = bearing(centre, 0.8)
     group.add(
@@ -129,24 +134,25 @@ def _envelope(scene: CamScene, viewport: Viewport) -> Element:
     return group
 
 
-def _stations(scene: CamScene, viewport: Viewport, labels: Labels) -> Element:
-    """Ticks on the pitch curve, or on the profile, where the follower stands at round cam angles, and those angles."""
+def _stations(curve: CamCurve, viewport: Viewport, labels: Labels, centre: complex | None) -> Element:
+    """Points on a curve where the follower stands at round cam angles, and those angles: away from the cam's centre.
+
+    Above the points where there is no centre, on a cam that is unrolled.
+    """
     group = element("g", data_part="cam angles")
-    curve = scene.mechanism.pitch_curve
+    for at, degrees in _at_stations(curve, viewport):
+        group.add(circle(at, STATION, fill=CURVE))
+        away = 1j if centre is None else at - centre
+        words, style = angle(degrees, 1), {"fill": GREY}
+        labels.place(at, words, STATION_TEXT, clearance=4.0, away=away, optional=True, style=style)
+    return group
+
+
+def _at_stations(curve: CamCurve, viewport: Viewport) -> Iterator[tuple[complex, float]]:
+    """Points of a curve on the sheet at round cam angles, and these."""
     for degrees in range(0, 360, STATIONS):
         k = int(np.argmin(np.abs(np.array(curve.angle) - degrees)))
-        at = viewport.point(complex(curve.x[k], curve.y[k]))
-        group.add(circle(at, 1.8, fill=CURVE))
-        labels.place(
-            at,
-            angle(degrees, 1),
-            9.5,
-            clearance=4.0,
-            away=at - viewport.point(0j),
-            optional=True,
-            style={"fill": GREY},
-        )
-    return group
+        yield viewport.point(complex(curve.x[k], curve.y[k])), float(degrees)
 
 
 def _follower(scene: CamScene, viewport: Viewport) -> Element:
@@ -199,3 +205,35 @@ def _rotation(scene: CamScene, viewport: Viewport) -> Element:
     group.add(path([points[:-1]], stroke=OUTPUT, stroke_width=1.6), arrow(back, tip, 4.0, OUTPUT))
     middle = centre + (radius + 11.0) * cmath.exp(1j * (start + 0.5 * turn))
     return group.add(text(middle.real, middle.imag, "turns", 9.5, text_anchor="middle", fill=INK))
+
+
+def barrel_panel(mechanism: BarrelCamMechanism, box: Box, unit: str) -> Element:
+    """The unrolled groove: walls heavy, pitch curve dashed, roller bold at cam angle 0 and thin at other stations."""
+    shown, roller, turn = barrel_box(mechanism), mechanism.follower.roller_radius, math.tau * mechanism.cylinder_radius
+    viewport = Viewport.fit(shown, box, MARGIN, FOOT)
+    labels = Labels(box)
+    group = element("g", framed(box, "barrel cam"), fill="none")
+    for x in (0.0, turn):
+        ends = viewport.point(complex(x, shown.low)), viewport.point(complex(x, shown.high))
+        group.add(line(*ends, data_part="seam", stroke=GREY, stroke_width=1.0, stroke_dasharray="11 3 2 3"))
+    stations = _stations(mechanism.pitch_curve, viewport, labels, None)
+    rollers = element("g", data_part="other positions", **STYLES["other positions"])
+    group.add(
+        rollers.add(*(circle(at, viewport.scale * roller) for at, _ in _at_stations(mechanism.pitch_curve, viewport)))
+    )
+    for part, curve, style in (
+        ("lower wall", mechanism.lower_wall, "profile"),
+        ("upper wall", mechanism.upper_wall, "profile"),
+        ("pitch curve", mechanism.pitch_curve, "pitch curve"),
+    ):
+        points = points_of(curve)
+        group.add(path(viewport.shown(np.append(points, points[0] + turn)), data_part=part, **STYLES[style]))
+    start = viewport.point(complex(points_of(mechanism.pitch_curve)[0]))
+    group.add(circle(start, viewport.scale * roller, data_part="follower", **STYLES["follower"]))
+    return group.add(stations, scale_bar(viewport, unit)[0], *labels.drawn)
+
+
+def barrel_box(mechanism: BarrelCamMechanism) -> Box:
+    """What the panel of a barrel cam must show: one turn of the groove, with the roller at both ends."""
+    roller, turn = mechanism.follower.roller_radius, math.tau * mechanism.cylinder_radius
+    return Box(-roller, min(mechanism.lower_wall.y), turn + roller, max(mechanism.upper_wall.y))

@@ -62,11 +62,11 @@ def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
         first.append(first[-1] + len(stage.pairs))
         for k, pair in enumerate(stage.pairs):
             name = f"STAGE_{number + 1}_PAIR_{k + 1}"
-            one, other = (_gear(mechanism, z) for z in (pair.driver, pair.driven))
+            driver, driven = (_gear(mechanism, z) for z in (pair.driver, pair.driven))
             slot = first[number] + k
-            gears.append(BoxGear(name, number, number, slot, one, complex(at[number]), 0.0))
-            turned = facing(one, 0.0, other, 0.0)
-            gears.append(BoxGear(name, number, number + 1, slot, other, complex(at[number + 1]), turned))
+            gears.append(BoxGear(name, number, number, slot, driver, complex(at[number]), 0.0))
+            turned = facing(driver, 0.0, driven, 0.0)
+            gears.append(BoxGear(name, number, number + 1, slot, driven, complex(at[number + 1]), turned))
     count = len(mechanism.stages)
     names = ["input", *(f"shaft {k}" for k in range(2, count + 1)), "spindle"]
     shafts = [

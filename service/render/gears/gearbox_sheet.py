@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from service.render.checks import checks, verdict
-from service.render.gears.marks import COLOURS, PAPER, panel_of
+from service.render.gears.marks import COLOURS, PAPER
 from service.render.page import blocks
 from service.render.page.numbers import length
-from service.render.page.sheet import EDGE, TOP, beside, sheet, stacked
+from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
@@ -130,7 +130,7 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
         across = panel.left + 70.0 + (panel.width - 170.0) * shaft / (len(shafts) - 1)
         return complex(across, panel.high - 30.0 - (panel.height - 80.0) * (math.log(speed) - low) / span)
 
-    group = panel_of(panel, "ray_diagram")
+    group = framed(panel, "ray_diagram", PAPER)
     for speed in shafts[-1]:
         end = point(len(shafts) - 1, speed)
         group.add(line(complex(point(0, speed).real, end.imag), end, stroke=PALE, stroke_width=0.7))

@@ -1,10 +1,10 @@
-"""What the drawings of gears have in common: the panel, the two circles of a gear, framed labels, colours."""
+"""What the drawings of gears have in common: the two circles of a gear, framed labels, colours."""
 
 from __future__ import annotations
 
 from kinematics.gear.teeth import Gear
 from service.render.page.svg import Box, Element, Viewport, circle, element, text, text_width
-from service.render.page.symbols import COUPLER, CURVE, INPUT, OUTPUT, PALE
+from service.render.page.symbols import COUPLER, CURVE, INPUT, OUTPUT
 
 PAPER = "#fbfcfd"
 """Of a panel."""
@@ -17,12 +17,6 @@ LABEL = 11.5
 
 HALF_HEIGHT = 8.0
 """Of a label's frame, pixels."""
-
-
-def panel_of(box: Box, name: str) -> Element:
-    """An empty panel."""
-    frame = {"x": box.left, "y": box.low, "width": box.width, "height": box.height}
-    return element("g", element("rect", **frame, fill=PAPER, stroke=PALE), data_panel=name)
 
 
 def circles(

@@ -7,14 +7,14 @@ import math
 from kinematics.gear.teeth import Gear
 
 
-def facing(one: Gear, tooth_at: float, other: Gear, ahead: float) -> float:
-    """Angle of a tooth of ``other`` so that a space of it faces the tooth of ``one`` nearest to their contact.
+def facing(gear: Gear, tooth_at: float, mate: Gear, ahead: float) -> float:
+    """Angle of a tooth of ``mate`` so that a space of it faces the tooth of ``gear`` nearest to their contact.
 
-    That tooth of ``one`` is some way past the contact on the pitch circle; the space of ``other`` is as far past it:
-    the other way round for external gears. ``ahead`` is the direction from the centre of ``one`` to the contact; with
+    That tooth of ``gear`` is some way past the contact on the pitch circle; the space of ``mate`` is as far past it:
+    the other way round for external gears. ``ahead`` is the direction from the centre of ``gear`` to the contact; with
     internal teeth both see it the same way.
     """
-    past = math.remainder(tooth_at - ahead, 2.0 * math.pi / one.teeth) * one.pitch_radius / other.pitch_radius
-    if one.internal or other.internal:
-        return ahead + past + math.pi / other.teeth
-    return ahead + math.pi - past + math.pi / other.teeth
+    past = math.remainder(tooth_at - ahead, 2.0 * math.pi / gear.teeth) * gear.pitch_radius / mate.pitch_radius
+    if gear.internal or mate.internal:
+        return ahead + past + math.pi / mate.teeth
+    return ahead + math.pi - past + math.pi / mate.teeth

@@ -47,10 +47,10 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlacedPlanetar
     }
     centres = {planet: mechanism.module * pin for planet, pin in placed.items()}
     first = _first_copies(arrangement, gears, centres)
-    found = []
+    layout = []
     for place in arrangement.gears:
         if place.body not in arrangement.carriers:
-            found.append(
+            layout.append(
                 PlacedPlanetaryGear(place.name, place.body, 0, place.planes, gears[place.name], 0j, first[place.name])
             )
             continue
@@ -60,32 +60,34 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlacedPlanetar
             centre = centres[place.body] * cmath.exp(1j * turn)
             turned = _turned(arrangement, gears, centres, first, place.body, turn)
             at = first[place.name] + turned
-            found.append(PlacedPlanetaryGear(place.name, place.body, copy, place.planes, gears[place.name], centre, at))
-    return found
+            layout.append(
+                PlacedPlanetaryGear(place.name, place.body, copy, place.planes, gears[place.name], centre, at)
+            )
+    return layout
 
 
 def _first_copies(arrangement: Arrangement, gears: dict[str, Gear], centres: dict[str, complex]) -> dict[str, float]:
     """Angles of a tooth of every gear, with the first copies of the planets in mesh."""
-    found: dict[str, float] = {}
+    turned: dict[str, float] = {}
     for start in arrangement.gear_names:
-        if start in found:
+        if start in turned:
             continue
-        found[start] = 0.0
+        turned[start] = 0.0
         waiting = [start]
         while waiting:
             known = waiting.pop()
             for mate in arrangement.meshing(known):
-                if mate not in found:
+                if mate not in turned:
                     ahead = _direction(arrangement, centres, known, mate)
-                    found[mate] = facing(gears[known], found[known], gears[mate], ahead)
+                    turned[mate] = facing(gears[known], turned[known], gears[mate], ahead)
                     waiting.append(mate)
-    return found
+    return turned
 
 
-def _direction(arrangement: Arrangement, centres: dict[str, complex], one: str, other: str) -> float:
-    """Angle from the centre of ``one`` to its contact with ``other``."""
-    here, there = (centres.get(arrangement.places[gear].body, 0j) for gear in (one, other))
-    if arrangement.places[one].internal or arrangement.places[other].internal:
+def _direction(arrangement: Arrangement, centres: dict[str, complex], own: str, mate: str) -> float:
+    """Angle from the centre of ``own`` to its contact with ``mate``."""
+    here, there = (centres.get(arrangement.places[gear].body, 0j) for gear in (own, mate))
+    if arrangement.places[own].internal or arrangement.places[mate].internal:
         return cmath.phase(here or there)
     return cmath.phase(there - here)
 

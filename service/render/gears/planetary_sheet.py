@@ -7,11 +7,12 @@ import math
 
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render.checks import checks, verdict
-from service.render.gears.marks import circles, label, label_box, panel_of
+from service.render.gears.marks import PAPER, circles, label, label_box
 from service.render.gears.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
+from service.render.outline import entries
 from service.render.page import blocks
-from service.render.page.numbers import length, small
-from service.render.page.sheet import EDGE, TOP, beside, sheet, stacked
+from service.render.page.numbers import length
+from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
@@ -31,6 +32,9 @@ from service.render.page.symbols import (
 )
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+
+LARGEST = "largest pitch diameter"
+"""What the size of a planetary train is."""
 
 MARGIN = 24.0
 """Room in a panel around what is shown, and more of it below, pixels."""
@@ -73,7 +77,7 @@ def _colour(placed: PlacedPlanetaryGear, design: PlanetaryDesign) -> str:
 
 def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlacedPlanetaryGear], name: str, unit: str) -> Element:
     panel = view.panel
-    group = panel_of(panel, name or "main")
+    group = framed(panel, name or "main", PAPER)
     if name:
         group.add(text(panel.left + 10.0, panel.low + 18.0, name, 11.0, fill=GREY))
     for placed in sorted(gears, key=lambda p: -p.gear.pitch_radius):
@@ -128,14 +132,5 @@ def _tables(design: PlanetaryDesign, problem: PlanetaryProblem) -> list[blocks.B
         ),
         blocks.rows("Speeds over the input's", speeds),
         checks(design.verification, problem),
-        blocks.rows(
-            "Metrics",
-            [
-                ("relative error", small(metrics.error)),
-                ("largest pitch diameter", f"{length(metrics.size)} {unit}"),
-                ("efficiency", "locks itself" if metrics.self_locking else f"{100.0 * metrics.efficiency:.2f} %"),
-                ("rolling power over input", length(metrics.rolling_power, digits=4)),
-                ("power circulates", "yes" if metrics.circulating_power else "no"),
-            ],
-        ),
+        blocks.rows("Metrics", entries(metrics, problem, {"speeds"}, {"error": "relative error", "size": LARGEST})),
     ]

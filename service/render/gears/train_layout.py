@@ -44,7 +44,7 @@ def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
     train = driven_train(mechanism)
     distances = train.centre_distances
     coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
-    found: list[PlacedGear] = []
+    placed: list[PlacedGear] = []
     shaft = 0j
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True)):
         ahead = _direction(number, len(train.stages), coaxial)
@@ -56,10 +56,10 @@ def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
             if previous is not None:
                 centre += ahead * (previous.pitch_radius + gear.pitch_radius)
                 tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
-            found.append(PlacedGear(number + 1, role, gear, centre, tooth_at, speed))
+            placed.append(PlacedGear(number + 1, role, gear, centre, tooth_at, speed))
             previous = gear
         shaft = centre
-    return found
+    return placed
 
 
 def _direction(number: int, stages: int, coaxial: bool) -> complex:

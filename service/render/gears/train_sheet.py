@@ -7,15 +7,16 @@ import math
 import numpy as np
 
 from service.render.checks import checks, verdict
-from service.render.gears.marks import COLOURS, circles, label, label_box, panel_of
+from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box
 from service.render.gears.train_layout import (
     PlacedGear,
     box_around,
     placed_gears,
 )
+from service.render.outline import entries
 from service.render.page import blocks
-from service.render.page.numbers import length, small
-from service.render.page.sheet import beside, fitted, sheet, stacked
+from service.render.page.numbers import length
+from service.render.page.sheet import beside, fitted, framed, sheet, stacked
 from service.render.page.svg import (
     Box,
     Element,
@@ -72,7 +73,7 @@ def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
 
 
 def _drawing(gears: list[PlacedGear], view: Viewport, unit: str) -> Element:
-    group = panel_of(view.panel, "main")
+    group = framed(view.panel, "main", PAPER)
     for placed in gears:
         marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
         group.add(circles(placed.gear, placed.centre, view, COLOURS[placed.stage - 1], "tip", 0.06, **marks))
@@ -139,32 +140,22 @@ def _label(placed: PlacedGear, view: Viewport, taken: list[Box]) -> Element:
 
 def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[PlacedGear]) -> list[blocks.Block]:
     unit, metrics = problem.length_unit, design.metrics
-    found = []
+    tables = []
     for number, stage in enumerate(design.mechanism.stages, 1):
-        entries = [
+        rows = [
             (placed.role, f"{placed.gear.teeth} teeth, ⌀ {length(2.0 * placed.pitch_radius)} {unit}")
             for placed in gears
             if placed.stage == number
         ]
         meshes = [mesh for mesh in metrics.meshes if mesh.stage == number]
-        entries += [
+        rows += [
             ("module", f"{length(stage.module)} {unit}"),
             ("shaft distance", f"{length(metrics.centre_distances[number - 1])} {unit}"),
             ("contact ratio", ", ".join(f"{mesh.contact_ratio:.3f}" for mesh in meshes)),
         ]
         if any(mesh.interferes for mesh in meshes):
-            entries.append(("interference", "yes; see suggested shift"))
-        found.append(blocks.rows(f"Stage {number}", entries))
-    found.append(checks(design.verification, problem))
-    found.append(
-        blocks.rows(
-            "Metrics",
-            [
-                ("relative error", small(metrics.relative_error)),
-                ("total teeth", f"{metrics.total_teeth}"),
-                ("largest stage ratio", length(metrics.largest_stage_ratio)),
-                ("hunting teeth", "yes" if metrics.hunting_tooth else "no"),
-            ],
-        )
-    )
-    return found
+            rows.append(("interference", "yes; see suggested shift"))
+        tables.append(blocks.rows(f"Stage {number}", rows))
+    tables.append(checks(design.verification, problem))
+    tables.append(blocks.rows("Metrics", entries(metrics, problem, {"error", "centre_distances"})))
+    return tables

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from service.render.page.blocks import Block
@@ -42,10 +42,12 @@ class Content:
     described : str
         What the picture shows, for a reader who does not see it.
     picture : Picture
-    metrics : sequence of (str, str)
-        What was measured.
     tables : sequence of Block
         Between dimensions and checks: targets, limits, dwells, the line.
+    left_out : set of str
+        Fields of the metrics that the words have already, or that mean nothing to this kind.
+    titles : mapping of str to str
+        What fields of the metrics are called where their own names do not say enough.
     standing : str
         Where the linkage stands in its reference configuration.
     more_dimensions : sequence of (str, str)
@@ -64,8 +66,9 @@ class Content:
     words: str
     described: str
     picture: Picture
-    metrics: Rows
     tables: Sequence[Block] = ()
+    left_out: Set[str] = frozenset()
+    titles: Mapping[str, str] = field(default_factory=dict)
     standing: str = "at the first target"
     more_dimensions: Rows = ()
     hidden: Set[str] = frozenset()

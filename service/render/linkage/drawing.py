@@ -20,7 +20,7 @@ from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Slide
 from service.render.linkage.motion import DrivenLinkage, Real
 from service.render.page.labels import Labels
-from service.render.page.sheet import fitted
+from service.render.page.sheet import clipping, fitted
 from service.render.page.svg import (
     Box,
     Element,
@@ -195,25 +195,10 @@ class PlanarPicture:
         return [drawing(self.scene, view, self.unit).add(*self.overlay(view))], view.panel.high
 
 
-def framed(panel: Box) -> Element:
-    """The empty panel of a drawing; what is added to it and lies beyond is cut off."""
-    return element(
-        "svg",
-        element("rect", x=panel.left, y=panel.low, width=panel.width, height=panel.height, fill="#fff", stroke=PALE),
-        x=panel.left,
-        y=panel.low,
-        width=panel.width,
-        height=panel.height,
-        viewBox=" ".join(f"{v:g}" for v in (panel.left, panel.low, panel.width, panel.height)),
-        overflow="hidden",
-        data_view="main",
-    )
-
-
 def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
     """The linkage at its inputs in a panel of the sheet, with labels and a scale bar."""
     panel = view.panel
-    group = framed(panel)
+    group = clipping(panel, "main")
     labels = Labels(panel.grown(-3.0))
     if shown.target is not None:
         demanded = path(

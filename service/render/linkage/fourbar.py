@@ -204,7 +204,7 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
     first = demands[0]
     spread = max(abs(d.point - first.point) for d in demands)
     size = spread if spread > 0.0 else float(driven.linkage.coupler)
-    found = []
+    configurations = []
     for target in design.targets:
         if not (0 <= target.index < len(demands) and math.isfinite(target.at)):
             continue
@@ -224,8 +224,8 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
             )
             choices.append((miss > MEETS, not configuration.own, configuration))
         if choices:
-            found.append(min(choices, key=lambda choice: choice[:2])[2])
-    return found
+            configurations.append(min(choices, key=lambda choice: choice[:2])[2])
+    return configurations
 
 
 def _assembled(
@@ -272,11 +272,11 @@ def details(scene: Scene, whole: Box) -> list[Box]:
             (SMALL_PART, [scene.o4, *(c.b for c in scene.configurations)]),
         ]
     groups.append((SMALL_PART, [scene.o2, scene.o4]))
-    found: list[Box] = []
+    parts: list[Box] = []
     for share, points in groups:
         box = Box.around(np.array(points))
         small = 0.0 < box.diagonal < share * whole.diagonal
-        seen = any(held.holds(box.centre) and box.diagonal > SMALL_PART * held.diagonal for held in found)
-        if small and not seen and len(found) < 2:
-            found.append(box)
-    return found
+        seen = any(held.holds(box.centre) and box.diagonal > SMALL_PART * held.diagonal for held in parts)
+        if small and not seen and len(parts) < 2:
+            parts.append(box)
+    return parts

@@ -13,8 +13,8 @@ import numpy as np
 
 from service.render.linkage.fourbar import Configuration, Scene
 from service.render.page.labels import Labels
-from service.render.page.svg import Box, Element, Points, Viewport, circle, element, path
-from service.render.page.symbols import PALE
+from service.render.page.sheet import clipping
+from service.render.page.svg import Box, Element, Points, Viewport, circle, path
 
 FRAME_REACH = 12.0
 """Marks this near to the frame of a detail, pixels, are left to the detail."""
@@ -57,7 +57,13 @@ class Canvas:
     def __init__(self, scene: Scene, viewport: Viewport, name: str, details: Sequence[Detail]) -> None:
         self.scene, self.viewport = scene, viewport
         self.labels = Labels(viewport.panel.grown(-3.0))
-        self.root = _root(viewport, name)
+        self.root = clipping(
+            viewport.panel,
+            name,
+            data_scale=repr(viewport.scale),
+            data_centre=f"{viewport.centre.real!r} {viewport.centre.imag!r}",
+            data_middle=f"{viewport.middle.real!r} {viewport.middle.imag!r}",
+        )
         self.first = next((c for c in scene.configurations if c.index == 0), None)
         self.frames = [(detail, self._frame_of(detail)) for detail in details]
         self.size = self._link_size()
@@ -110,22 +116,3 @@ class Canvas:
         at = self.at(detail.box.centre)
         half = [max(9.0, 0.5 * self.viewport.scale * side + 8.0) for side in (detail.box.width, detail.box.height)]
         return Box(at.real - half[0], at.imag - half[1], at.real + half[0], at.imag + half[1])
-
-
-def _root(viewport: Viewport, name: str) -> Element:
-    box = viewport.panel
-    border = {"x": box.left + 0.5, "y": box.low + 0.5, "width": box.width - 1.0, "height": box.height - 1.0}
-    return element(
-        "svg",
-        element("rect", fill="#fff", stroke=PALE, **border),
-        x=box.left,
-        y=box.low,
-        width=box.width,
-        height=box.height,
-        viewBox=" ".join(f"{v:g}" for v in (box.left, box.low, box.width, box.height)),
-        overflow="hidden",
-        data_view=name,
-        data_scale=repr(viewport.scale),
-        data_centre=f"{viewport.centre.real!r} {viewport.centre.imag!r}",
-        data_middle=f"{viewport.middle.real!r} {viewport.middle.imag!r}",
-    )

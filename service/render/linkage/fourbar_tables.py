@@ -1,4 +1,4 @@
-"""The written part of a fourbar's sheet: dimensions, targets, checks and metrics in blocks of rows."""
+"""The written part of a fourbar's sheet: dimensions and targets in blocks of rows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,6 @@ from service.render.page.numbers import (
 )
 from service.render.page.svg import (
     Element,
-    clean,
     element,
     line,
     text,
@@ -36,7 +35,6 @@ from service.render.page.symbols import (
     INPUT,
     OUTPUT,
 )
-from synthesis.kinds.path.design import PathMetrics
 from synthesis.model.linkage_answer import LinkageDesign
 
 GRASHOF = {
@@ -90,7 +88,7 @@ def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
 def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Demanded positions with the input angle that meets each, and how exactly."""
     shares = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
-    found = {target.index: target for target in design.targets}
+    met = {target.index: target for target in design.targets}
     assembled = {c.index: c for c in scene.configurations}
     size = float(scene.linkage.ground + scene.linkage.coupler)
     rows = []
@@ -98,7 +96,7 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
         k = demand.index
         place = (length(v, size, most=9) for v in (demand.point.real, demand.point.imag))
         cells = [f"{k + 1}", *place, "" if demand.angle is None else angle(math.degrees(demand.angle), 2)]
-        target = found.get(k)
+        target = met.get(k)
         if target is None:
             cells += [NONE, NONE]
         else:
@@ -132,34 +130,6 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
         return block, y + GAP
 
     return draw
-
-
-def metrics(design: LinkageDesign, unit: str) -> list[tuple[str, str]]:
-    """Measured properties of a linkage that guides a body or a point."""
-    found = design.metrics
-    rows = [] if found.grashof is None else [("type", f"{GRASHOF[found.grashof]} ({clean(found.barker or '')})")]
-    rows += [
-        ("min transmission angle", angle(found.min_transmission_angle, 2)),
-        *([] if found.input_rotation is None else [("input rotation", angle(found.input_rotation, 2))]),
-        *([] if found.input_travel is None else [("input travel", f"{length(found.input_travel, digits=4)} {unit}")]),
-        ("input turns fully", _yes(found.full_rotation)),
-        ("one branch, in order", f"{_yes(found.same_branch)}, {_yes(found.visits_in_order)}"),
-        ("longest : shortest link", length(found.link_ratio, digits=4)),
-        ("size", f"{length(found.size, digits=4)} {unit}"),
-        ("quality", length(found.quality, digits=3)),
-    ]
-    if isinstance(found, PathMetrics):
-        rows += [
-            ("rms distance", f"{length(found.rms_distance, digits=4)} {unit}"),
-            ("largest distance", f"{length(found.max_distance, digits=4)} {unit}"),
-        ]
-        if found.curve_distance is not None:
-            rows.append(("curve to target, at most", f"{length(found.curve_distance, digits=4)} {unit}"))
-    return rows
-
-
-def _yes(value: bool) -> str:
-    return "yes" if value else "no"
 
 
 def _swatch(link: str, left: float, y: float) -> Element:

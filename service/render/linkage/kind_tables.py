@@ -93,7 +93,7 @@ BASES = {
 
 def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage: DrivenLinkage) -> Content:
     """A body that is guided, or a point: at the targets; along a curve to be drawn whole, at its first and last."""
-    unit, measured = problem.length_unit, fourbar_tables.metrics(design, problem.length_unit)
+    unit = problem.length_unit
     if isinstance(design.mechanism, FourbarMechanism):
         fourbar = fourbar_scene(design, problem, linkage)
         grashof = design.metrics.grashof
@@ -103,7 +103,6 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
             f"Fourbar linkage, {design.mechanism.assembly} assembly{kind}",
             description(design, unit, fourbar),
             FourbarPicture(fourbar, unit),
-            measured,
             [fourbar_tables.targets(design, fourbar, unit)],
             dimensions=fourbar_tables.dimensions(design, fourbar, unit),
         )
@@ -122,17 +121,12 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
         )
         for target in design.targets
     ]
-    least = [
-        (f"transmission at {link.replace('_', ' ')}", angle(value, 2))
-        for link, value in design.metrics.transmission_angles.items()
-    ]
     name = NAMES[design.mechanism.type]
     return Content(
         name,
         name,
         f"a linkage at {len(inputs)} targets",
         PlanarPicture(scene, unit, heights=(460.0, 860.0)),
-        [*least, *measured],
         [blocks.rows("Targets", _first(met))],
     )
 
@@ -143,18 +137,9 @@ def _first(rows: list[tuple[str, str]]) -> list[tuple[str, str]]:
     return [*rows[:MAX_ROWS], (f"and {more} more", "")] if more > 0 else rows
 
 
-def _size_and_quality(metrics: Any, unit: str) -> list[tuple[str, str]]:
-    """What every linkage is compared by."""
-    return [
-        ("longest : shortest link", length(metrics.link_ratio, digits=4)),
-        ("size", f"{length(metrics.size, digits=4)} {unit}"),
-        ("quality", length(metrics.quality, digits=3)),
-    ]
-
-
 def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLinkage) -> Content:
     """A function generator: at its targets, the range of the input as an arc, its structural error or output."""
-    unit, metrics, error, dials = problem.length_unit, design.metrics, design.structural_error, design.dials
+    unit, error, dials = problem.length_unit, design.structural_error, design.dials
     slides = error.unit == "length"
     chosen = np.unique(np.linspace(0, len(design.targets) - 1, min(MAX_ROWS, len(design.targets))).astype(int))
     scene = Scene(linkage, linkage.targets(design)[chosen], [], hidden={"P"})
@@ -186,15 +171,6 @@ def function(design: FunctionDesign, problem: FunctionProblem, linkage: DrivenLi
         name,
         f"a linkage at {len(design.targets)} targets; structural error at most {off(error.max)}",
         PlanarPicture(scene, unit, lambda view: range_arc(design, scene, view), heights=(380.0, 640.0)),
-        [
-            *([] if metrics.grashof is None else [("type", metrics.grashof.replace("_", "-"))]),
-            ("greatest structural error", off(error.max)),
-            ("root mean square", off(error.rms)),
-            ("alternating extremes", f"{error.alternations}"),
-            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            *([] if metrics.input_rotation is None else [("input rotation", angle(metrics.input_rotation, 3))]),
-            *_size_and_quality(metrics, unit),
-        ],
         [blocks.rows("Dials", readings), blocks.rows("Targets", _first(met))],
         more_dimensions=[*more, ("assembly", mechanism.assembly)],
         hidden={"P"},
@@ -223,22 +199,11 @@ def quick_return(design: QuickReturnDesign, problem: QuickReturnProblem, linkage
         )
         for target in design.targets
     ]
-    stroke = ("stroke", f"{length(metrics.stroke or 0.0, digits=9)} {unit}")
     return Content(
         name,
         f"{name} with a time ratio of {length(metrics.time_ratio)}",
         "a mechanism at both limit positions of its output",
         PlanarPicture(scene, unit, heights=(400.0, 700.0)),
-        [
-            ("time ratio", length(metrics.time_ratio, digits=9)),
-            ("crank rotation, slow and fast", f"{angle(metrics.slow_rotation)}, {angle(metrics.fast_rotation)}"),
-            stroke if metrics.swing is None else ("swing", angle(metrics.swing, 6)),
-            *(
-                (f"transmission at {link.replace('_', ' ')}", angle(least, 2))
-                for link, least in metrics.transmission_angles.items()
-            ),
-            *_size_and_quality(metrics, unit),
-        ],
         [blocks.rows("Limits", limits)],
         standing="at the first limit",
         diagrams=[
@@ -267,22 +232,13 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
         (f"inner {angle(target.inner, 2)}: outer {angle(target.outer, 3)}", f"error {angle(target.error, 4)}")
         for target in targets
     ]
-    travel = [] if metrics.bar_travel is None else [("travel of the bar", f"± {length(metrics.bar_travel)} {unit}")]
     return Content(
         name,
         f"{name}, tie rod {metrics.tie_rod} the kingpins, to a lock of {angle(problem.lock)}",
         "a steering mechanism, straight and at both locks",
         PlanarPicture(scene, unit, heights=(260.0, 520.0)),
-        [
-            ("steering error", f"{small(metrics.steering_error)}°"),
-            ("correct at", ", ".join(angle(at, 2) for at in metrics.correct_at) or "everywhere"),
-            ("outer wheel at the lock", angle(metrics.outer_lock)),
-            ("arms", f"{length(metrics.arm_length)} {unit} at {angle(metrics.arm_angle)}"),
-            ("turning radius", f"{length(metrics.turning_radius)} {unit}"),
-            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            *travel,
-        ],
         [blocks.rows("Targets", met)],
+        left_out={"tie_rod"},
         standing="when straight",
         diagrams=[
             Diagram("outer wheel (°) over the inner wheel's angle", "outer", inner, outer, CURVE, interval=over),
@@ -323,18 +279,9 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
         f"{name}, {PROPORTIONS[metrics.proportions]} proportions",
         "a linkage at both ends and in the middle of a straight line",
         PlanarPicture(scene, unit, demanded, box),
-        [
-            ("greatest deviation", f"{small(metrics.deviation)} {unit}"),
-            ("straightness error", f"{small(metrics.straightness_error)} %"),
-            ("velocity variation", f"{length(metrics.velocity_variation, digits=4)} %"),
-            ("mean velocity", f"{length(metrics.mean_velocity, digits=5)} {unit}/rad"),
-            ("velocity in the middle", f"{length(metrics.middle_velocity, digits=5)} {unit}/rad"),
-            ("input rotation", angle(metrics.input_rotation)),
-            ("input turns fully", "yes" if metrics.full_rotation else "no"),
-            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            *_size_and_quality(metrics, unit),
-        ],
         [blocks.rows("Line", ends)],
+        left_out={"family", "proportions"},
+        titles={"deviation": "greatest deviation", "middle velocity": "velocity in the middle"},
         standing="at the start",
         diagrams=[
             Diagram(heading, "deviation", at, across, CURVE, interval=over),
@@ -345,7 +292,7 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
 
 def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) -> Content:
     """A dwell sixbar: as a dwell begins and ends, and away from it; the output over a turn from the first dwell."""
-    unit, metrics, mechanism = problem.length_unit, design.metrics, design.mechanism
+    unit, mechanism = problem.length_unit, design.mechanism
     begun = [float(at) for at in linkage.targets(design)]
     rotation, slides = math.radians(problem.dwell_angle), mechanism.type == "dwell_slider"
     # The last place is that in which the output stands farthest from its first rest, or the second rest.
@@ -381,13 +328,8 @@ def dwell(design: DwellDesign, problem: DwellProblem, linkage: DrivenLinkage) ->
         f"{name}, crank turns counter-clockwise",
         "a sixbar as a dwell begins and ends, and away from it",
         PlanarPicture(scene, unit, dwells),
-        [
-            ("stroke" if slides else "swing", measure(metrics.way)),
-            ("peak acceleration", f"{length(metrics.peak_acceleration, digits=4)} {per}"),
-            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            *_size_and_quality(metrics, unit),
-        ],
         [blocks.rows("Dwells", rests)],
+        titles={"way": "stroke" if slides else "swing"},
         standing="there",
         more_dimensions=_coupler_point(mechanism),
         diagrams=[
@@ -403,7 +345,6 @@ def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem
     unit, metrics = problem.length_unit, design.metrics
     first, last = (math.radians(degrees) for degrees in metrics.input_range)
     scene = Scene(linkage, np.linspace(first, last, PLACES + 1)[:-1], ["P", "Q"])
-    size = scene.box().diagonal
     turned = np.linspace(0.0, abs(last - first), SAMPLES)
     sines = linkage.driven(first + math.copysign(1.0, last - first) * turned).sines
 
@@ -420,14 +361,8 @@ def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem
         f"{name}, {BASES[metrics.base]}",
         f"a sixbar at {PLACES} places of its range",
         PlanarPicture(scene, unit, bodies),
-        [
-            ("rotation of the body", f"{small(metrics.rotation)}°"),
-            ("Q from P", f"({length(metrics.translation[0], size)}, {length(metrics.translation[1], size)})"),
-            ("input from", angle(metrics.input_range[0], 2)),
-            ("to", angle(metrics.input_range[1], 2)),
-            ("min transmission angle", angle(metrics.min_transmission_angle, 2)),
-            *_size_and_quality(metrics, unit),
-        ],
+        left_out={"base"},
+        titles={"rotation": "rotation of the body", "translation": "Q from P"},
         standing="there",
         more_dimensions=_coupler_point(design.mechanism),
         diagrams=[

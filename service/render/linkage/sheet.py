@@ -12,11 +12,11 @@ from service.render.checks import checks, outcome, verdict
 from service.render.linkage.content import Content
 from service.render.linkage.kind_tables import content_of
 from service.render.linkage.motion import DrivenLinkage
+from service.render.outline import entries
 from service.render.page import blocks
-from service.render.page.blocks import Block
 from service.render.page.numbers import angle, length
-from service.render.page.sheet import EDGE, FULL, GUTTER, UNITS, beside, sheet, stacked
-from service.render.page.svg import Box, Element
+from service.render.page.sheet import EDGE, FULL, GUTTER, UNITS, beside, in_columns, sheet, stacked
+from service.render.page.svg import Box
 
 DIAGRAM = 170.0
 """Height of a diagram, pixels."""
@@ -28,6 +28,17 @@ BELOW = (320.0, 390.0, FULL - 2.0 * GUTTER - 710.0)
 """Widths of the columns of tables below a picture, pixels."""
 
 
+TITLES = {
+    "grashof": "type",
+    "barker": "Barker's type",
+    "full rotation": "input turns fully",
+    "same branch": "one branch",
+    "visits in order": "targets in order",
+    "link ratio": "longest : shortest link",
+}
+"""What is measured of linkages of several kinds, where the name of the field does not say enough."""
+
+
 def linkage_sheet(design: Any, problem: Any, title: str) -> str:
     """The drawing of a linkage design as a complete SVG document."""
     content = content_of(design, problem, DrivenLinkage.of(design))
@@ -36,7 +47,7 @@ def linkage_sheet(design: Any, problem: Any, title: str) -> str:
         content.dimensions or blocks.rows(f"Dimensions ({unit})", _dimensions(design, content)),
         *content.tables,
         checks(design.verification, problem),
-        blocks.rows("Metrics", content.metrics),
+        blocks.rows("Metrics", _metrics(design, problem, content)),
     ]
     picture = content.picture
     width = FULL if picture.wide else beside()
@@ -45,20 +56,22 @@ def linkage_sheet(design: Any, problem: Any, title: str) -> str:
         top = bottom + APART[0]
         parts.append(diagram.draw(Box(EDGE, top, EDGE + width, top + diagram.height), content.marks))
         bottom = top + diagram.height
-    drawn, y = _below(tables, bottom + APART[1]) if picture.wide else stacked(tables)
+    if picture.wide:
+        # Dimensions, what is demanded and checked, and metrics.
+        drawn, y = in_columns((tables[:1], tables[1:-1], tables[-1:]), BELOW, bottom + APART[1])
+    else:
+        drawn, y = stacked(tables)
     words = f"{content.words}; lengths in {UNITS[unit]}; {verdict(design.verification)}"
     described = f"Drawing of {content.described}. {content.words}. {outcome(design.verification)}"
     return sheet(title or content.name, words, described, [*parts, *drawn], max(bottom, y))
 
 
-def _below(tables: list[Block], top: float) -> tuple[list[Element], float]:
-    """Dimensions, what is demanded and checked, and metrics in three columns."""
-    parts, left, bottom = [], EDGE, top
-    for width, column in zip(BELOW, (tables[:1], tables[1:-1], tables[-1:]), strict=True):
-        drawn, y = stacked(column, left, top, width)
-        parts += drawn
-        left, bottom = left + width + GUTTER, max(bottom, y)
-    return parts, bottom
+def _metrics(design: Any, problem: Any, content: Content) -> list[tuple[str, str]]:
+    """What was measured; transmission angles of the dyads where there are several, whose least is listed anyway."""
+    metrics, left_out = design.metrics, set(content.left_out)
+    if len(getattr(metrics, "transmission_angles", ())) < 2:
+        left_out.add("transmission_angles")
+    return entries(metrics, problem, left_out, {**TITLES, **content.titles})
 
 
 def _dimensions(design: Any, content: Content) -> list[tuple[str, str]]:

@@ -159,7 +159,7 @@ class Labels:
         half = 0.5 * (width * np.abs(DIRECTIONS.real) + height * np.abs(DIRECTIONS.imag))
         reach = clearance + rings[-1] + width + height
         obstacles = self._near(point, reach)
-        best, found = math.inf, None
+        best, best_place = math.inf, None
         for gap in rings:
             if GAP_COST * gap >= best:
                 break
@@ -167,9 +167,9 @@ class Labels:
             cost = GAP_COST * gap + turned_away + self._covered(centres, width, height, *obstacles)
             k = int(np.argmin(cost))
             if cost[k] < best:
-                best, found = float(cost[k]), (gap, complex(DIRECTIONS[k]), complex(centres[k]), float(half[k]))
-        assert found is not None
-        gap, direction, centre, radius = found
+                best, best_place = float(cost[k]), (gap, complex(DIRECTIONS[k]), complex(centres[k]), float(half[k]))
+        assert best_place is not None
+        gap, direction, centre, radius = best_place
         leader = (point + clearance * direction, centre - direction * (radius - 1.0)) if gap >= LEADER_GAP else None
         corner = 0.5 * complex(width, height)
         low, high = centre - corner, centre + corner

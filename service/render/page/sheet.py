@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 
 from service.render.page.blocks import Block
-from service.render.page.svg import Box, Element, Viewport, document, shortened, text
-from service.render.page.symbols import GREY, INK
+from service.render.page.svg import Box, Element, Viewport, document, element, shortened, text
+from service.render.page.symbols import GREY, INK, PALE
 
 WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
 """Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
@@ -54,6 +54,36 @@ def stacked(
         drawn, y = block(WIDTH - EDGE - width if left is None else left, y, width)
         parts.append(drawn)
     return parts, y
+
+
+def in_columns(columns: Sequence[Sequence[Block]], widths: Sequence[float], top: float) -> tuple[list[Element], float]:
+    """Columns of blocks side by side from the left border, so many pixels wide each, and the y below the longest."""
+    parts, left, bottom = [], EDGE, top
+    for blocks, width in zip(columns, widths, strict=True):
+        drawn, y = stacked(blocks, left, top, width)
+        parts += drawn
+        left, bottom = left + width + GUTTER, max(bottom, y)
+    return parts, bottom
+
+
+def framed(box: Box, name: str, fill: str = "#fff") -> Element:
+    """An empty panel with its frame."""
+    frame = {"x": box.left, "y": box.low, "width": box.width, "height": box.height}
+    return element("g", element("rect", **frame, fill=fill, stroke=PALE), data_panel=name)
+
+
+def clipping(panel: Box, name: str, **marks: str) -> Element:
+    """An empty panel with its frame; what is added to it and lies beyond is cut off."""
+    sides = {"x": panel.left, "y": panel.low, "width": panel.width, "height": panel.height}
+    return element(
+        "svg",
+        element("rect", **sides, fill="#fff", stroke=PALE),
+        **sides,
+        viewBox=" ".join(f"{side:g}" for side in sides.values()),
+        overflow="hidden",
+        data_view=name,
+        **marks,
+    )
 
 
 def fitted(

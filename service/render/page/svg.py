@@ -138,10 +138,10 @@ def text(
     x: float, y: float, words: str, size: float, *, subscript: str = "", **attributes: str | float | None
 ) -> Element:
     """A line of text with its base line at ``y``, and a subscript after it."""
-    found = element("text", x=x, y=y, font_size=size, **attributes).add(words)
+    drawn = element("text", x=x, y=y, font_size=size, **attributes).add(words)
     if subscript:
-        found.add(element("tspan", subscript, dy=0.25 * size, font_size=0.75 * size))
-    return found
+        drawn.add(element("tspan", subscript, dy=0.25 * size, font_size=0.75 * size))
+    return drawn
 
 
 def line(start: complex, end: complex, **attributes: str | float | None) -> Element:

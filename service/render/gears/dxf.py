@@ -1,0 +1,71 @@
+"""Gear trains as DXF: pitch circles and true involute outlines in mesh, each stage or plane on layers of its own.
+
+=====================  ==============================================================
+layer                  what is on it (n: number of the stage; PLANE_n of a planetary train)
+=====================  ==============================================================
+STAGE_n_PITCH          pitch circles
+STAGE_n_TEETH          closed outlines of all teeth: involutes, fillets, tips, roots
+CENTRES                crosses at the shafts; points at the axes of a planetary train
+TEXT                   tooth numbers and modules, of ordinary trains
+=====================  ==============================================================
+
+Stages lie one above the other in the plane as their shafts do; the input shaft is at the origin, and so is the axis of
+a planetary train. Bevel gears have pitch circles only. Lengths are in the problem's unit, which the header names.
+"""
+
+from __future__ import annotations
+
+from kinematics.gear.arrangements import ARRANGEMENTS
+from service.render.gears.planetary_layout import placed_planetary_gears
+from service.render.gears.train_layout import box_around, placed_gears
+from service.render.page import dxf
+from synthesis.kinds.gear_train.design import GearTrainDesign
+from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.kinds.planetary_train.design import PlanetaryDesign
+from synthesis.kinds.planetary_train.problem import PlanetaryProblem
+
+COLOURS = (5, 3, 30, 6)
+"""Colour indices of the stages."""
+
+LETTERS, CROSS = 0.02, 0.01
+"""Height of letters, and half the size of a cross at a shaft, as shares of the drawing's diagonal."""
+
+LINE_STEP = 1.6
+"""Distance of lines of text below one another, in heights of letters."""
+
+
+def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
+    """The drawing of a gear train as a DXF document (R2010)."""
+    gears = placed_gears(design, problem.reverted)
+    layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
+    for number in range(1, len(design.mechanism.stages) + 1):
+        layers |= dxf.gear_layers(f"STAGE_{number}", COLOURS[number - 1])
+    document = dxf.new_drawing(title or "Gear train", problem.length_unit, layers)
+    space, size = document.modelspace(), box_around(gears).diagonal
+    for placed in gears:
+        at, gear, height = placed.centre, placed.gear, LETTERS * size
+        dxf.add_gear(space, f"STAGE_{placed.stage}", gear, at, dxf.teeth_outline(gear, at, placed.tooth_at))
+        dxf.add_cross(space, at, CROSS * size, "CENTRES")
+        # Gears on one shaft are written below one another.
+        below = at - 1j * height * (1.5 + LINE_STEP * (2 * placed.stage + (placed.role == "driven")))
+        dxf.add_words(space, below, f"stage {placed.stage} {placed.role}: z={gear.teeth} m={gear.module:.6g}", height)
+    return dxf.written(document)
+
+
+def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title: str) -> str:
+    """The drawing of a planetary train as a DXF document (R2010)."""
+    mechanism = design.mechanism
+    gears = placed_planetary_gears(mechanism)
+    layers = {"CENTRES": (7, "CONTINUOUS")}
+    for plane in sorted({plane for placed in gears for plane in placed.planes}):
+        layers |= dxf.gear_layers(f"PLANE_{plane}", 1 + plane)
+    document = dxf.new_drawing(title or "Planetary train", problem.length_unit, layers)
+    space = document.modelspace()
+    bevel = ARRANGEMENTS[mechanism.arrangement].bevel
+    for placed in gears:
+        at = placed.centre
+        teeth = None if bevel else dxf.teeth_outline(placed.gear, at, placed.tooth_at)
+        for plane in placed.planes:
+            dxf.add_gear(space, f"PLANE_{plane}", placed.gear, at, teeth)
+        space.add_point((at.real, at.imag), dxfattribs={"layer": "CENTRES"})
+    return dxf.written(document)
