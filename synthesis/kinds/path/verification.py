@@ -31,11 +31,12 @@ from synthesis.kinds.path.passages import (
 )
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check, Verification
-from synthesis.model.linkage_answer import FourbarMechanism, Target
+from synthesis.model.dimension import LENGTH
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, Target
 from synthesis.model.linkages import DrivenFourbar, driven_fourbar
-from synthesis.proof.checks import CHOICE_KEPT, reaches_targets, tolerated
+from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
+from synthesis.proof.measures import TURNS_THROUGH, Measures, link_lengths, measured, reach_of_fourbar
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -81,17 +82,15 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     passed = _passages(problem, fourbar, points)
     if passed is None:
         return None
-    size = problem.task_size
     way = _way(linkage, passed)
     barker = barker_class(linkage)
     least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
-    residuals = passed.misses / size
     measures = measured(
         link_lengths(mechanism),
         reach_of_fourbar(linkage),
-        size,
+        problem.task_size,
         {"coupler": least},
         joints,
         barker=barker,
@@ -99,30 +98,65 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
         visits_in_order=way.on_circuit and way.in_order,
         full_rotation=barker.motion in TURNS_THROUGH,
     )
-    metrics = PathMetrics(
-        input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
-        rms_residual=math.sqrt(float(np.mean(residuals**2))),
-        sum_of_squares=float(np.sum(passed.misses**2)),
-        rms_distance=math.sqrt(float(np.mean(passed.misses**2))),
-        max_distance=float(passed.misses.max()),
-        **measures.within(PathMetrics),
-    )
-    checks = []
-    if not problem.fitted:
-        checks.append(reaches_targets(float(residuals.max())))
-    checks.append(Check(name="same_circuit", passed=way.on_circuit))
-    checks += constraint_checks(problem.constraints, measures, pivots, [complex(passed.a[0]), complex(passed.b[0])])
-    checks += _path_checks(problem, mechanism, linkage, metrics, size)
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
+    at_points = AtPoints(inputs, passed.misses, way.on_circuit, pivots, [complex(passed.a[0]), complex(passed.b[0])])
+    own = [*_coupler_point_checks(problem, linkage), *_crank_phase_checks(problem, mechanism, linkage)]
+    return path_design(problem, mechanism, measures, at_points, own)
+
+
+class AtPoints(NamedTuple):
+    """A linkage at the demanded points.
+
+    Attributes
+    ----------
+    inputs : float, shape (n,)
+        Degrees, in one run.
+    misses : float, shape (n,)
+        Distances of P from the points.
+    on_circuit : bool
+        Whether all lie on one circuit.
+    fixed_pivots, moving_pivots : list of complex
+        The pivots at the first point; the input's fixed pivot stands first.
+    """
+
+    inputs: Real
+    misses: Real
+    on_circuit: bool
+    fixed_pivots: list[complex]
+    moving_pivots: list[complex]
+
+
+def path_design(
+    problem: PathProblem,
+    mechanism: LinkageMechanism,
+    measures: Measures,
+    at: AtPoints,
+    own: list[Check],
+    gone: dict[str, float] | None = None,
+) -> PathDesign:
+    """A linkage of any type with its proof; ``own`` are checks of its type, ``gone`` is how far a curve goes astray."""
+    residuals = at.misses / problem.task_size
+    checks = [] if problem.fitted else [reaches_targets(float(residuals.max()))]
+    checks.append(Check(name="same_circuit", passed=at.on_circuit))
+    checks += constraint_checks(problem.constraints, measures, at.fixed_pivots, at.moving_pivots)
+    checks += _path_checks(problem, measures, at.fixed_pivots)
     return PathDesign(
         mechanism=mechanism,
         targets=[
-            Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
-            for k, (at, miss) in enumerate(zip(inputs, passed.misses, strict=True))
+            Target(index=k, input_angle=float(angle), residual=float(residual), point_residual=float(miss))
+            for k, (angle, residual, miss) in enumerate(zip(at.inputs, residuals, at.misses, strict=True))
         ],
-        verification=Verification.of(checks),
-        metrics=metrics,
+        verification=Verification.of([*checks, *own]),
+        metrics=PathMetrics(
+            input_rotation=float(at.inputs[-1] - at.inputs[0]),
+            rms_residual=math.sqrt(float(np.mean(residuals**2))),
+            sum_of_squares=float(np.sum(at.misses**2)),
+            rms_distance=math.sqrt(float(np.mean(at.misses**2))),
+            max_distance=float(at.misses.max()),
+            **measures.within(PathMetrics),
+            **(gone or {}),
+        ),
     )
 
 
@@ -157,41 +191,45 @@ def _way(linkage: Fourbar, passed: Passages) -> _Way:
     return _Way(angles, on_branch, on_circuit, ordered and (on_branch or not passed.run), start, end)
 
 
-def _path_checks(
-    problem: PathProblem, mechanism: FourbarMechanism, linkage: Fourbar, metrics: PathMetrics, size: float
-) -> list[Check]:
-    """What only tasks of path generation demand: pivots, P's place on the coupler, the crank's phase, a closed path."""
+def _path_checks(problem: PathProblem, measures: Measures, pivots: list[complex]) -> list[Check]:
+    """What only tasks of path generation demand: places of pivots, a closed path, links that a curve may have."""
     checks = []
     limits = problem.constraints
-    o2, o4 = complex(linkage.input_pivot), complex(linkage.output_pivot)
     if limits.input_pivot_region is not None:
-        checks.append(Check(name="input_pivot_region", passed=limits.input_pivot_region.contains(o2)))
-    if limits.coupler_point is not None:
-        point = complex(linkage.coupler_point)
-        inside = all(
-            interval is None or _within(value, interval)
-            for value, interval in (
-                (point.real, limits.coupler_point.along),
-                (point.imag, limits.coupler_point.across),
-            )
-        )
-        checks.append(Check(name="coupler_point", passed=inside))
+        checks.append(Check(name="input_pivot_region", passed=limits.input_pivot_region.contains(pivots[0])))
     if problem.fixed_pivots.given():
         gap = 0.0
-        for pivot, stated in ((o2, problem.fixed_pivots.input), (o4, problem.fixed_pivots.output)):
+        for pivot, stated in zip(pivots, (problem.fixed_pivots.input, problem.fixed_pivots.output), strict=False):
             for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
-                gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
+                gap = gap if wanted is None else max(gap, abs(value - wanted) / problem.task_size)
         checks.append(tolerated("fixed_pivots", gap, CHOICE_KEPT))
-    if problem.crank_phase != "free":
-        stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0
-        if problem.crank_phase == "ground_line":
-            stands -= math.degrees(math.atan2((o4 - o2).imag, (o4 - o2).real))
-        signs = (1.0, -1.0) if problem.crank_direction == "either" else (1.0,)
-        gap = min(abs(math.radians(math.remainder(stands - sign * wanted, 360.0))) for sign in signs)
-        checks.append(tolerated("crank_phase", gap, CHOICE_KEPT))
     if problem.closed and not limits.full_rotation:
-        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
+        checks.append(Check(name="full_rotation", passed=measures.full_rotation))
+    if problem.matched and (limits.link_length is None or limits.link_length.max is None):
+        checks.append(at_most("longest_link", max(measures.lengths), problem.longest_link, LENGTH))
     return checks
+
+
+def _coupler_point_checks(problem: PathProblem, linkage: Fourbar) -> list[Check]:
+    """Whether P lies on the coupler where it may."""
+    limits, point = problem.constraints.coupler_point, complex(linkage.coupler_point)
+    if limits is None:
+        return []
+    places = (point.real, limits.along), (point.imag, limits.across)
+    inside = all(interval is None or _within(value, interval) for value, interval in places)
+    return [Check(name="coupler_point", passed=inside)]
+
+
+def _crank_phase_checks(problem: PathProblem, mechanism: FourbarMechanism, linkage: Fourbar) -> list[Check]:
+    """Whether the crank stands at the first point as its angle there says."""
+    if problem.crank_phase == "free":
+        return []
+    stands, wanted = mechanism.reference_input_angle, problem.points[0].crank_angle or 0.0
+    if problem.crank_phase == "ground_line":
+        stands -= math.degrees(float(linkage.ground_angle))
+    signs = (1.0, -1.0) if problem.crank_direction == "either" else (1.0,)
+    gap = min(abs(math.radians(math.remainder(stands - sign * wanted, 360.0))) for sign in signs)
+    return [tolerated("crank_phase", gap, CHOICE_KEPT)]
 
 
 def _within(value: float, interval: tuple[float, float]) -> bool:

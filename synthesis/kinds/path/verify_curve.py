@@ -17,11 +17,8 @@ from kinematics.linkage.fourbar import positions
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
-from synthesis.model.answer import Verification
-from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
-from synthesis.proof.checks import at_most
 from synthesis.proof.closer import least_near
 
 Real = NDArray[np.float64]
@@ -58,18 +55,7 @@ def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesig
         return np.asarray(positions(fourbar.linkage, at, fourbar.assembly).p)
 
     gone = astray(place, (low, high), points, problem.closed, design.metrics.max_distance)
-    checks = list(design.verification.checks)
-    limit = problem.constraints.link_length
-    if limit is None or limit.max is None:
-        links = mechanism.links
-        longest = max(links.ground, links.input, links.coupler, links.output)
-        checks.append(at_most("longest_link", longest, problem.longest_link, LENGTH))
-    return design.model_copy(
-        update={
-            "metrics": design.metrics.model_copy(update=gone._asdict()),
-            "verification": Verification.of(checks),
-        }
-    )
+    return design.model_copy(update={"metrics": design.metrics.model_copy(update=gone._asdict())})
 
 
 class Astray(NamedTuple):

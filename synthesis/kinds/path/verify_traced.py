@@ -6,8 +6,6 @@ comes nearest to each point, in order, within one cycle: a turn of the crank, or
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,20 +15,16 @@ from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.path.design import PathDesign, PathMetrics
+from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import AtPoints, path_design
 from synthesis.kinds.path.verify_curve import astray
-from synthesis.model.answer import Check, Verification
-from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_answer import (
     GearedFivebarMechanism,
     SliderCrankMechanism,
-    Target,
 )
-from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
 from synthesis.proof.closer import GRID, least_angles
-from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
@@ -100,72 +94,25 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         return None
     joints = {name: jet[0] for name, jet in motion.joints.items()}
     misses = np.abs(joints["P"] - points)
-    size = problem.task_size
-    start, end = float(inputs.min()), float(inputs.max())
     whole = here.full and problem.closed
-    used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism)) if whole else (start, end)
-    pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
-    fixed = fixed_pivots(mechanism)
+    used = (float(inputs[0]), float(inputs[0]) + cycle(mechanism))
+    used = used if whole else (float(inputs.min()), float(inputs.max()))
     steps = np.diff(inputs)
-    in_order = bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0)
-    residuals = misses / size
-    worst = float(misses.max())
-    gone = astray(driven.place, used, points, problem.closed, worst)._asdict() if problem.matched else {}
     measures = measured(
         link_lengths(design),
         reach_of(mechanism),
-        size,
+        problem.task_size,
         least_angles(driven.at, np.linspace(*used, GRID)),
         np.concatenate(list(joints.values())),
         barker=None,
         same_branch=True,
-        visits_in_order=in_order,
+        visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,
     )
-    metrics = PathMetrics(
-        input_rotation=math.degrees(float(inputs[-1] - inputs[0])),
-        rms_residual=math.sqrt(float(np.mean(residuals**2))),
-        sum_of_squares=float(np.sum(misses**2)),
-        rms_distance=math.sqrt(float(np.mean(misses**2))),
-        max_distance=worst,
-        **gone,
-        **measures.within(PathMetrics),
-    )
-    checks = []
-    if not problem.fitted:
-        checks.append(reaches_targets(float(residuals.max())))
-    checks.append(Check(name="same_circuit", passed=True))
-    checks += constraint_checks(problem.constraints, measures, fixed, [complex(joints[pin][0]) for pin in pins])
-    checks += _path_checks(problem, fixed, metrics, size, max(measures.lengths))
-    degrees = np.degrees(inputs)
-    return PathDesign(
-        mechanism=design,
-        targets=[
-            Target(index=k, input_angle=float(at), residual=float(miss / size), point_residual=float(miss))
-            for k, (at, miss) in enumerate(zip(degrees, misses, strict=True))
-        ],
-        verification=Verification.of(checks),
-        metrics=metrics,
-    )
-
-
-def _path_checks(
-    problem: PathProblem, fixed: list[complex], metrics: PathMetrics, size: float, longest: float
-) -> list[Check]:
-    """What only tasks of path generation demand."""
-    checks = []
-    region = problem.constraints.input_pivot_region
-    if region is not None:
-        checks.append(Check(name="input_pivot_region", passed=region.contains(fixed[0])))
-    if problem.fixed_pivots.given():
-        gap = 0.0
-        for pivot, stated in zip(fixed, (problem.fixed_pivots.input, problem.fixed_pivots.output), strict=False):
-            for value, wanted in zip((pivot.real, pivot.imag), stated or (None, None), strict=True):
-                gap = gap if wanted is None else max(gap, abs(value - wanted) / size)
-        checks.append(tolerated("fixed_pivots", gap, CHOICE_KEPT))
-    if problem.closed and not problem.constraints.full_rotation:
-        checks.append(Check(name="full_rotation", passed=metrics.full_rotation))
-    limit = problem.constraints.link_length
-    if problem.matched and (limit is None or limit.max is None):
-        checks.append(at_most("longest_link", longest, problem.longest_link, LENGTH))
-    return checks
+    gone = None
+    if problem.matched:
+        gone = astray(driven.place, used, points, problem.closed, float(misses.max()))._asdict()
+    pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
+    moving = [complex(joints[pin][0]) for pin in pins]
+    at_points = AtPoints(np.degrees(inputs), misses, True, fixed_pivots(mechanism), moving)
+    return path_design(problem, design, measures, at_points, [], gone)
