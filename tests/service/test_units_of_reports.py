@@ -226,3 +226,28 @@ def test_checks_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
             assert [symbol for _, symbol in amounts] == [unit] * len(stated), (check.name, texts)
             for (digits, _), value in zip(amounts, stated, strict=True):
                 assert float(digits.replace("−", "-")) == pytest.approx(value, rel=0.06), check.name
+
+
+LEFT_OUT = {
+    "GearTrainMetrics": {"error"},  # stands as the relative error
+    "SteeringMetrics": {"correct_at"},  # a list
+}
+"""Numbers of metrics that a sheet does not write as they are."""
+
+
+@pytest.mark.parametrize(("kind", "n"), EXAMPLES)
+def test_quantities_on_a_sheet_are_those_of_the_answer_with_their_units(kind, n):
+    problem, result = solved(kind, n)
+    units = symbols(problem)
+    for design in result.designs:
+        drawing = ElementTree.fromstring(exported(design, problem, "sheet", "svg"))
+        blocks = [group for group in drawing.iter() if group.get("data-block") == "metrics"]
+        assert len(blocks) == (0 if kind in ("gearbox", "layshaft_gearbox") else 1)
+        shown = [part.text for block in blocks for part in block.iter() if part.tag.endswith("text")]
+        metrics = type(design.metrics)
+        for name, value in design.metrics if blocks else ():
+            if isinstance(value, float) and name not in LEFT_OUT.get(metrics.__name__, ()):
+                dimension = dimensions(metrics).get(name)
+                unit = "" if dimension is None else units[dimension]
+                blank = "" if unit in ("", "°") else " "
+                assert f"{written(value)}{blank}{unit}" in shown, name

@@ -13,11 +13,7 @@ from service.render.checks import checks, outcome, verdict
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.blocks import (
-    GAP,
-    ROW,
-    SMALL,
     Block,
-    block_start,
 )
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import (
@@ -32,7 +28,6 @@ from service.render.page.svg import (
     clean,
     element,
     line,
-    shortened,
     text,
     text_width,
 )
@@ -48,7 +43,7 @@ from service.render.page.symbols import (
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
     CamDesign,
-    CamSegment,
+    CamFollower,
     ProgramTable,
 )
 from synthesis.kinds.cam.problem import CamProblem
@@ -61,6 +56,9 @@ BARREL_HEIGHTS = 240.0, 620.0
 
 APART = 12.0, 4.0, 8.0
 """Space above tables below a drawing, above the diagrams below these, and between diagrams, pixels."""
+
+SEGMENT_COLUMNS = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
+"""Right ends of the columns of the table of segments, shares of its width; the left end of the words."""
 
 FOLLOWERS = {
     "translating_roller": "translating roller follower",
@@ -164,10 +162,13 @@ def _dimensions(
     rows = [("follower", FOLLOWERS[follower.type])]
     rows += entries(mechanism, problem, {"type", "follower", "rotation", *CURVES})
     rows += derived
-    rows += entries(follower, problem, {"type", "sense"})
-    if isinstance(design, CamDesign) and design.mechanism.follower.sense is not None:
-        outward = "with the cam" if design.mechanism.follower.sense == 1 else "against the cam"
-        rows.append(("arm swings outward", outward))
+    rows += entries(follower, problem, {"type", "sense", "offset"})
+    if isinstance(follower, CamFollower) and follower.offset is not None:
+        # An offset that was found may be zero but for rounding.
+        size = max(mechanism.pitch_curve.x)
+        rows.append(("offset", f"{length(follower.offset, size)} {problem.length_unit}"))
+    if isinstance(follower, CamFollower) and follower.sense is not None:
+        rows.append(("arm swings outward", "with the cam" if follower.sense == 1 else "against the cam"))
     rows.append(("rotation", ROTATIONS[mechanism.rotation]))
     rows.append(("points of a curve", f"{len(mechanism.pitch_curve.x)}"))
     return blocks.rows("Dimensions", rows)
@@ -175,33 +176,21 @@ def _dimensions(
 
 def _segments(design: CamDesign | BarrelCamDesign) -> Block:
     """Every segment with its law, its place and its peaks."""
-    shares = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
-
-    def row(k: int, segment: CamSegment) -> list[str]:
-        place = f"{length(segment.start, digits=4)}–{length(segment.start + segment.angle, digits=4)}°"
-        peaks = (segment.peak_velocity, segment.peak_acceleration)
+    lines = []
+    for k, segment in enumerate(design.segments, 1):
         law = clean(segment.law.replace("_", " "))
-        name = law if segment.motion.replace("_", " ") == law else f"{segment.motion}, {law}"
-        return [
-            f"{k + 1}",
-            name,
+        place = f"{length(segment.start, digits=4)}–{length(segment.start + segment.angle, digits=4)}°"
+        cells = [
+            f"{k}",
+            law if segment.motion.replace("_", " ") == law else f"{segment.motion}, {law}",
             place,
             length(segment.displacement[1], design.metrics.lift, digits=4),
-            *(length(v, digits=3) for v in peaks),
+            length(segment.peak_velocity, digits=3),
+            length(segment.peak_acceleration, digits=3),
         ]
-
-    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = block_start("Segments", left, top, width)
-        heads = ["", "motion and law", "cam angle", "to", "peak v", "peak a"]
-        for cells in (heads, *(row(k, segment) for k, segment in enumerate(design.segments))):
-            y += ROW
-            for n, (cell, share) in enumerate(zip(cells, shares, strict=True)):
-                words, anchor = shortened(cell, SMALL, (0.36 if n == 1 else 0.22) * width), "start" if n == 1 else "end"
-                fill = GREY if cells is heads else INK
-                block.add(text(left + share * width, y, words, SMALL, text_anchor=anchor, fill=fill))
-        return block, y + GAP
-
-    return draw
+        lines.append(blocks.Line(cells))
+    heads = ["", "motion and law", "cam angle", "to", "peak v", "peak a"]
+    return blocks.table("Segments", heads, lines, SEGMENT_COLUMNS, worded=1)
 
 
 def _measured(design: CamDesign | BarrelCamDesign, problem: CamProblem) -> list[Block]:

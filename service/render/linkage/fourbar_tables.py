@@ -5,14 +5,9 @@ from __future__ import annotations
 import math
 
 from service.render.linkage.fourbar import Scene, fourbar_of
+from service.render.page import blocks
 from service.render.page.blocks import (
-    GAP,
-    ROW,
-    SIZE,
-    SMALL,
     Block,
-    block_start,
-    value_at,
 )
 from service.render.page.numbers import (
     NONE,
@@ -24,14 +19,10 @@ from service.render.page.svg import (
     Element,
     element,
     line,
-    text,
-    text_width,
 )
 from service.render.page.symbols import (
     COUPLER,
-    GREY,
     GROUND,
-    INK,
     INPUT,
     OUTPUT,
 )
@@ -47,6 +38,16 @@ GRASHOF = {
 }
 
 
+LINKS = {"d  ground O2–O4": "ground", "a  input O2–A": "input", "b  coupler A–B": "coupler", "c  output O4–B": "output"}
+"""Rows of dimensions that have a sample of their link's line style."""
+
+MIDDLE = 4.0
+"""Height of the middle of small letters above the base line, pixels."""
+
+TARGET_COLUMNS = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
+"""Right ends of the columns of the table of targets, shares of its width."""
+
+
 def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Links, coupler point, assembly, pivots and reference angle."""
     mechanism = fourbar_of(design)
@@ -60,38 +61,26 @@ def dimensions(design: LinkageDesign, scene: Scene, unit: str) -> Block:
         reach = "turns fully"
     else:
         reach = " to ".join(angle(math.degrees(limit), 1) for limit in scene.limits)
-    rows: list[tuple[str, str, str]] = [
-        ("ground", "d  ground O2–O4", length(links.ground)),
-        ("input", "a  input O2–A", length(links.input)),
-        ("coupler", "b  coupler A–B", length(links.coupler)),
-        ("output", "c  output O4–B", length(links.output)),
-        ("", "coupler point A–P", length(point.distance, size)),
-        ("", "its angle from A–B", angle(point.angle)),
-        ("", "fixed pivot O2", pair(*pivots.input)),
-        ("", "fixed pivot O4", pair(*pivots.output)),
-        ("", "assembly", mechanism.assembly),
-        ("", "reference input angle", angle(mechanism.reference_input_angle)),
-        ("", "input range", reach),
+    rows = [
+        *((name, length(getattr(links, link))) for name, link in LINKS.items()),
+        ("coupler point A–P", length(point.distance, size)),
+        ("its angle from A–B", angle(point.angle)),
+        ("fixed pivot O2", pair(*pivots.input)),
+        ("fixed pivot O4", pair(*pivots.output)),
+        ("assembly", mechanism.assembly),
+        ("reference input angle", angle(mechanism.reference_input_angle)),
+        ("input range", reach),
     ]
 
-    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = block_start(f"Dimensions ({unit})", left, top, width)
-        for link, name, value in rows:
-            y += ROW
-            block.add(_swatch(link, left, y - 4.0) if link else None, text(left + 34.0, y, name, SIZE, fill=INK))
-            block.add(value_at(left + width, y, value, left + 34.0 + text_width(name, SIZE)))
-        return block, y + GAP
-
-    return draw
+    return blocks.rows(f"Dimensions ({unit})", rows, _sample)
 
 
 def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
     """Demanded positions with the input angle that meets each, and how exactly."""
-    shares = (0.05, 0.26, 0.47, 0.64, 0.84, 1.0)
     met = {target.index: target for target in design.targets}
     assembled = {c.index: c for c in scene.configurations}
     size = float(scene.linkage.ground + scene.linkage.coupler)
-    rows = []
+    lines = []
     for demand in scene.demands:
         k = demand.index
         place = (length(v, size, most=9) for v in (demand.point.real, demand.point.imag))
@@ -104,36 +93,19 @@ def targets(design: LinkageDesign, scene: Scene, unit: str) -> Block:
         note = "" if k in assembled else "cannot be assembled here"
         if k in assembled and not assembled[k].own:
             note = "only in the other assembly (dashed)"
-        rows.append((cells, note))
-
-    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
-        block, y = block_start("Targets", left, top, width)
-
-        def write(cells: list[str], colour: str) -> None:
-            for cell, share, before in zip(cells, shares, (0.0, *shares), strict=False):
-                room = (share - before) * width - 5.0
-                size = SMALL * min(1.0, room / max(text_width(cell, SMALL), 1.0))
-                block.add(text(left + share * width, y, cell, size, text_anchor="end", fill=colour))
-
-        y += ROW
-        write(["", f"x ({unit})", f"y ({unit})", "angle" if scene.guides_a_body else "", "input", "residual"], GREY)
-        for cells, note in rows:
-            y += ROW
-            write(cells, INK)
-            if note:
-                y += ROW - 3.0
-                block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
-        if len(scene.demands) < scene.demanded:
-            y += ROW
-            note = f"{len(scene.demands)} of {scene.demanded} targets"
-            block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
-        return block, y + GAP
-
-    return draw
+        lines.append(blocks.Line(cells, note))
+    if len(scene.demands) < scene.demanded:
+        lines.append(blocks.Line([], f"{len(scene.demands)} of {scene.demanded} targets"))
+    heads = ["", f"x ({unit})", f"y ({unit})", "angle" if scene.guides_a_body else "", "input", "residual"]
+    return blocks.table("Targets", heads, lines, TARGET_COLUMNS)
 
 
-def _swatch(link: str, left: float, y: float) -> Element:
+def _sample(name: str, left: float, y: float) -> Element | None:
     """Sample of a link's line style."""
+    link = LINKS.get(name)
+    if link is None:
+        return None
+    y -= MIDDLE
     start, end = complex(left + 2.0, y), complex(left + 26.0, y)
     group = element("g", stroke_linecap="round")
     if link == "ground":

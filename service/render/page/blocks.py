@@ -15,6 +15,7 @@ from service.render.page.svg import (
     text_width,
 )
 from service.render.page.symbols import (
+    GREY,
     INK,
     OUTPUT,
     PALE,
@@ -24,10 +25,22 @@ ROW, HEADING, GAP = 18.0, 24.0, 16.0
 """Heights of a row and of a block's heading, and the space after a block, pixels."""
 
 SIZE, SMALL = 11.5, 10.5
-"""Font sizes of rows, and of the targets with their many columns, pixels."""
+"""Font sizes of rows, and of tables with their many columns, pixels."""
+
+BETWEEN, CLOSER = 5.0, 3.0
+"""Least space between the columns of a table, and by how much a note stands closer than a row, pixels."""
+
+WORDED = 0.36
+"""Width of a column of words, as a share of the table's."""
 
 Block = Callable[[float, float, float], tuple[Element, float]]
 """Draws itself at left, top and width; returns its element and the y below it."""
+
+Sample = Callable[[str, float, float], Element | None]
+"""Draws the line style of what a row names, at left and the base line of the row; None where it has none."""
+
+SAMPLE = 34.0
+"""Width of the samples of line styles, pixels."""
 
 
 class CheckRow(NamedTuple):
@@ -39,16 +52,54 @@ class CheckRow(NamedTuple):
     limit: str
 
 
-def rows(heading: str, entries: Sequence[tuple[str, str]]) -> Block:
-    """Names at the left and their values at the right."""
+def rows(heading: str, entries: Sequence[tuple[str, str]], sample: Sample | None = None) -> Block:
+    """Names at the left and their values at the right; samples of line styles stand before the names."""
 
     def draw(left: float, top: float, width: float) -> tuple[Element, float]:
         block, y = block_start(heading, left, top, width)
+        start = left if sample is None else left + SAMPLE
         for name, value in entries:
             y += ROW
-            block.add(
-                text(left, y, name, SIZE, fill=INK), value_at(left + width, y, value, left + text_width(name, SIZE))
-            )
+            block.add(sample(name, left, y) if sample is not None else None, text(start, y, name, SIZE, fill=INK))
+            block.add(_value(left + width, y, value, start + text_width(name, SIZE)))
+        return block, y + GAP
+
+    return draw
+
+
+class Line(NamedTuple):
+    """Cells of a table, and a note on a line of its own below them; a line may be a note only."""
+
+    cells: Sequence[str]
+    note: str = ""
+
+
+def table(
+    heading: str, heads: Sequence[str], lines: Sequence[Line], ends: Sequence[float], worded: int | None = None
+) -> Block:
+    """A table in small type.
+
+    ``ends`` are the right ends of its columns, shares of the width, to which cells are made smaller where they are too
+    wide. The column ``worded`` has words instead of numbers: they begin there, and are cut where the next begins.
+    """
+
+    def draw(left: float, top: float, width: float) -> tuple[Element, float]:
+        block, y = block_start(heading, left, top, width)
+        for cells, note in (Line(heads), *lines):
+            fill = GREY if cells is heads else INK
+            y += ROW if cells else 0.0
+            for n, (cell, end) in enumerate(zip(cells, ends, strict=False)):
+                x = left + end * width
+                if n == worded:
+                    words = shortened(cell, SMALL, WORDED * width)
+                    block.add(text(x, y, words, SMALL, fill=fill))
+                    continue
+                room = (end - (ends[n - 1] if n else 0.0)) * width - BETWEEN
+                size = SMALL * min(1.0, room / max(text_width(cell, SMALL), 1.0))
+                block.add(text(x, y, cell, size, text_anchor="end", fill=fill))
+            if note:
+                y += ROW - CLOSER if cells else ROW
+                block.add(text(left + width, y, note, SMALL, text_anchor="end", fill=INK, font_style="italic"))
         return block, y + GAP
 
     return draw
@@ -82,7 +133,7 @@ def block_start(heading: str, left: float, top: float, width: float) -> tuple[El
     return element("g", title, rule, data_block=heading.split(" ")[0].rstrip(":").lower()), top + HEADING - 2.0
 
 
-def value_at(right: float, y: float, value: str, after: float) -> Element:
+def _value(right: float, y: float, value: str, after: float) -> Element:
     """A value at the right end of a row, in smaller type where it would touch the row's name."""
     width = text_width(value, SIZE)
     size = SIZE * min(1.0, (right - after - 6.0) / width) if width > 0.0 else SIZE
