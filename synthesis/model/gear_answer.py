@@ -26,6 +26,11 @@ class Ratio(Answer):
         """The ratio of exact speeds."""
         return cls(numerator=ratio.numerator, denominator=ratio.denominator, value=float(ratio))
 
+    @property
+    def exact(self) -> Fraction:
+        """The fraction that is stated."""
+        return Fraction(self.numerator, self.denominator)
+
 
 class GearPairTeeth(Answer):
     """Teeth of a pair of gears."""

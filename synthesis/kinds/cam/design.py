@@ -6,7 +6,7 @@ radian of cam rotation (of an arm in radians).
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
@@ -186,17 +186,6 @@ class CamMetrics(Answer):
     forces: CamForces | None = Field(default=None, exclude_if=_blank)
 
 
-class CamDesign(Answer):
-    """A cam with the proof of what it does."""
-
-    mechanism: CamMechanism
-    segments: list[CamSegment]
-    joints: list[CamJoint]
-    optimality: Optimality
-    verification: Verification
-    metrics: CamMetrics
-
-
 class BarrelMetrics(Answer):
     """Measured on the finished groove."""
 
@@ -215,15 +204,27 @@ class BarrelMetrics(Answer):
     forces: CamForces | None = Field(default=None, exclude_if=_blank)
 
 
-class BarrelCamDesign(Answer):
-    """A barrel cam with the proof of what it does."""
+Mechanism = TypeVar("Mechanism", CamMechanism, BarrelCamMechanism)
+Metrics = TypeVar("Metrics", CamMetrics, BarrelMetrics)
 
-    mechanism: BarrelCamMechanism
+
+class ProgrammedDesign(Answer, Generic[Mechanism, Metrics]):
+    """A cam of any form with its motion program and the proof of what it does."""
+
+    mechanism: Mechanism
     segments: list[CamSegment]
     joints: list[CamJoint]
     optimality: Optimality
     verification: Verification
-    metrics: BarrelMetrics
+    metrics: Metrics
+
+
+class CamDesign(ProgrammedDesign[CamMechanism, CamMetrics]):
+    """A cam with the proof of what it does."""
+
+
+class BarrelCamDesign(ProgrammedDesign[BarrelCamMechanism, BarrelMetrics]):
+    """A barrel cam with the proof of what it does."""
 
 
 class CamSearch(Search):

@@ -17,6 +17,7 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_answer import mesh_geometries
+from synthesis.proof.checks import tolerated
 
 SAME_DISTANCE = 1e-12
 """Share of a centre distance by which equal ones may differ in rounding."""
@@ -83,10 +84,11 @@ def _ratio_checks(
     train: OrdinaryTrain,
     errors: tuple[Fraction, Fraction],
 ) -> list[Check]:
-    stated = Fraction(mechanism.ratio.numerator, mechanism.ratio.denominator)
+    stated = mechanism.ratio.exact
     checks = [Check(name="ratio", passed=stated == train.ratio and mechanism.ratio.value == float(stated))]
     tolerance = problem.exact_tolerance
     if tolerance is not None:
+        # Compared as fractions, so that a train exactly at the tolerance passes whatever the rounding.
         worst = max(abs(error) for error in errors)
         passed = worst <= tolerance
         checks.append(Check(name="ratio_error", passed=passed, value=float(worst), limit=float(tolerance)))
@@ -99,7 +101,7 @@ def _gear_checks(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
 ) -> list[Check]:
     count = len(train.stages)
-    checks = [Check(name="stages", passed=count <= problem.max_stages, value=count, limit=problem.max_stages)]
+    checks = [tolerated("stages", count, problem.max_stages)]
     if problem.stock is not None:
         used, stocked = Counter(n for stage in train.stages for n in stage.gears), problem.stocked()
         checks.append(Check(name="stock", passed=all(stocked.get(n, 0) >= many for n, many in used.items())))
@@ -116,8 +118,7 @@ def _gear_checks(
         value = metrics.largest_stage_ratio
         checks.append(Check(name="stage_ratio", passed=kept, value=value, limit=problem.max_stage_ratio))
     if problem.max_total_teeth is not None:
-        total, limit_of_total = metrics.total_teeth, problem.max_total_teeth
-        checks.append(Check(name="total_teeth", passed=total <= limit_of_total, value=total, limit=limit_of_total))
+        checks.append(tolerated("total_teeth", metrics.total_teeth, problem.max_total_teeth))
     return checks
 
 
@@ -126,8 +127,7 @@ def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[C
     if problem.reverted:
         distances = metrics.centre_distances
         apart = max(distances) - min(distances)
-        limit = SAME_DISTANCE * max(distances)
-        checks.append(Check(name="coaxial", passed=apart <= limit, value=apart, limit=limit, dimension=LENGTH))
+        checks.append(tolerated("coaxial", apart, SAME_DISTANCE * max(distances), LENGTH))
     if problem.hunting_tooth == "require":
         checks.append(Check(name="hunting_tooth", passed=metrics.hunting_tooth))
     if problem.interference == "refuse":

@@ -69,7 +69,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
             ratio = speed_ratio(Train((head, pair)), "input", "mainshaft") or Fraction(0)
         elif not problem.direct or target != 1:
             return None
-        if ratio != Fraction(gear.ratio.numerator, gear.ratio.denominator):
+        if ratio != gear.ratio.exact:
             return None
         found.append(ratio / target - 1)
     if mechanism.reverse is not None and problem.reverse is not None:
@@ -79,7 +79,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
             Rolling("idler", "mainshaft", GROUND, back.idler, back.mainshaft),
         )
         ratio = speed_ratio(Train((head, *pairs)), "input", "mainshaft") or Fraction(0)
-        if ratio != Fraction(back.ratio.numerator, back.ratio.denominator) or ratio >= 0:
+        if ratio != back.ratio.exact or ratio >= 0:
             return None
         found.append(-ratio / Fraction(repr(problem.reverse)) - 1)
     return found

@@ -34,7 +34,7 @@ from synthesis.kinds.planetary_train.tooth_numbers import (
     ToothNumbers,
     divisions,
 )
-from synthesis.kinds.planetary_train.verification import measure, verify
+from synthesis.kinds.planetary_train.verification import SIZE_SLACK, measure, verify
 from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
@@ -84,7 +84,7 @@ def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
         math.radians(problem.pressure_angle),
         problem.min_contact_ratio,
         problem.least_room,
-        math.inf if problem.max_size is None else problem.max_size / problem.module * (1.0 + 1e-12),
+        math.inf if problem.max_size is None else problem.max_size / problem.module * (1.0 + SIZE_SLACK),
     )
 
 

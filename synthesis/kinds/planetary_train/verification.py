@@ -21,6 +21,10 @@ from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechani
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.proof.checks import at_least, at_most
+
+SIZE_SLACK = 1e-12
+"""Relative slack of the size, which is a whole number of half modules but for the rounding of one product."""
 
 
 def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verification:
@@ -34,15 +38,7 @@ def verify(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Verifica
         checks += _meshes(problem, mechanism, arrangement)
         if problem.max_size is not None:
             size = size_of(mechanism) * mechanism.module
-            checks.append(
-                Check(
-                    name="size",
-                    passed=size <= problem.max_size * (1.0 + 1e-12),
-                    value=size,
-                    limit=problem.max_size,
-                    dimension=LENGTH,
-                )
-            )
+            checks.append(at_most("size", size, problem.max_size, LENGTH, SIZE_SLACK))
     return Verification.of(checks)
 
 
@@ -107,13 +103,12 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
 def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """The stated ratio is that of the teeth, it has the demanded direction, and it is within the tolerance."""
     found = exact_ratio_of(mechanism)
-    stated = Fraction(mechanism.ratio.numerator, mechanism.ratio.denominator)
     members = (mechanism.input, mechanism.output, mechanism.fixed)
     if found is None or members not in problem.roles(arrangement):
         return Check(name="ratio", passed=False)
     error = abs(found / problem.target - 1)
     limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
-    passed = found == stated and found * problem.target > 0 and (limit is None or error <= limit)
+    passed = found == mechanism.ratio.exact and found * problem.target > 0 and (limit is None or error <= limit)
     return Check(name="ratio", passed=passed, value=float(error), limit=problem.tolerance)
 
 
@@ -198,8 +193,7 @@ def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangemen
     except DimensionError:
         return [Check(name="interference", passed=False)]
     least = min(mesh.contact_ratio for mesh in meshes.values())
-    limit = problem.min_contact_ratio
     return [
         Check(name="interference", passed=not any(mesh.interferes for mesh in meshes.values())),
-        Check(name="contact_ratio", passed=least >= limit * (1.0 - 1e-9), value=least, limit=limit),
+        at_least("contact_ratio", least, problem.min_contact_ratio),
     ]
