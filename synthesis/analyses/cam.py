@@ -118,10 +118,10 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = super().faults()
+        faults = super().faults()
         if self.train is not None and self.motion.rate <= 0.0:
-            found.append(("/motion/speed", "a vibration needs a speed that is positive"))
-        return found
+            faults.append(("/motion/speed", "a vibration needs a speed that is positive"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`CamAnalysis`."""
@@ -130,26 +130,26 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         if len(at) * len(contour.points) > MOST_EFFORT:
             raise MechanismError("/profile", "too many points for so many positions; take fewer of one of them")
         rotation = self.mechanism.rotation
-        found = contour.follow(follower, np.radians(at), rotation)
+        contact = contour.follow(follower, np.radians(at), rotation)
         unit = 180.0 / math.pi if isinstance(follower, OscillatingRoller | OscillatingFlat) else 1.0
-        velocity = found.v * speed
-        acceleration = found.a * speed**2 + found.v * self.motion.acceleration
+        velocity = contact.v * speed
+        acceleration = contact.a * speed**2 + contact.v * self.motion.acceleration
         return {
             "input_angle": at.tolist(),
             "time": None if time is None else time.tolist(),
-            "valid": found.valid.tolist(),
+            "valid": contact.valid.tolist(),
             "follower": {
-                "position": (found.s * unit).tolist(),
+                "position": (contact.s * unit).tolist(),
                 "velocity": velocity.tolist(),
                 "acceleration": acceleration.tolist(),
             },
-            "contact": {"x": found.point.real.tolist(), "y": found.point.imag.tolist()},
-            "play": self._play(follower, at, found.s, unit),
-            "pressure_angle": np.degrees(found.pressure_angle).tolist(),
-            "radius_of_curvature": found.radius.tolist(),
+            "contact": {"x": contact.point.real.tolist(), "y": contact.point.imag.tolist()},
+            "play": self._play(follower, at, contact.s, unit),
+            "pressure_angle": np.degrees(contact.pressure_angle).tolist(),
+            "radius_of_curvature": contact.radius.tolist(),
             "forces": None
             if self.load is None
-            else force_series(self.load, found.s, found.v, found.pressure_angle, velocity, acceleration),
+            else force_series(self.load, contact.s, contact.v, contact.pressure_angle, velocity, acceleration),
             "response": None if self.train is None else self._response(contour, follower, at),
             "cutter_path": None if self.cutter is None else self._cutter_path(contour, follower, at),
             "profile": {
@@ -176,18 +176,18 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         """The steady vibration at the motion's cam angles."""
         assert self.train is not None, "only asked for with a train"
         program = measured_program(contour, follower, self.mechanism.rotation, MEASURED)
-        found = Response(program, self.train.core(), self.motion.rate)
-        theta, grid = np.mod(np.radians(at), math.tau), found.angle
-        lag = np.interp(theta, grid, found.state[0])
+        vibration = Response(program, self.train.core(), self.motion.rate)
+        theta, grid = np.mod(np.radians(at), math.tau), vibration.angle
+        lag = np.interp(theta, grid, vibration.state[0])
         return {
-            "natural_frequency": found.train.natural_frequency,
-            "frequency_ratio": found.frequency_ratio,
-            "resonant": found.resonant,
-            "too_slow": found.too_slow,
+            "natural_frequency": vibration.train.natural_frequency,
+            "frequency_ratio": vibration.frequency_ratio,
+            "resonant": vibration.resonant,
+            "too_slow": vibration.too_slow,
             "lag": lag.tolist(),
-            "acceleration": (np.interp(theta, grid, found.acceleration) * self.motion.rate**2).tolist(),
-            "contact_force": np.interp(theta, grid, found.contact_force).tolist(),
-            "least_contact_force": float(found.contact_force.min()),
+            "acceleration": (np.interp(theta, grid, vibration.acceleration) * self.motion.rate**2).tolist(),
+            "contact_force": np.interp(theta, grid, vibration.contact_force).tolist(),
+            "least_contact_force": float(vibration.contact_force.min()),
         }
 
     def _cutter_path(self, contour: Contour, follower: Follower, at: Real) -> dict[str, Any]:
@@ -196,8 +196,8 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         cutter, rotation = self.cutter, self.mechanism.rotation
 
         def centres(theta: Real) -> NDArray[np.complex128]:
-            found = contour.follow(follower, theta, rotation)
-            return found.point + cutter.radius * found.normal
+            contact = contour.follow(follower, theta, rotation)
+            return contact.point + cutter.radius * contact.normal
 
         theta = np.radians(at)
         if cutter.chordal_tolerance is not None:

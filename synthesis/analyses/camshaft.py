@@ -69,12 +69,12 @@ class CamshaftAnalysisRequest(DrivenRequest[GivenCamshaft]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = super().faults()
+        faults = super().faults()
         if self.motion.rate <= 0.0:
-            found.append(("/motion/speed", "the shaft must turn with a speed that is positive"))
+            faults.append(("/motion/speed", "the shaft must turn with a speed that is positive"))
         if self.motion.acceleration != 0.0:
-            found.append(("/motion/acceleration", "the torques are those of a steady speed; leave it out"))
-        return found
+            faults.append(("/motion/acceleration", "the torques are those of a steady speed; leave it out"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """The shaft's torque over the motion, in the shape of :class:`CamshaftAnalysis`."""

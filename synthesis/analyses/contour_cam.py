@@ -44,7 +44,7 @@ class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
         contour, follower = self.mechanism.core()
         at, speed, time = self.motion.inputs()
         rotation, alpha = self.mechanism.rotation, self.motion.acceleration
-        found = contour.motion(follower, np.radians(at), rotation)
+        lift = contour.motion(follower, np.radians(at), rotation)
         breaks = contour.breaks(follower, rotation)
         worst = extremes(lambda angle: follower.pressure_angle(contour.motion(follower, angle, rotation)), breaks)
 
@@ -56,12 +56,12 @@ class ContourCamAnalysisRequest(DrivenRequest[GivenContourCam]):
             "input_angle": at.tolist(),
             "time": None if time is None else time.tolist(),
             "follower": {
-                "position": found.s.tolist(),
-                "velocity": (found.v * speed).tolist(),
-                "acceleration": (found.a * speed**2 + found.v * alpha).tolist(),
-                "jerk": (found.j * speed**3 + 3.0 * found.a * speed * alpha).tolist(),
+                "position": lift.s.tolist(),
+                "velocity": (lift.v * speed).tolist(),
+                "acceleration": (lift.a * speed**2 + lift.v * alpha).tolist(),
+                "jerk": (lift.j * speed**3 + 3.0 * lift.a * speed * alpha).tolist(),
             },
-            "pressure_angle": np.degrees(follower.pressure_angle(found)).tolist(),
+            "pressure_angle": np.degrees(follower.pressure_angle(lift)).tolist(),
             "base_radius": contour.base_radius,
             "prime_radius": follower.prime_radius if isinstance(follower, TranslatingRoller) else None,
             "least_radius": contour.least_radius,

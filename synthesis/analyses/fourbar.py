@@ -166,7 +166,7 @@ def fourbar_analysis(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dic
         "coupler_curve": lambda: _coupler_curve(stated.linkage),
     }
     try:
-        return {topic: made() if topic in topics else None for topic, made in make.items()}
+        return {topic: describe() if topic in topics else None for topic, describe in make.items()}
     except DimensionError:
         raise MechanismError("", "the coupler point lies on a moving pivot: its curve is a circle") from None
 
@@ -223,7 +223,7 @@ def _stated(cognate: Cognate, reference: float, assembly: int) -> dict[str, Any]
 
 
 def _parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> dict[str, Any]:
-    made = parallel_motion(linkage)
+    translating = parallel_motion(linkage)
     o2 = complex(linkage.input_pivot)
     joints = {
         "O2": o2,
@@ -231,8 +231,8 @@ def _parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> di
         "A": a,
         "B": b,
         "P": p,
-        "C": o2 + complex(made.crank_point) * (a - o2) / float(linkage.input),
-        "Q": p + complex(made.translation),
+        "C": o2 + complex(translating.crank_point) * (a - o2) / float(linkage.input),
+        "Q": p + complex(translating.translation),
     }
     links = {
         "ground": ["O2", "O4"],
@@ -253,8 +253,8 @@ def _parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> di
 
 
 def _centrodes(stated: Assembled, at: Real) -> dict[str, Any]:
-    found = pole(stated.linkage, at, stated.assembly)
-    return {"fixed": _points(found.point), "moving": _points(np.where(found.finite, found.moving, np.nan))}
+    poles = pole(stated.linkage, at, stated.assembly)
+    return {"fixed": _points(poles.point), "moving": _points(np.where(poles.finite, poles.moving, np.nan))}
 
 
 def _curvature(stated: Assembled, at: Real) -> dict[str, Any]:

@@ -105,15 +105,15 @@ class GearTrainAnalysisRequest(DrivenRequest[GivenGearTrain]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = super().faults()
+        faults = super().faults()
         for number, idler in enumerate(self.mechanism.idlers):
             if idler.stage > len(self.mechanism.stages):
-                found.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
-        if not found and self.mechanism.ratio is not None:
+                faults.append((f"/mechanism/idlers/{number}/stage", "there is no such stage"))
+        if not faults and self.mechanism.ratio is not None:
             ratio, stated = self.mechanism.train().ratio, self.mechanism.ratio
             if stated.numerator != ratio * stated.denominator:
-                found.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
-        return found
+                faults.append(("/mechanism/ratio", f"the teeth have the ratio {ratio}; leave the ratio out"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`GearTrainAnalysis`."""
@@ -200,12 +200,12 @@ def _share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
 def _gears(
     request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
 ) -> list[dict[str, Any]]:
-    found = []
+    gears = []
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
         for role, teeth, share in zip(roles, stage.gears, speeds, strict=True):
             gear, turns = Gear(teeth, stage.module, train.pressure_angle), float(share)
-            found.append(
+            gears.append(
                 {
                     "stage": number,
                     "role": role,
@@ -221,7 +221,7 @@ def _gears(
                     **request.motion.geared(turns, at, speed),
                 }
             )
-    return found
+    return gears
 
 
 def _meshes(
@@ -232,7 +232,7 @@ def _meshes(
     speed: float,
 ) -> list[dict[str, Any]]:
     geometries = iter(mesh_geometries(train))
-    found = []
+    loaded = []
     for stage, meshes, efficiencies, turns, torque in zip(
         train.stages, train.meshes, shares, train.speeds, torques[:-1], strict=True
     ):
@@ -243,7 +243,7 @@ def _meshes(
         ):
             parts = mesh.approach, mesh.recess
             approach, recess = parts if driver <= driven else parts[::-1]
-            found.append(
+            loaded.append(
                 {
                     **next(geometries).model_dump(),
                     "path_of_contact": mesh.path_of_contact,
@@ -257,7 +257,7 @@ def _meshes(
                 }
             )
             force *= 1.0 if share is None else share
-    return found
+    return loaded
 
 
 FAMILY = Family(GearTrainAnalysisRequest, GearTrainAnalysis)

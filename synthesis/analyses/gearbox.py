@@ -129,14 +129,14 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = super().faults()
+        faults = super().faults()
         stages = self.mechanism.stages
         if self.engaged is not None and len(self.engaged) != len(stages):
-            found.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
+            faults.append(("/engaged", f"expected one pair for each of {len(stages)} stages"))
         for k, (at, stage) in enumerate(zip(self.engaged or (), stages, strict=False)):
             if at >= len(stage.pairs):
-                found.append((f"/engaged/{k}", f"stage {k + 1} has {len(stage.pairs)} pairs"))
-        return found
+                faults.append((f"/engaged/{k}", f"stage {k + 1} has {len(stage.pairs)} pairs"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
@@ -148,7 +148,7 @@ class GearboxAnalysisRequest(DrivenRequest[GivenGearbox]):
             total *= -Fraction(*pairs[place])
             ratios.append((f"shaft {k}" if k <= len(stages) else "spindle", total))
         sign = (-1) ** len(stages)
-        speeds = [(list(found.engaged), sign * found.speed) for found in spindle_speeds(1, stages)]
+        speeds = [(list(box_speeds.engaged), sign * box_speeds.speed) for box_speeds in spindle_speeds(1, stages)]
         return _shape(self, at, speed, time, engaged, ratios, speeds)
 
 
@@ -177,15 +177,15 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = super().faults()
+        faults = super().faults()
         for k, gear in enumerate(self.mechanism.gears):
             if (gear.layshaft is None) != (gear.mainshaft is None):
-                found.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))
+                faults.append((f"/mechanism/gears/{k}", "give both gears, or none for direct drive"))
         if self.gear == "reverse" and self.mechanism.reverse is None:
-            found.append(("/gear", "there is no reverse gear"))
+            faults.append(("/gear", "there is no reverse gear"))
         elif self.gear != "reverse" and self.gear > len(self.mechanism.gears):
-            found.append(("/gear", f"there are {len(self.mechanism.gears)} forward gears"))
-        return found
+            faults.append(("/gear", f"there are {len(self.mechanism.gears)} forward gears"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything about the gearbox, in the shape of :class:`GearboxAnalysis`."""
@@ -196,8 +196,8 @@ class LayshaftAnalysisRequest(DrivenRequest[GivenLayshaftGearbox]):
             for gear in box.gears
         ]
         reverse = None if back is None else (back.layshaft, back.idler, back.mainshaft)
-        found = layshaft_ratios((box.head.driver, box.head.driven), gears, reverse)
-        every = [*found.forward, *([] if found.reverse is None else [found.reverse])]
+        box_speeds = layshaft_ratios((box.head.driver, box.head.driven), gears, reverse)
+        every = [*box_speeds.forward, *([] if box_speeds.reverse is None else [box_speeds.reverse])]
         engaged = len(every) - 1 if self.gear == "reverse" else self.gear - 1
         layshaft = -Fraction(box.head.driver, box.head.driven)
         ratios = [("input", Fraction(1)), ("layshaft", layshaft)]

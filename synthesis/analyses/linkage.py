@@ -75,19 +75,19 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
-        found = self.motion.faults()
+        faults = self.motion.faults()
         if not self.points:
-            return found
+            return faults
         try:
             links = self.mechanism.mechanism().links
         except (MechanismError, KinematicsError):  # the answer says so, in its own words
-            return found
+            return faults
         moving = [link for link in links if link != GROUND]
         for name, point in self.points.items():
             if point.link not in moving:
                 token = name.replace("~", "~0").replace("/", "~1")
-                found.append((f"/points/{token}/link", f"no link in motion; they are {', '.join(moving)}"))
-        return found
+                faults.append((f"/points/{token}/link", f"no link in motion; they are {', '.join(moving)}"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""

@@ -93,12 +93,12 @@ class Run(_Motion):
 
     def faults(self) -> list[tuple[str, str]]:
         """A run backwards, or of too many positions, beside what every motion may have."""
-        found, span = super().faults(), self.time
+        faults, span = super().faults(), self.time
         if span.end < span.start:
-            found.append(("/motion/time/end", "the end lies before the start"))
+            faults.append(("/motion/time/end", "the end lies before the start"))
         elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-            found.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
-        return found
+            faults.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        return faults
 
     def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs (degrees, or lengths along the input ``slide``), speeds and times."""

@@ -143,8 +143,8 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found = [*self.mechanism.faults(), *super().faults()]
-        return found or self._unknown_bodies()
+        faults = [*self.mechanism.faults(), *super().faults()]
+        return faults or self._unknown_bodies()
 
     def _unknown_bodies(self) -> list[tuple[str, str]]:
         train = self.mechanism.train()
@@ -154,19 +154,19 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
             *((f"/mechanism/{part}", getattr(self.mechanism, part)) for part in ("input", "output", "fixed")),
         ]
         known = {*train.bodies, GROUND, None}
-        found = [(path, f"expected one of {', '.join(train.bodies)}") for path, body in named if body not in known]
+        faults = [(path, f"expected one of {', '.join(train.bodies)}") for path, body in named if body not in known]
         loaded = [
             *((f"/torques/{body}", body) for body in self.torques or ()),
             *((f"/loads/{k}", body) for k, body in enumerate(self.loads or ())),
         ]
-        found += [
+        faults += [
             (path, f"expected one of the members {', '.join(train.members)}")
             for path, body in loaded
             if body not in train.members
         ]
         if self.speeds is None and self.mechanism.input is None:
-            found.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
-        return found
+            faults.append(("/speeds", "state known speeds, or the mechanism's input and fixed member"))
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything about the train, in the shape of :class:`PlanetaryAnalysis`."""
@@ -225,13 +225,13 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
     if turning:
         held = {} if mechanism.fixed is None else {mechanism.fixed: Fraction(0)}
         known = {**held, str(mechanism.input): Fraction(1)}
-    found = speeds(train, known, request.locked)
-    complete = found.open == 0 and found.contradiction is None
-    flow = _flow(request, train, found, known) if complete else None
-    ratio = _ratio(request, found) if complete else None
+    solution = speeds(train, known, request.locked)
+    complete = solution.open == 0 and solution.contradiction is None
+    flow = _flow(request, train, solution, known) if complete else None
+    ratio = _ratio(request, solution) if complete else None
     bodies = []
     for body in train.bodies:
-        rate = found.values[body]
+        rate = solution.values[body]
         share = None if rate is None else float(rate)
         bodies.append(
             {
@@ -255,9 +255,9 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),
         "valid": [complete] * len(at),
-        "freedom": found.freedom,
-        "open_speeds": found.open,
-        "contradiction": found.contradiction,
+        "freedom": solution.freedom,
+        "open_speeds": solution.open,
+        "contradiction": solution.contradiction,
         "ratio": None if ratio is None else float(ratio),
         "exact_ratio": None if ratio is None else str(ratio),
         "efficiency": None if flow is None or flow.efficiency is None else float(flow.efficiency),
@@ -281,17 +281,17 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
     }
 
 
-def _ratio(request: PlanetaryAnalysisRequest, found: Speeds) -> Fraction | None:
+def _ratio(request: PlanetaryAnalysisRequest, solution: Speeds) -> Fraction | None:
     """Input over output speed, where both are named and turn."""
     one, other = request.mechanism.input, request.mechanism.output
-    if one is None or other is None or not found.values[other]:
+    if one is None or other is None or not solution.values[other]:
         return None
-    rates = found.values[one], found.values[other]
+    rates = solution.values[one], solution.values[other]
     return None if rates[0] is None or not rates[1] else rates[0] / rates[1]
 
 
 def _flow(
-    request: PlanetaryAnalysisRequest, train: Train, found: Speeds, known: dict[str, Fraction]
+    request: PlanetaryAnalysisRequest, train: Train, solution: Speeds, known: dict[str, Fraction]
 ) -> PowerFlow | None:
     """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
     if request.locked:
@@ -303,7 +303,7 @@ def _flow(
     if loads is None:
         stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
         loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
-    rates = {body: rate for body, rate in found.values.items() if rate is not None}
+    rates = {body: rate for body, rate in solution.values.items() if rate is not None}
     return power_flow(train, rates, loads, torques, Fraction(repr(request.mesh_efficiency)))
 
 

@@ -120,12 +120,12 @@ def _travel(jet: Real) -> dict[str, list[float]]:
 
 def _ratios(motion: MechanismMotion, moved: dict[str, Real], outputs: list[str]) -> dict[str, list[float]]:
     """Input speed over that of links or slides: by virtual work the output's torque or force over the input's."""
-    found = {}
+    ratios = {}
     for name in outputs:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             ratio = motion.input[1] / moved[name][1]
-        found[name] = _listed(np.where(np.isfinite(ratio), ratio, np.nan))
-    return found
+        ratios[name] = _listed(np.where(np.isfinite(ratio), ratio, np.nan))
+    return ratios
 
 
 def _instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[str, dict[str, list[float]]]:
@@ -197,15 +197,15 @@ def _undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
 def _global(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, Any]:
     """Toggles, circuits and limits; empty where the mechanism's circuits cannot be listed, and the note says why."""
     try:
-        found = listed_branches(mechanism)
+        branches = listed_branches(mechanism)
     except TopologyError as error:
         return {"toggles": [], "circuits": [], "limits": {}, "notes": [*notes, f"circuits, toggles, limits: {error}"]}
     scale = (lambda x: x) if mechanism.driven_by_slide else math.degrees
-    here = holding_reference(mechanism, found)
+    here = holding_reference(mechanism, branches)
     if here is None:
         notes = [*notes, "limits: the reference stands where several branches meet, or on none"]
     circuits: dict[int, list[dict[str, Any]]] = {}
-    for branch in found:
+    for branch in branches:
         listed = circuits.setdefault(branch.circuit, [])
         one = {"from": scale(branch.low), "to": scale(branch.high), "full": branch.full, "reference": branch is here}
         listed.append({**one, "joints": _tracked(mechanism, branch)} if tracked else one)
@@ -219,7 +219,7 @@ def _global(mechanism: Mechanism, tracked: bool, notes: list[str]) -> dict[str, 
         for name, span in zip(slides, travels, strict=True):
             limits[name] = None if span is None else list(span)
     return {
-        "toggles": [scale(x) for x in toggles(mechanism, found)],
+        "toggles": [scale(x) for x in toggles(mechanism, branches)],
         "circuits": [{"branches": listed} for listed in circuits.values()],
         "limits": limits,
         "notes": notes,

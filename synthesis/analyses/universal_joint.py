@@ -86,14 +86,14 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows."""
-        found, limits = super().faults(), self.limits
+        faults, limits = super().faults(), self.limits
         if limits is not None and (limits.fluctuation, limits.greatest_ratio, limits.least_ratio) == (None, None, 0.0):
-            found.append(("/limits", "state the fluctuation, or a least or greatest ratio"))
+            faults.append(("/limits", "state the fluctuation, or a least or greatest ratio"))
         if self.mechanism.joints[0].offset != 0.0:
-            found.append(
+            faults.append(
                 ("/mechanism/joints/0/offset", "the first joint has no shaft with forks before it; leave it out")
             )
-        return found
+        return faults
 
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`UniversalJointAnalysis`."""
@@ -140,10 +140,10 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         if limits is None:
             return None
         greatest = math.inf if limits.greatest_ratio is None else limits.greatest_ratio
-        found = angle_within(limits.least_ratio, greatest)
+        largest = angle_within(limits.least_ratio, greatest)
         if limits.fluctuation is not None:
-            found = min(found, angle_of_fluctuation(limits.fluctuation))
-        return math.degrees(found)
+            largest = min(largest, angle_of_fluctuation(limits.fluctuation))
+        return math.degrees(largest)
 
 
 class JointExtremes(Answer):

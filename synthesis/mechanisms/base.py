@@ -68,10 +68,10 @@ class StatedLine(Statement):
     angle: Degrees
 
 
-def agree(path: str, stated: float | None, found: float, what: str = "the fixed pivots") -> None:
+def agree(path: str, stated: float | None, measured: float, what: str = "the fixed pivots") -> None:
     """Refuse a redundant dimension that contradicts the others."""
-    if stated is not None and abs(stated - found) > AGREES * max(abs(found), abs(stated)):
-        raise MechanismError(path, f"{what} give {found:.9g}; leave the field out or correct it")
+    if stated is not None and abs(stated - measured) > AGREES * max(abs(measured), abs(stated)):
+        raise MechanismError(path, f"{what} give {measured:.9g}; leave the field out or correct it")
 
 
 def assembled(make: Callable[[float], Mechanism], degrees: float | None, between: Iterable[float]) -> Mechanism:

@@ -100,9 +100,11 @@ class GivenGearedFivebar(GivenByDimensions):
         samples = min(round(SAMPLES * max(1.0, abs(self.gear_ratio)) * turns), MOST_SAMPLES)
         step = 2.0 * math.pi * turns / samples
         at = np.arange(samples) * step
-        found = inside(at)
+        margin = inside(at)
         best = at[
-            np.argsort(-np.where((found >= np.roll(found, 1)) & (found >= np.roll(found, -1)), found, -np.inf))[:BEST]
+            np.argsort(-np.where((margin >= np.roll(margin, 1)) & (margin >= np.roll(margin, -1)), margin, -np.inf))[
+                :BEST
+            ]
         ]
         while step > 1e-15:
             tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])

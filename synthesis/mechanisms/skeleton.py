@@ -61,10 +61,10 @@ class StatedSkeleton(Statement):
 
     def mechanism(self, degrees: float | None = None) -> Mechanism:
         """The mechanism in the reference configuration, where gears are told the turn of a stated input angle."""
-        made = self._made(0)
-        if degrees is None or not made.gears or made.driven_by_slide:
-            return made
-        return self._made(round((math.radians(degrees) - float(made.reference_input)) / (2.0 * math.pi)))
+        assembled = self._made(0)
+        if degrees is None or not assembled.gears or assembled.driven_by_slide:
+            return assembled
+        return self._made(round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
 
     def _made(self, turns: int) -> Mechanism:
         names = [link.name for link in self.links]
@@ -139,38 +139,38 @@ class GivenSkeleton(Statement):
         MechanismError
             For a skeleton that is none, and for dimensions beside it that it does not have.
         """
-        made = self.skeleton.mechanism(self.reference_input_angle)
+        assembled = self.skeleton.mechanism(self.reference_input_angle)
         for name, stated in self.links.items():
-            listed = [made.links[name]] if name in made.links else list(made.links.values())
-            found = [distance for joints in listed for distance in _distances(made, joints)]
-            if not any(abs(stated - distance) <= AGREES * max(stated, distance) for distance in found):
-                of = f"the skeleton's link {name!r} has" if name in made.links else "the skeleton has a link with"
-                shown = ", ".join(f"{distance:.9g}" for distance in found[:MOST_SHOWN])
+            listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
+            distances = [distance for joints in listed for distance in _distances(assembled, joints)]
+            if not any(abs(stated - distance) <= AGREES * max(stated, distance) for distance in distances):
+                of = f"the skeleton's link {name!r} has" if name in assembled.links else "the skeleton has a link with"
+                shown = ", ".join(f"{distance:.9g}" for distance in distances[:MOST_SHOWN])
                 raise MechanismError(f"/links/{name}", f"{of} joints {shown} apart; leave the field out or correct it")
-        size = max((abs(complex(z)) for z in made.joints.values()), default=1.0)
+        size = max((abs(complex(z)) for z in assembled.joints.values()), default=1.0)
         for name, pivot in self.fixed_pivots.items():
-            ground = [complex(made.joints[joint]) for joint in made.links[GROUND]]
+            ground = [complex(assembled.joints[joint]) for joint in assembled.links[GROUND]]
             if not any(abs(complex(*pivot) - z) <= AGREES * size for z in ground):
                 raise MechanismError(f"/fixed_pivots/{name}", "no joint of the skeleton's ground lies there")
-        self._agree(made)
-        return made
+        self._agree(assembled)
+        return assembled
 
-    def _agree(self, made: Mechanism) -> None:
+    def _agree(self, assembled: Mechanism) -> None:
         """Refuse a coupler point or an input angle that is not the skeleton's."""
         if self.coupler_point is not None:
-            missing = [name for name in ("A", "B", "P") if name not in made.joints]
+            missing = [name for name in ("A", "B", "P") if name not in assembled.joints]
             if missing:
                 raise MechanismError("/coupler_point", f"the skeleton has no joint {missing[0]}")
-            a, b, p = (complex(made.joints[name]) for name in ("A", "B", "P"))
-            found = a + self.coupler_point.vector * (b - a) / abs(b - a)
-            if abs(found - p) > AGREES * max(abs(p - a), abs(b - a)):
+            a, b, p = (complex(assembled.joints[name]) for name in ("A", "B", "P"))
+            point = a + self.coupler_point.vector * (b - a) / abs(b - a)
+            if abs(point - p) > AGREES * max(abs(p - a), abs(b - a)):
                 raise MechanismError(
                     "/coupler_point", "the skeleton has P elsewhere; leave the field out or correct it"
                 )
         if self.reference_input_angle is not None:
-            if made.driven_by_slide:
+            if assembled.driven_by_slide:
                 raise MechanismError("/reference_input_angle", "a slide drives this; leave the field out")
-            off = math.remainder(math.degrees(float(made.reference_input)) - self.reference_input_angle, 360.0)
+            off = math.remainder(math.degrees(float(assembled.reference_input)) - self.reference_input_angle, 360.0)
             if abs(off) > AGREES * 360.0:
                 raise MechanismError("/reference_input_angle", "the skeleton's input link stands at another angle")
 
@@ -199,16 +199,17 @@ class GivenByDimensions(Statement, ABC):
         own = self.assembled()
         if self.skeleton is None:
             return own
-        made = self.skeleton.mechanism(self.reference_input_angle)
-        slack = ROUNDING * max(abs(complex(z)) for m in (own, made) for z in m.joints.values())
+        assembled = self.skeleton.mechanism(self.reference_input_angle)
+        slack = ROUNDING * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
         for joints in own.links.values():
-            for one, other in combinations([joint for joint in joints if joint in made.joints], 2):
-                stated, found = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, made))
-                if abs(stated - found) > AGREES * max(stated, found) + slack:
+            for one, other in combinations([joint for joint in joints if joint in assembled.joints], 2):
+                stated, apart = (abs(complex(m.joints[one] - m.joints[other])) for m in (own, assembled))
+                if abs(stated - apart) > AGREES * max(stated, apart) + slack:
                     raise MechanismError(
-                        "/skeleton/joints", f"{one} and {other} are {found:.9g} apart; the dimensions give {stated:.9g}"
+                        "/skeleton/joints",
+                        f"{one} and {other} are {apart:.9g} apart; the dimensions give {stated:.9g}",
                     )
-        return made
+        return assembled
 
 
 def _distances(mechanism: Mechanism, joints: tuple[str, ...]) -> list[float]:

@@ -206,7 +206,7 @@ class GivenQuickReturn(GivenByDimensions):
         sine = midst(height, self.links.rocker, self.links.coupler, min(sines), max(sines))
         if sine is None:
             return []
-        found = []
+        angles = []
         for turn in (math.asin(sine), math.pi - math.asin(sine)):
             rocker = cmath.rect(1.0, slide + turn)
             # A stands on the rocker's ray from O4, at the crank's length from O2.
@@ -214,5 +214,5 @@ class GivenQuickReturn(GivenByDimensions):
             square = self.links.crank**2 - pivot.imag**2
             for root in (math.sqrt(square), -math.sqrt(square)) if square >= 0.0 else ():
                 if pivot.real + root > 0.0:
-                    found.append(cmath.phase((root - 1j * pivot.imag) * rocker))
-        return found
+                    angles.append(cmath.phase((root - 1j * pivot.imag) * rocker))
+        return angles

@@ -42,11 +42,11 @@ SLOW = 10.0
 
 def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
     """Every segment with its law, its place and its exact peaks."""
-    found, start = [], 0.0
+    segments, start = [], 0.0
     unit = 1.0 / problem.displacement_unit
     for stated, name, segment in zip(problem.segments, composed.names, composed.program.segments, strict=True):
         ends = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
-        found.append(
+        segments.append(
             CamSegment(
                 motion=stated.motion,
                 law=name,
@@ -59,17 +59,17 @@ def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
             )
         )
         start += stated.angle
-    return found
+    return segments
 
 
 def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
     """Joints of the segments, and inner jumps."""
     names: tuple[Literal["s", "v", "a", "j"], ...] = ("s", "v", "a", "j")
     unit = 1.0 / problem.displacement_unit
-    found = []
+    joints = []
     for joint in program.continuity:
         jump = joint.jump
-        found.append(
+        joints.append(
             CamJoint(
                 angle=math.degrees(joint.angle),
                 segments=joint.segments,
@@ -77,7 +77,7 @@ def joints_of(problem: CamProblem, program: Program) -> list[CamJoint]:
                 jump=CamJump(s=jump[0] * unit, v=jump[1], a=jump[2], j=jump[3]),
             )
         )
-    return found
+    return joints
 
 
 def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Optimality:

@@ -101,8 +101,8 @@ def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Progra
     least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
     rho = least_pitch_radius(limits, roller)
     stop = LARGEST * (least + program.peaks[2].largest + rho)
-    found = smallest_allowed(program, _curvature(rho), least, stop)
-    return None if found is None else Size(found * (1.0 + MARGIN), proven=True)
+    radius = smallest_allowed(program, _curvature(rho), least, stop)
+    return None if radius is None else Size(radius * (1.0 + MARGIN), proven=True)
 
 
 def _curvature(rho: float) -> Callable[[Motion, Real], Real]:

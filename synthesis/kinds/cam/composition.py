@@ -33,8 +33,8 @@ from synthesis.kinds.cam.optimal import (
     STEPS,
     Best,
     NoMotion,
+    OnGrid,
     Run,
-    Told,
     best_derivative,
     best_flat_size,
     best_force,
@@ -74,28 +74,28 @@ SAMPLES = 721
 """Points of a segment at which a criterion without a closed form compares laws; the choice needs no more."""
 
 
-def unheard(fraction: float, message: str) -> None:
+def silent(fraction: float, message: str) -> None:
     """A progress that nobody follows."""
 
 
 @dataclass(frozen=True)
-class _Teller:
+class _GridProgress:
     """Tells how far the programs of several runs are, within a part of the whole work."""
 
     progress: Progress
     reach: tuple[float, float]
     runs: int
 
-    def of(self, run: int) -> Told:
+    def of(self, run: int) -> OnGrid:
         """For the programs of one run."""
         start, end = self.reach
 
-        def told(steps: int) -> None:
+        def on_grid(steps: int) -> None:
             share = (run + (0.5 if steps > STEPS[0] else 0.0)) / self.runs
             which = f" {run + 1} of {self.runs}" if self.runs > 1 else ""
             self.progress(start + (end - start) * share, f"optimal motion{which}: convex program of {steps} steps")
 
-        return told
+        return on_grid
 
 
 @dataclass(frozen=True)
@@ -122,11 +122,11 @@ class NoProgram:
 
 
 def compose(
-    problem: CamProblem, grids: Sequence[int] = STEPS, progress: Progress = unheard, reach: tuple[float, float] = (0, 1)
+    problem: CamProblem, grids: Sequence[int] = STEPS, progress: Progress = silent, reach: tuple[float, float] = (0, 1)
 ) -> Composition | NoProgram:
     """The best program of a problem without contradictions.
 
-    ``grids`` is as for the convex program of least size; ``progress`` is told before each program, with fractions
+    ``grids`` is as for the convex program of least size; ``progress`` is called before each program, with fractions
     within ``reach``.
     """
     heights = problem.heights()
@@ -152,10 +152,10 @@ def compose(
     runs = _runs(problem, segments)
     best: list[Best] = []
     if runs:
-        found = _optimized(problem, heights, ends, segments, runs, grids, _Teller(progress, reach, len(runs)))
-        if isinstance(found, NoProgram):
-            return found
-        best = found
+        optima = _optimized(problem, heights, ends, segments, runs, grids, _GridProgress(progress, reach, len(runs)))
+        if isinstance(optima, NoProgram):
+            return optima
+        best = optima
     program = Program([segment for segment in segments if segment is not None])
     value = criterion(problem, program)
     return Composition(program, tuple(names), value, *_bound(problem, program, runs, best, value))
@@ -306,18 +306,18 @@ def _candidates(
     angle: float, start: float, end: float, enter: tuple[float, float], leave: tuple[float, float] | None
 ) -> list[tuple[str, Segment, tuple[float, float], tuple[float, float]]]:
     """Named laws, and the polynomial through both ends' states; with v and a at start and end."""
-    found = []
+    candidates = []
     for name in END_RATES:
         if name in ("constant_acceleration", "constant_velocity"):
             continue
         first, last = law_ends(name, angle, start, end)
-        found.append((name, law_segment(LAWS[name], angle, start, end), first[1:], last[1:]))
+        candidates.append((name, law_segment(LAWS[name], angle, start, end), first[1:], last[1:]))
     leave = (0.0, 0.0) if leave is None else leave
     if enter != (0.0, 0.0) or leave != (0.0, 0.0):
         states = ((0.0, start, *enter), (angle, end, *leave))
         conditions = [PolynomialCondition(at, i, x) for at, *state in states for i, x in enumerate(state)]
-        found.append(("polynomial", polynomial_segment(angle, conditions), enter, leave))
-    return found
+        candidates.append(("polynomial", polynomial_segment(angle, conditions), enter, leave))
+    return candidates
 
 
 def _within_limits(problem: CamProblem, segment: Segment) -> bool:
@@ -454,30 +454,30 @@ def _optimized(
     segments: list[Segment | None],
     rows: Sequence[Sequence[int]],
     grids: Sequence[int],
-    teller: _Teller,
+    grid_progress: _GridProgress,
 ) -> list[Best] | NoProgram:
     """Solve the runs, and put their motions where the program is open."""
     runs = [_run(problem, heights, ends, segments, row) for row in rows]
     given = [segment for segment in segments if segment is not None]
     kind, _, of = problem.minimize.partition("_")
-    found: list[Best | NoMotion]
+    results: list[Best | NoMotion]
     if problem.minimize == "size":
-        found = [_smallest(problem, runs, given, grids, teller.of(0))]
+        results = [_smallest(problem, runs, given, grids, grid_progress.of(0))]
     elif problem.minimize == "peak_contact_force":
         load, speed = follower_load(problem)
         weights = load.spring_rate, load.damping * speed, load.mass * speed**2
         loads = [_range_of(segment, lambda m: load.force(m, speed) - load.preload) for segment in given]
         rest = (min(low for low, _ in loads), max(high for _, high in loads)) if loads else None
-        found = [best_force(runs, weights, _floor(problem), _preload(problem), rest, told=teller.of(0))]
+        results = [best_force(runs, weights, _floor(problem), _preload(problem), rest, on_grid=grid_progress.of(0))]
     elif of == "torque":
         measure: Literal["peak", "rms"] = "peak" if kind == "peak" else "rms"
-        found = [best_torque(run, measure, told=teller.of(k)) for k, run in enumerate(runs)]
+        results = [best_torque(run, measure, on_grid=grid_progress.of(k)) for k, run in enumerate(runs)]
     else:
         order = ORDERS[of]
         measure = "peak" if kind == "peak" else "rms"
-        found = [best_derivative(run, measure, order, told=teller.of(k)) for k, run in enumerate(runs)]
+        results = [best_derivative(run, measure, order, on_grid=grid_progress.of(k)) for k, run in enumerate(runs)]
     best = []
-    for each in found:
+    for each in results:
         if isinstance(each, NoMotion):
             if each.factor is None:
                 return NoProgram("no optimal motion was found within the limits and conditions", proven=False)
@@ -506,12 +506,12 @@ def _cut(motion: KnotMotion, start: float, end: float, angle: float) -> Segment:
 
 
 def _range_of(segment: Segment, function: Callable[[Motion], np.ndarray]) -> tuple[float, float]:
-    found = extremes(lambda at: function(segment.pieces.motion(at)), segment.pieces.start)
-    return found.least, found.greatest
+    bounds = extremes(lambda at: function(segment.pieces.motion(at)), segment.pieces.start)
+    return bounds.least, bounds.greatest
 
 
 def _smallest(
-    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], told: Told
+    problem: CamProblem, runs: Sequence[Run], given: Sequence[Segment], grids: Sequence[int], on_grid: OnGrid
 ) -> Best | NoMotion:
     """Motion and size together, for a translating follower."""
     limits = problem.limits
@@ -521,7 +521,7 @@ def _smallest(
             low = min(_range_of(segment, lambda m: np.asarray(m.s + m.a))[0] for segment in given)
             speeds = [_range_of(segment, lambda m: m.v) for segment in given]
             rest = low, min(v for v, _ in speeds), max(v for _, v in speeds)
-        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest, told=told)
+        return best_flat_size(runs, least_face_radius(problem), limits.face_width, rest, on_grid=on_grid)
     assert isinstance(problem.follower, TranslatingRoller)
     rising = math.tan(math.radians(limits.pressure_angle))
     falling = math.tan(math.radians(limits.falling_pressure_angle))
@@ -532,7 +532,7 @@ def _smallest(
     lowest = min(min(pair) for pair in problem.heights())
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
-    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, told=told)
+    return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, on_grid=on_grid)
 
 
 def _room(tangent: float, sign: int) -> Callable[[Motion], np.ndarray]:

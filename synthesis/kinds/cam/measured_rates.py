@@ -162,6 +162,6 @@ def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: i
     means = [s[k - FINE] - 2.0 * s[k] + s[k + FINE] for k in range(-NEAR, NEAR + 1)]
     for side in (-FINE, FINE):
         means.append(np.sum([weight * s[side * k] for k, weight in enumerate(ONE_SIDED)], axis=0))
-    found = np.array(means) / (FINE * step) ** 2
-    off = np.maximum(np.maximum(found.min(axis=0) - value, value - found.max(axis=0)), 0.0)
+    measured = np.array(means) / (FINE * step) ** 2
+    off = np.maximum(np.maximum(measured.min(axis=0) - value, value - measured.max(axis=0)), 0.0)
     return float(off.max()) / part.peak("acceleration")

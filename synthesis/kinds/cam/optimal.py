@@ -49,11 +49,11 @@ SAME_TIME = 1e-9
 """Times closer than this share of the run are one."""
 
 
-Told = Callable[[int], None]
+OnGrid = Callable[[int], None]
 """Called with the number of steps before a program is solved."""
 
 
-def untold(steps: int) -> None:
+def silent(steps: int) -> None:
     """Nobody wants to know."""
 
 
@@ -96,7 +96,9 @@ class NoMotion:
     factor: float | None
 
 
-def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int, *, told: Told = untold) -> Best | NoMotion:
+def best_derivative(
+    run: Run, measure: Literal["peak", "rms"], order: int, *, on_grid: OnGrid = silent
+) -> Best | NoMotion:
     """The motion of least peak or root mean square of a derivative."""
     size = max(_order(run), order)
 
@@ -111,14 +113,14 @@ def best_derivative(run: Run, measure: Literal["peak", "rms"], order: int, *, to
         curve = solution.motions[0].derivative(order)
         return curve.peak() if measure == "peak" else curve.rms()
 
-    best = _solved((run,), program, value, run.lift / run.angle**order, run.lift, told=told)
+    best = _solved((run,), program, value, run.lift / run.angle**order, run.lift, on_grid=on_grid)
     limit = next((limit.constant for limit in run.limits if limit.order == order), math.inf)
     if isinstance(best, Best) and measure == "peak" and best.value > limit:
         return NoMotion(best.bound / limit if best.bound > limit and best.cap is None else None)
     return best
 
 
-def best_torque(run: Run, measure: Literal["peak", "rms"], *, told: Told = untold) -> Best | NoMotion:
+def best_torque(run: Run, measure: Literal["peak", "rms"], *, on_grid: OnGrid = silent) -> Best | NoMotion:
     """The motion of least peak or root mean square of v a, what a mass takes of the shaft at constant speed."""
     lift, angle = run.lift, run.angle
     size = max(_order(run), 3)
@@ -133,15 +135,15 @@ def best_torque(run: Run, measure: Literal["peak", "rms"], *, told: Told = untol
     if falls:
         block = _mirrored(block)
         ends = tuple(-v for v in ends)
-    told(len(block.times) - 1)
-    found = least_torque(block, measure, abs(end - start), (ends[0], ends[1]))
-    if found is None:
+    on_grid(len(block.times) - 1)
+    least = least_torque(block, measure, abs(end - start), (ends[0], ends[1]))
+    if least is None:
         return _none((run,), lift)
-    motion = found.motion
+    motion = least.motion
     if falls:
         motion = KnotMotion(motion.times, -motion.states, -motion.control)
     unit = lift**2 / angle**3
-    return Best((_physical(motion, run, lift),), found.value * unit, found.bound * unit)
+    return Best((_physical(motion, run, lift),), least.value * unit, least.bound * unit)
 
 
 def best_force(
@@ -151,7 +153,7 @@ def best_force(
     preload: float | None,
     rest: tuple[float, float] | None,
     *,
-    told: Told = untold,
+    on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
     """The motions of least peak contact force Σ weights[i] s⁽ⁱ⁾ + preload, which stays at or above a floor.
 
@@ -200,7 +202,7 @@ def best_force(
             highs.append(rest[1] / unit)
         return max(highs) + (known / unit if preload is not None else floor / unit - min(lows))
 
-    return _solved(runs, program, value, unit, lift, unit, told=told)
+    return _solved(runs, program, value, unit, lift, unit, on_grid=on_grid)
 
 
 def best_roller_size(
@@ -210,7 +212,7 @@ def best_roller_size(
     rest: Sequence[tuple[float, int, float]],
     grids: Sequence[int] = STEPS,
     *,
-    told: Told = untold,
+    on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
     """The motions of least prime radius of a translating roller follower under a pressure angle.
 
@@ -255,7 +257,7 @@ def best_roller_size(
     def value(solution: Solution) -> float:
         return float(np.linalg.norm(solution.scalars))
 
-    best = _solved(runs, program, value, unit, unit, unit, grids, told=told)
+    best = _solved(runs, program, value, unit, unit, unit, grids, on_grid=on_grid)
     if isinstance(best, Best) and offset is not None:
         return replace(best, value=math.hypot(best.value, offset), bound=math.hypot(best.bound, offset))
     return best
@@ -267,7 +269,7 @@ def best_flat_size(
     width: float | None,
     rest: tuple[float, float, float] | None,
     *,
-    told: Told = untold,
+    on_grid: OnGrid = silent,
 ) -> Best | NoMotion:
     """The motions of least base radius of a translating flat-faced follower.
 
@@ -320,7 +322,7 @@ def best_flat_size(
             least.append(rest[0] / unit)
         return least_radius / unit - min(least)
 
-    return _solved(runs, program, value, unit, unit, unit, told=told)
+    return _solved(runs, program, value, unit, unit, unit, on_grid=on_grid)
 
 
 def _solved(
@@ -332,12 +334,12 @@ def _solved(
     scalar_worth: float = 1.0,
     grids: Sequence[int] = STEPS,
     *,
-    told: Told,
+    on_grid: OnGrid,
 ) -> Best | NoMotion:
     """Solve on the first grid, and on the second where there is no solution or a gap; back to the client's units."""
     best: tuple[Solution, float, LowerBound] | None = None
     for steps in grids:
-        told(steps)
+        on_grid(steps)
         statement = program(steps)
         solution = solve(statement)
         if solution is None:

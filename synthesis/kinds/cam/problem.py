@@ -412,7 +412,7 @@ class CamProblem(StatedProblem):
 
         A polynomial begins and ends where its conditions put it.
         """
-        found = []
+        heights = []
         at = 0.0
         for segment in self.segments:
             end = at
@@ -424,31 +424,31 @@ class CamProblem(StatedProblem):
             elif isinstance(segment, Move):
                 lift = at if segment.lift is None else segment.lift * self.displacement_unit
                 end = at + lift if segment.motion == "rise" else at - lift
-            found.append((at, end))
+            heights.append((at, end))
             at = end
-        return found
+        return heights
 
     def ends(self) -> list[tuple[State, State] | None]:
         """s, v, a at both ends of each segment; None for automatic and optimal motions, which follow others."""
-        found: list[tuple[State, State] | None] = []
+        ends: list[tuple[State, State] | None] = []
         for segment, (start, end) in zip(self.segments, self.heights(), strict=True):
             angle = math.radians(segment.angle)
             if isinstance(segment, Polynomial):
-                found.append(polynomial_ends(angle, self.polynomial_conditions(segment)))
+                ends.append(polynomial_ends(angle, self.polynomial_conditions(segment)))
             elif isinstance(segment, ConstantVelocity):
-                found.append(law_ends("constant_velocity", angle, start, end))
+                ends.append(law_ends("constant_velocity", angle, start, end))
             elif isinstance(segment, Dwell):
-                found.append(((start, 0.0, 0.0), (end, 0.0, 0.0)))
+                ends.append(((start, 0.0, 0.0), (end, 0.0, 0.0)))
             elif segment.follows_criterion:
-                found.append(None)
+                ends.append(None)
             else:
-                found.append(law_ends(segment.law, angle, start, end))
-        return found
+                ends.append(law_ends(segment.law, angle, start, end))
+        return ends
 
     def contradictions(self) -> list[Contradiction]:
         """Faults that no single field shows."""
-        found = [*self._segments(), *self._dimensions(), *self._inputs()]
-        return found or [*self._turn(), *self._joints()]
+        contradictions = [*self._segments(), *self._dimensions(), *self._inputs()]
+        return contradictions or [*self._turn(), *self._joints()]
 
     def _turn(self) -> list[Contradiction]:
         total = math.fsum(segment.angle for segment in self.segments)
@@ -458,42 +458,46 @@ class CamProblem(StatedProblem):
 
     def _segments(self) -> list[Contradiction]:
         """Faults within a segment."""
-        found = []
+        contradictions = []
         heights = self.heights()
         for k, segment in enumerate(self.segments):
             where = f"/segments/{k}"
             if isinstance(segment, Move):
                 if segment.lift is None and segment.motion != "return":
-                    found.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
+                    contradictions.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
                 elif segment.lift is None and heights[k][0] <= 0.0:
-                    found.append(Contradiction(f"{where}/lift", "there is nothing to return from; state a lift"))
+                    contradictions.append(
+                        Contradiction(f"{where}/lift", "there is nothing to return from; state a lift")
+                    )
                 for name in ("conditions", "bands"):
                     if getattr(segment, name) and segment.law != "optimal":
-                        found.append(Contradiction(f"{where}/{name}", "only an optimal motion can meet them"))
+                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can meet them"))
                 for n, band in enumerate(segment.bands):
-                    found += _band_faults(f"{where}/bands/{n}", band, segment.angle)
+                    contradictions += _band_faults(f"{where}/bands/{n}", band, segment.angle)
             if isinstance(segment, Move | Polynomial):
                 for n, condition in enumerate(segment.conditions):
                     inner = isinstance(segment, Move)
                     if condition.angle > segment.angle or (inner and condition.angle in (0.0, segment.angle)):
                         detail = f"must lie within the segment's {segment.angle:g} degrees"
-                        found.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
                     if not condition.values():
-                        found.append(Contradiction(f"{where}/conditions/{n}", "states nothing; give s, v, a or j"))
-            if isinstance(segment, Polynomial) and not found:
+                        contradictions.append(
+                            Contradiction(f"{where}/conditions/{n}", "states nothing; give s, v, a or j")
+                        )
+            if isinstance(segment, Polynomial) and not contradictions:
                 conditions = self.polynomial_conditions(segment)
                 if polynomial_ends(math.radians(segment.angle), conditions) is None:
-                    found.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
-        if not found and not any(_moves(segment) for segment in self.segments):
-            found.append(Contradiction("/segments", "the follower never moves; state a rise"))
-        return found
+                    contradictions.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
+        if not contradictions and not any(_moves(segment) for segment in self.segments):
+            contradictions.append(Contradiction("/segments", "the follower never moves; state a rise"))
+        return contradictions
 
     def _joints(self) -> list[Contradiction]:
         """Joints where s jumps, or v or a without being accepted."""
         heights, ends = self.heights(), self.ends()
         travel = max(abs(b - a) for a, b in heights) or max(abs(a) for a, _ in heights) or 1.0
         least = min(math.radians(segment.angle) for segment in self.segments)
-        found = []
+        contradictions = []
         for k, segment in enumerate(self.segments):
             n = (k + 1) % len(self.segments)
             following = self.segments[n]
@@ -502,7 +506,7 @@ class CamProblem(StatedProblem):
             if abs(gap) > SMOOTH * travel:
                 hint = "; the program must come back to where it began" if n == 0 else ""
                 gap /= self.displacement_unit
-                found.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
+                contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
                 continue
             before, after = ends[k], ends[n]
             if self.accept_discontinuity or before is None or after is None:
@@ -511,11 +515,11 @@ class CamProblem(StatedProblem):
                 jump = after[0][order] - before[1][order]
                 if abs(jump) > SMOOTH * travel / least**order:
                     law = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
-                    found.append(Contradiction(f"/segments/{n}", f"{name} jumps by {jump:.6g} {joint}, {law}"))
+                    contradictions.append(Contradiction(f"/segments/{n}", f"{name} jumps by {jump:.6g} {joint}, {law}"))
                     break
-        if not found and not self.accept_discontinuity:
-            found += self._inner_jumps()
-        return found
+        if not contradictions and not self.accept_discontinuity:
+            contradictions += self._inner_jumps()
+        return contradictions
 
     def _inner_jumps(self) -> list[Contradiction]:
         """Laws whose acceleration jumps in their middle."""
@@ -529,56 +533,64 @@ class CamProblem(StatedProblem):
 
     def _dimensions(self) -> list[Contradiction]:
         """Dimensions of the follower that contradict one another."""
-        follower, found = self.follower, []
+        follower, contradictions = self.follower, []
         for name in ("roller_radius", "pivot_distance"):
             stated = getattr(follower, name, None)
             if isinstance(stated, LengthRange) and stated.min >= stated.max:
-                found.append(Contradiction(f"/follower/{name}/max", "must be above min"))
+                contradictions.append(Contradiction(f"/follower/{name}/max", "must be above min"))
         if isinstance(follower, TranslatingRoller | OscillatingRoller) and follower.prime_radius is not None:
             radius = follower.roller_radius
             least = radius.min if isinstance(radius, LengthRange) else radius
             if follower.prime_radius <= least:
-                found.append(Contradiction("/follower/prime_radius", "must be larger than the roller"))
+                contradictions.append(Contradiction("/follower/prime_radius", "must be larger than the roller"))
             if isinstance(follower, TranslatingRoller):
                 offset = follower.offset
                 if offset == "free":
                     detail = "a free offset needs a free prime radius; leave the prime radius out or state the offset"
-                    found.append(Contradiction("/follower/offset", detail))
+                    contradictions.append(Contradiction("/follower/offset", detail))
                 elif abs(offset) >= follower.prime_radius:
-                    found.append(Contradiction("/follower/offset", "must be less than the prime radius"))
+                    contradictions.append(Contradiction("/follower/offset", "must be less than the prime radius"))
             elif isinstance(follower.pivot_distance, LengthRange):
                 detail = "a free pivot needs a free prime radius; leave the prime radius out or state the pivot"
-                found.append(Contradiction("/follower/pivot_distance", detail))
+                contradictions.append(Contradiction("/follower/pivot_distance", detail))
             else:
                 arm, pivot = follower.arm, follower.pivot_distance
                 if not abs(pivot - arm) < follower.prime_radius < pivot + arm:
-                    found.append(Contradiction("/follower/prime_radius", "arm and pivot distance do not reach it"))
+                    contradictions.append(
+                        Contradiction("/follower/prime_radius", "arm and pivot distance do not reach it")
+                    )
         if self.closure == "form" and not isinstance(follower, TranslatingRoller | OscillatingRoller | BarrelRoller):
-            found.append(Contradiction("/closure", "only a roller runs in a groove; take another follower or force"))
+            contradictions.append(
+                Contradiction("/closure", "only a roller runs in a groove; take another follower or force")
+            )
         if isinstance(follower, OscillatingFlat):
             reach = (follower.base_radius or 0.0) + follower.face_offset
             if reach >= follower.pivot_distance:
-                found.append(Contradiction("/follower/pivot_distance", "must exceed base radius and face offset"))
-        return found
+                contradictions.append(
+                    Contradiction("/follower/pivot_distance", "must exceed base radius and face offset")
+                )
+        return contradictions
 
     def _inputs(self) -> list[Contradiction]:
         """What a criterion needs."""
-        found = []
+        contradictions = []
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
-            found.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
+            contradictions.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
         if force and (self.closure == "form" or isinstance(self.follower, BarrelRoller)):
-            found.append(Contradiction("/minimize", "in a groove no force holds the follower; choose otherwise"))
+            contradictions.append(
+                Contradiction("/minimize", "in a groove no force holds the follower; choose otherwise")
+            )
         if self.dynamics is not None and self.speed_rpm is None:
-            found.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
+            contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
         if optimal and self.minimize == "size" and self.oscillating:
             detail = "optimal motions of least size are found for translating followers; choose another criterion"
-            found.append(Contradiction("/minimize", detail))
+            contradictions.append(Contradiction("/minimize", detail))
         if optimal and self.minimize == "size" and isinstance(self.follower, BarrelRoller):
             detail = "by pressure angle a barrel is smallest where the peak velocity is; choose peak_velocity"
-            found.append(Contradiction("/minimize", detail))
-        return found
+            contradictions.append(Contradiction("/minimize", detail))
+        return contradictions
 
 
 def _band_faults(where: str, band: DisplacementBand, angle: float) -> list[Contradiction]:

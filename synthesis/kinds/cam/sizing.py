@@ -93,12 +93,12 @@ def translating_roller(program: Program, offset: float, limits: RollerLimits) ->
     """The smallest prime radius of a translating roller follower at an offset; None where none is sound."""
     d = _least_height(program, offset, limits)
     if limits.pitch_radius > 0.0:
-        found = smallest_allowed(
+        sound = smallest_allowed(
             program, _translating_curvature(offset, limits.pitch_radius), d, d + _reach(program, offset, limits)
         )
-        if found is None:
+        if sound is None:
             return None
-        d = found
+        d = sound
     return Size(math.hypot(d * (1.0 + MARGIN), offset), proven=True)
 
 
@@ -297,10 +297,10 @@ def oscillating_flat(
     if low > high:
         return None
     if width is not None:
-        found = _narrow_enough(program, pivot, sense, width, low, high)
-        if found is None:
+        narrow = _narrow_enough(program, pivot, sense, width, low, high)
+        if narrow is None:
             return None
-        low = found
+        low = narrow
     start = min(low * (1.0 + MARGIN), 0.5 * (low + high))
     return Size(pivot * math.sin(start) - face_offset, proven=True)
 
@@ -333,8 +333,8 @@ def _narrow_enough(program: Program, pivot: float, sense: int, width: float, low
 
 def _minimized(function: Callable[[float], float], low: float, high: float) -> float:
     """Where a convex function is least."""
-    found = minimize_scalar(function, bounds=(low, high), method="bounded", options={"xatol": CLOSER * (high - low)})
-    return min((low, float(found.x), high), key=function)
+    minimum = minimize_scalar(function, bounds=(low, high), method="bounded", options={"xatol": CLOSER * (high - low)})
+    return min((low, float(minimum.x), high), key=function)
 
 
 def _searched(size: Callable[[float], Size | None], low: float, high: float) -> Size | None:
@@ -344,8 +344,8 @@ def _searched(size: Callable[[float], Size | None], low: float, high: float) -> 
     def radius(value: float) -> float:
         value = float(value)
         if value not in cache:
-            found = size(value)
-            cache[value] = NONE if found is None else found.radius
+            smallest = size(value)
+            cache[value] = NONE if smallest is None else smallest.radius
         return cache[value]
 
     grid = [float(value) for value in np.linspace(low, high, COARSE + 1)]

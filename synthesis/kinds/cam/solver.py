@@ -221,7 +221,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
         fall = math.radians(limits.falling_pressure_angle)
         roller_limits = RollerLimits(rise, fall, least_pitch_radius(limits, rollers[0]), least)
         size: Size | None
-        made: core.Roller
+        core_follower: core.Roller
         if isinstance(follower, TranslatingRoller):
             if follower.prime_radius is not None:
                 size = Size(follower.prime_radius, True)
@@ -234,7 +234,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
             if size is None:
                 return None
             offset = size.free if follower.offset == "free" else float(follower.offset)
-            made = core.TranslatingRoller(size.radius, rollers[0], offset or 0.0)
+            core_follower = core.TranslatingRoller(size.radius, rollers[0], offset or 0.0)
         else:
             assert isinstance(follower, OscillatingRoller)
             pivot = follower.pivot_distance
@@ -248,8 +248,8 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
                 return None
             distance = size.free if isinstance(pivot, LengthRange) else pivot
             assert distance is not None
-            made = core.OscillatingRoller(size.radius, rollers[0], follower.arm, distance, follower.sense)
-        return _largest_roller(Cam(program, made, problem.rotation), rollers[1], problem), size
+            core_follower = core.OscillatingRoller(size.radius, rollers[0], follower.arm, distance, follower.sense)
+        return _largest_roller(Cam(program, core_follower, problem.rotation), rollers[1], problem), size
     except DimensionError:
         return None
 
@@ -258,11 +258,11 @@ def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     follower, limits = problem.follower, problem.limits
     least = max(limits.hub_radius, LEAST_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
     size: Size | None
-    made: core.Flat
+    core_follower: core.Flat
     if isinstance(follower, TranslatingFlat):
         size = Size(follower.base_radius, True) if follower.base_radius else None
         size = size or translating_flat(program, least_face_radius(problem), least)
-        made = core.TranslatingFlat(size.radius)
+        core_follower = core.TranslatingFlat(size.radius)
     else:
         assert isinstance(follower, OscillatingFlat)
         pivot, face, sense = follower.pivot_distance, follower.face_offset, follower.sense
@@ -272,8 +272,8 @@ def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
         )
         if size is None:
             return None
-        made = core.OscillatingFlat(size.radius, pivot, face, sense)
-    return Cam(program, made, problem.rotation), size
+        core_follower = core.OscillatingFlat(size.radius, pivot, face, sense)
+    return Cam(program, core_follower, problem.rotation), size
 
 
 def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:

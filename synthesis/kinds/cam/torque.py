@@ -156,8 +156,8 @@ def _bound(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[f
         size = weight.convex_integral(np.abs) if measure == "peak" else weight.rms()
         return (known + alpha * (last - first)) / size
 
-    found = minimize_scalar(lambda alpha: -proved(alpha), bounds=(-float(at_left[0]), 0.0), method="bounded")
-    return max(proved(float(found.x)), 0.0)
+    maximum = minimize_scalar(lambda alpha: -proved(alpha), bounds=(-float(at_left[0]), 0.0), method="bounded")
+    return max(proved(float(maximum.x)), 0.0)
 
 
 def _linearized(block: Block, measure: str, v: Real, a: Real | None, ceiling: Real | None) -> KnotMotion | None:

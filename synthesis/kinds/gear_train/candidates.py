@@ -47,16 +47,16 @@ class Candidates(Protocol):
     def steps(self) -> int:
         """Number of parts."""
 
-    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+    def search(self, first: int, last: int, rule: Rule, shortlist: Found) -> None:
         """Search the parts ``first`` up to, without, ``last``."""
 
     def least(self, part: int) -> int:
         """A lower bound of the sizes in a part and all later ones."""
 
-    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+    def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
         """Search all parts from ``first`` on at once, if that is little work; returns whether it was done."""
 
-    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+    def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
         """How many trains have exactly one of these ratios; ``found`` holds a search's result."""
 
 
@@ -85,7 +85,7 @@ class Halves:
             most = min(most, task.most_total)
         self.steps = max(0, most - self.least_size + 1)
 
-    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+    def search(self, first: int, last: int, rule: Rule, shortlist: Found) -> None:
         """Search a range of sizes."""
         start = self.least_size
         drivers, driven = self.drivers, self.driven
@@ -100,20 +100,22 @@ class Halves:
             start + first,
             start + last,
             rule,
-            found,
+            shortlist,
         )
 
     def least(self, part: int) -> int:
         """The size of a part."""
         return self.least_size + part
 
-    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+    def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
         """One pass over both lists by product, once so few trains come near that sizes need not be held apart."""
         size = self.least(first)
-        settled = found.kept[0] == len(found.error) and (not rule.by_size or size > found.size[-1])
+        settled = shortlist.kept[0] == len(shortlist.error) and (not rule.by_size or size > shortlist.size[-1])
         if not settled or self.combinations < MANY_TRAINS:
             return False
-        near = max(float(found.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else found.error[-1])
+        near = max(
+            float(shortlist.least_error[:size].min(initial=math.inf)), 0.0 if rule.by_size else shortlist.error[-1]
+        )
         # The products are spread over some powers of e: about so many pairs are as near as that.
         if self.combinations * near > FEW_TRAINS:
             return False
@@ -130,11 +132,11 @@ class Halves:
             orders[1],
             size,
             rule,
-            found,
+            shortlist,
         )
         return True
 
-    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+    def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
         """Products that are in exactly one of the ratios."""
         order = np.argsort(self.driven.products, kind="stable")
         driven, products = self.driven.teeth[order], self.driven.products[order]
@@ -180,28 +182,28 @@ class Meshes:
         """Number of groups."""
         return len(self.groups)
 
-    def search(self, first: int, last: int, rule: Rule, found: Found) -> None:
+    def search(self, first: int, last: int, rule: Rule, shortlist: Found) -> None:
         """Search a range of groups."""
-        self._combine(first, last, rule, found, _NO_TIES)
+        self._combine(first, last, rule, shortlist, _NO_TIES)
 
     def least(self, part: int) -> int:
         """Bound of a group."""
         return int(self.least_size[part])
 
-    def finish(self, first: int, rule: Rule, found: Found) -> bool:
+    def finish(self, first: int, rule: Rule, shortlist: Found) -> bool:
         """Groups are gone through one by one."""
         return False
 
-    def ties(self, ratios: list[Fraction], rule: Rule, found: Found) -> int:
+    def ties(self, ratios: list[Fraction], rule: Rule, shortlist: Found) -> int:
         """Trains of the ratios, met once more."""
-        found.ties[0] = 0
+        shortlist.ties[0] = 0
         fractions = np.array([(ratio.numerator, ratio.denominator) for ratio in ratios], np.int64)
-        self._combine(0, self.steps, rule, found, fractions)
-        return int(found.ties[0])
+        self._combine(0, self.steps, rule, shortlist, fractions)
+        return int(shortlist.ties[0])
 
-    def _combine(self, first: int, last: int, rule: Rule, found: Found, tied: Integers) -> None:
+    def _combine(self, first: int, last: int, rule: Rule, shortlist: Found, tied: Integers) -> None:
         lists = self.a, self.b, self.mark, self.ratio, self.groups, self.least_size
-        kernels.combine(self.k, *lists, first, last, self.coaxial, rule, found, tied)
+        kernels.combine(self.k, *lists, first, last, self.coaxial, rule, shortlist, tied)
 
 
 def coaxial_meshes(task: Task, k: int) -> Meshes:
@@ -229,7 +231,7 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
 
 def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
     """Least and greatest ratio of each stage's allowed meshes; empty where a stage has none."""
-    found = []
+    reaches = []
     for i in range(k):
         a, b, _ = _meshes(task, i, 1, task.stages(k))
         if not len(a):
@@ -237,8 +239,8 @@ def stage_reach(task: Task, k: int) -> list[tuple[Fraction, Fraction]]:
         ratio = b / a
         ends = (int(np.argmin(ratio)), int(np.argmax(ratio)))
         low, high = (Fraction(int(b[end]), int(a[end])) for end in ends)
-        found.append((low, high))
-    return found
+        reaches.append((low, high))
+    return reaches
 
 
 def _meshes(task: Task, stage: int, pitches: int, allowed: NDArray[np.bool_]) -> tuple[Integers, Integers, Integers]:

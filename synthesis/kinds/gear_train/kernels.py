@@ -201,35 +201,35 @@ def before(e: float, s: int, other_e: float, other_s: int, by_size: bool) -> boo
 
 
 @njit(cache=True, nogil=True)
-def worth(e: float, s: int, found: Found, by_size: bool) -> bool:
+def worth(e: float, s: int, shortlist: Found, by_size: bool) -> bool:
     """Whether a train would enter the best or improve on its size."""
-    capacity, count = len(found.error), found.kept[0]
-    if count < capacity or before(e, s, found.error[capacity - 1], found.size[capacity - 1], by_size):
+    capacity, count = len(shortlist.error), shortlist.kept[0]
+    if count < capacity or before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
         return True
-    return bool(e < found.least_error[s])
+    return bool(e < shortlist.least_error[s])
 
 
 @njit(cache=True, nogil=True)
-def enter(e: float, s: int, teeth: Integers, found: Found, by_size: bool) -> None:
+def enter(e: float, s: int, teeth: Integers, shortlist: Found, by_size: bool) -> None:
     """Take a train in."""
-    if e < found.least_error[s]:
-        found.least_error[s] = e
+    if e < shortlist.least_error[s]:
+        shortlist.least_error[s] = e
         for i in range(len(teeth)):
-            found.least_teeth[s, i] = teeth[i]
-    capacity, count = len(found.error), found.kept[0]
-    if count == capacity and not before(e, s, found.error[capacity - 1], found.size[capacity - 1], by_size):
+            shortlist.least_teeth[s, i] = teeth[i]
+    capacity, count = len(shortlist.error), shortlist.kept[0]
+    if count == capacity and not before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
         return
     place = min(count, capacity - 1)
-    while place > 0 and before(e, s, found.error[place - 1], found.size[place - 1], by_size):
-        found.error[place] = found.error[place - 1]
-        found.size[place] = found.size[place - 1]
+    while place > 0 and before(e, s, shortlist.error[place - 1], shortlist.size[place - 1], by_size):
+        shortlist.error[place] = shortlist.error[place - 1]
+        shortlist.size[place] = shortlist.size[place - 1]
         for i in range(len(teeth)):
-            found.teeth[place, i] = found.teeth[place - 1, i]
+            shortlist.teeth[place, i] = shortlist.teeth[place - 1, i]
         place -= 1
-    found.error[place], found.size[place] = e, s
+    shortlist.error[place], shortlist.size[place] = e, s
     for i in range(len(teeth)):
-        found.teeth[place, i] = teeth[i]
-    found.kept[0] = min(count + 1, capacity)
+        shortlist.teeth[place, i] = teeth[i]
+    shortlist.kept[0] = min(count + 1, capacity)
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -250,7 +250,7 @@ def match(
     from_size: int,
     to_size: int,
     rule: Rule,
-    found: Found,
+    shortlist: Found,
 ) -> None:
     """Meet in the middle: all drivers × all driven gears, for the sizes from ``from_size`` up to, without, ``to_size``.
 
@@ -261,8 +261,8 @@ def match(
     teeth = np.zeros(3 * MOST_STAGES, np.int64)
     most_drivers, most_driven = len(driver_starts) - 2, len(driven_starts) - 2
     front = np.inf
-    for s in range(min(from_size, len(found.least_error))):
-        front = min(front, found.least_error[s])
+    for s in range(min(from_size, len(shortlist.least_error))):
+        front = min(front, shortlist.least_error[s])
     for size in range(from_size, to_size):
         for step in range(2 * size + 1 if rule.largest else size + 1):
             u = min(step, size)
@@ -281,27 +281,27 @@ def match(
                 wanted = rule.target * d
                 while middle < end and driven_products[middle] < wanted:
                     middle += 1
-                capacity = len(found.error)
+                capacity = len(shortlist.error)
                 for upward in range(2):
                     j = middle if upward else middle - 1
                     while start <= j < end:
-                        full = found.kept[0] == capacity
+                        full = shortlist.kept[0] == capacity
                         if rule.by_size:
-                            ranked = 0.0 if full and size > found.size[capacity - 1] else np.inf
+                            ranked = 0.0 if full and size > shortlist.size[capacity - 1] else np.inf
                         else:
-                            ranked = found.error[capacity - 1] if full else np.inf
+                            ranked = shortlist.error[capacity - 1] if full else np.inf
                         near = abs(driven_products[j] - wanted)
-                        if near > _window(ranked, min(front, found.least_error[size]), rule.tolerance) * wanted:
+                        if near > _window(ranked, min(front, shortlist.least_error[size]), rule.tolerance) * wanted:
                             break
                         e = error_of(driven_products[j], d, rule.target, rule.target_rest)
-                        if e <= rule.tolerance and worth(e, size, found, rule.by_size):
+                        if e <= rule.tolerance and worth(e, size, shortlist, rule.by_size):
                             for stage in range(k):
                                 teeth[stage] = drivers[i, stage]
                                 teeth[MOST_STAGES + stage] = driven[j, stage]
                             if within_limits(teeth, k, rule) and pair_up(teeth, k, rule):
-                                enter(e, size, teeth, found, rule.by_size)
+                                enter(e, size, teeth, shortlist, rule.by_size)
                         j += 1 if upward else -1
-        front = min(front, found.least_error[size])
+        front = min(front, shortlist.least_error[size])
 
 
 @njit(cache=True, nogil=True)
@@ -317,17 +317,17 @@ def match_all(
     driven_order: Integers,
     from_size: int,
     rule: Rule,
-    found: Found,
+    shortlist: Found,
 ) -> None:
     """As :func:`match`, for all sizes from ``from_size`` up in one pass over both lists in the order of the products.
 
     It meets what comes near enough for the least of these sizes, so that it is for when little does.
     """
     teeth = np.zeros(3 * MOST_STAGES, np.int64)
-    capacity, middle = len(found.error), 0
+    capacity, middle = len(shortlist.error), 0
     front = np.inf
-    for s in range(min(from_size, len(found.least_error))):
-        front = min(front, found.least_error[s])
+    for s in range(min(from_size, len(shortlist.least_error))):
+        front = min(front, shortlist.least_error[s])
     for place in range(len(driver_order)):
         i = driver_order[place]
         d = driver_products[i]
@@ -340,23 +340,23 @@ def match_all(
                 j = driven_order[at]
                 at += 1 if upward else -1
                 if rule.by_size:
-                    full = found.kept[0] == capacity and from_size > found.size[capacity - 1]
+                    full = shortlist.kept[0] == capacity and from_size > shortlist.size[capacity - 1]
                     ranked = 0.0 if full else np.inf
                 else:
-                    ranked = found.error[capacity - 1] if found.kept[0] == capacity else np.inf
+                    ranked = shortlist.error[capacity - 1] if shortlist.kept[0] == capacity else np.inf
                 if abs(driven_products[j] - wanted) > _window(ranked, front, rule.tolerance) * wanted:
                     break
                 one, other = driver_sizes[i], driven_sizes[j]
                 size = max(one, other) if rule.largest else one + other
-                if size < from_size or size >= len(found.least_error):
+                if size < from_size or size >= len(shortlist.least_error):
                     continue
                 e = error_of(driven_products[j], d, rule.target, rule.target_rest)
-                if e <= rule.tolerance and worth(e, size, found, rule.by_size):
+                if e <= rule.tolerance and worth(e, size, shortlist, rule.by_size):
                     for stage in range(k):
                         teeth[stage] = drivers[i, stage]
                         teeth[MOST_STAGES + stage] = driven[j, stage]
                     if within_limits(teeth, k, rule) and pair_up(teeth, k, rule):
-                        enter(e, size, teeth, found, rule.by_size)
+                        enter(e, size, teeth, shortlist, rule.by_size)
 
 
 @njit(cache=True, nogil=True)
@@ -436,7 +436,7 @@ def combine(
     last: int,
     coaxial: bool,
     rule: Rule,
-    found: Found,
+    shortlist: Found,
     tied: Integers,
 ) -> None:
     """Trains of one mesh a:b from each stage's list, for the groups ``first`` up to, without, ``last``.
@@ -450,11 +450,11 @@ def combine(
     """
     teeth, canonical = np.zeros(3 * MOST_STAGES, np.int64), np.zeros(3 * MOST_STAGES, np.int64)
     place = np.zeros(MOST_STAGES + 1, np.int64)
-    capacity = len(found.error)
+    capacity = len(shortlist.error)
     for g in range(first, last):
         front = np.inf
         for s in range(least_size[g] + 1):
-            front = min(front, found.least_error[s])
+            front = min(front, shortlist.least_error[s])
         begin = groups[g, k - 1] if rule.ordered else groups[g, 0]
         end = groups[g, k] if rule.ordered else groups[g, 1]
         stage = 0
@@ -489,13 +489,13 @@ def combine(
             for upward in range(2):
                 j = middle if upward else middle - 1
                 while low <= j < end:
-                    full = found.kept[0] == capacity
+                    full = shortlist.kept[0] == capacity
                     if rule.by_size:
-                        ranked = 0.0 if full and least_size[g] > found.size[capacity - 1] else np.inf
+                        ranked = 0.0 if full and least_size[g] > shortlist.size[capacity - 1] else np.inf
                     else:
-                        ranked = found.error[capacity - 1] if full else np.inf
+                        ranked = shortlist.error[capacity - 1] if full else np.inf
                     if len(tied) > 0:
-                        ranked = front = found.error[0]
+                        ranked = front = shortlist.error[0]
                     if abs(ratio[j] - wanted) > _window(ranked, front, rule.tolerance) * wanted:
                         break
                     e = error_of(up * b[j], down * a[j], rule.target, rule.target_rest)
@@ -505,9 +505,9 @@ def combine(
                         common = divisor(up * b[j], down * a[j])
                         if up * b[j] // common == tied[t, 0] and down * a[j] // common == tied[t, 1]:
                             wanted_tie = True
-                    few = size < len(found.least_error)
+                    few = size < len(shortlist.least_error)
                     if wanted_tie or (
-                        len(tied) == 0 and few and e <= rule.tolerance and worth(e, size, found, rule.by_size)
+                        len(tied) == 0 and few and e <= rule.tolerance and worth(e, size, shortlist, rule.by_size)
                     ):
                         place[k - 1] = j
                         for i in range(k):
@@ -521,9 +521,9 @@ def combine(
                             sort(canonical, MOST_STAGES, k)
                             sound = pair_up(canonical, k, rule) and same_meshes(teeth, canonical, k)
                         if sound and wanted_tie:
-                            found.ties[0] += 1
+                            shortlist.ties[0] += 1
                         elif sound:
-                            enter(e, size, teeth, found, rule.by_size)
+                            enter(e, size, teeth, shortlist, rule.by_size)
                             if size <= least_size[g]:
                                 front = min(front, e)
                     j += 1 if upward else -1

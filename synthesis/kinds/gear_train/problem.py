@@ -205,21 +205,29 @@ class GearTrainProblem(StatedProblem):
         return [*self._contradicting_fields(), *self._wrong_lists(), *self._too_much()]
 
     def _contradicting_fields(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         if self.direction == "same" and parse_target(self.ratio)[0] < 0:
-            found.append(Contradiction("/direction", "a negative ratio states opposite directions; drop one of them"))
+            contradictions.append(
+                Contradiction("/direction", "a negative ratio states opposite directions; drop one of them")
+            )
         if self.module is not None and self.diametral_pitch is not None:
-            found.append(Contradiction("/diametral_pitch", "the module already states the pitch; give one of them"))
+            contradictions.append(
+                Contradiction("/diametral_pitch", "the module already states the pitch; give one of them")
+            )
         if self.stock is not None and "teeth" in self.model_fields_set:
-            found.append(Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock"))
+            contradictions.append(
+                Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock")
+            )
         if self.reverted and self.max_stages < 2:
-            found.append(Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages"))
-        return found
+            contradictions.append(
+                Contradiction("/reverted", "a reverted train has at least two stages; raise max_stages")
+            )
+        return contradictions
 
     def _wrong_lists(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         if isinstance(self.teeth, list) and len(self.teeth) != 2 * self.max_stages:
-            found.append(
+            contradictions.append(
                 Contradiction(
                     "/teeth",
                     f"expected {2 * self.max_stages} ranges, driver and driven gear of {self.max_stages} stages, "
@@ -231,19 +239,21 @@ class GearTrainProblem(StatedProblem):
             if one.min is None and self.fewest_teeth > one.max:
                 path = f"/teeth/{place}/max" if isinstance(self.teeth, list) else "/teeth/max"
                 detail = f"below the least sound tooth number {self.fewest_teeth}; state min as well"
-                found.append(Contradiction(path, detail))
+                contradictions.append(Contradiction(path, detail))
         if isinstance(self.module, list):
             if len(set(self.module)) < len(self.module) and self.reverted:
-                found.append(Contradiction("/module", "lists a module twice; each is a choice for every stage"))
+                contradictions.append(
+                    Contradiction("/module", "lists a module twice; each is a choice for every stage")
+                )
             elif max(self.pitches()) > FINEST_PITCHES:
-                found.append(Contradiction("/module", "the modules have no common measure; round them"))
+                contradictions.append(Contradiction("/module", "the modules have no common measure; round them"))
             elif not self.reverted and len(self.module) != self.max_stages:
-                found.append(
+                contradictions.append(
                     Contradiction(
                         "/module", f"expected the modules of {self.max_stages} stages, got {len(self.module)}"
                     )
                 )
-        return found
+        return contradictions
 
     def _too_much(self) -> list[Contradiction]:
         if self._wrong_lists():

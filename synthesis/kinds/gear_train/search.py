@@ -105,19 +105,19 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     whole = (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
     near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + 1e-12) + 1e-15
     counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
-    found = _searched(task, counts, near, tolerance, wanted, progress)
+    outcome = _searched(task, counts, near, tolerance, wanted, progress)
     nearest = None
-    few = not found.trains or (tolerance is None and len(found.trains) < wanted)
+    few = not outcome.trains or (tolerance is None and len(outcome.trains) < wanted)
     if few and whole is not None and _reaches(task.target, whole, 0.0):
         every = tuple(k for k, span in reach.items() if span is not None)
         progress(0.5, "few trains are that near; searching the nearest")
         anyhow = _searched(task, every, UNLIMITED, None, wanted, lambda fraction, message: None)
         if tolerance is None:
-            found = found._replace(trains=anyhow.trains) if found.trains else anyhow
+            outcome = outcome._replace(trains=anyhow.trains) if outcome.trains else anyhow
         elif anyhow.trains:
             nearest = anyhow.trains[0]
     combinations = sum(_covered(task, k) for k in task.stage_counts)
-    return Outcome(found.trains, found.pareto, found.ties, combinations, whole, nearest)
+    return Outcome(outcome.trains, outcome.pareto, outcome.ties, combinations, whole, nearest)
 
 
 class _Pass(NamedTuple):
@@ -137,44 +137,46 @@ def _searched(
         size = task.most_teeth if task.largest else 2 * max(counts, default=0) * task.most_teeth
         if task.most_total is not None and not task.largest:
             size = min(size, task.most_total)
-        found = Found.empty(capacity, size)
+        shortlist = Found.empty(capacity, size)
         done, work = 0, sum(one.combinations for one in listed) or 1
         for k, one, rule in zip(counts, listed, rules, strict=True):
             parts = np.linspace(0, one.steps, min(PARTS, one.steps) + 1).astype(int)
             for first, last in itertools.pairwise(parts):
-                if one.least(int(first)) > _last_size(task, found) or one.finish(int(first), rule, found):
+                if one.least(int(first)) > _last_size(task, shortlist) or one.finish(int(first), rule, shortlist):
                     break
-                one.search(int(first), int(last), rule, found)
+                one.search(int(first), int(last), rule, shortlist)
                 share = (done + one.combinations * float(last) / one.steps) / work
                 progress(0.95 * share, f"{k} stages: {one.combinations:.3g} trains")
             done += one.combinations
-        trains = [_train(row) for row in found.teeth[: found.kept[0]]]
+        trains = [_train(row) for row in shortlist.teeth[: shortlist.kept[0]]]
         kept = [train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance)]
         # Trains that only the rounded tolerance let in may have taken the places of others.
         crowded = len(kept) < len(trains) == capacity
         trains = order(task, kept)
-        if not crowded and not _may_have_dropped(task, trains, found, wanted):
+        if not crowded and not _may_have_dropped(task, trains, shortlist, wanted):
             break
         capacity *= 4
     ties = 0
     if trains:
-        rows = [_train(row) for row in found.least_teeth[np.isfinite(found.least_error)]] if task.by_size else []
+        rows = (
+            [_train(row) for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)]] if task.by_size else []
+        )
         best = min((train.ratio for train in [*trains, *rows]), key=cmp_to_key(task.target.nearer))
         equal = _equally_near(task, best)
-        found.error[0] = abs(task.target.relative_error(best))
-        ties = sum(one.ties(equal, rule, found) for one, rule in zip(listed, rules, strict=True))
-    return _Pass(trains[:wanted], _pareto(task, found, tolerance), ties)
+        shortlist.error[0] = abs(task.target.relative_error(best))
+        ties = sum(one.ties(equal, rule, shortlist) for one, rule in zip(listed, rules, strict=True))
+    return _Pass(trains[:wanted], _pareto(task, shortlist, tolerance), ties)
 
 
-def _last_size(task: Task, found: Found) -> float:
+def _last_size(task: Task, shortlist: Found) -> float:
     """Size beyond which no train can enter what is found: infinite until as many exact trains as are kept are met."""
-    full = found.kept[0] == len(found.error)
+    full = shortlist.kept[0] == len(shortlist.error)
     exact = task.target.rational
-    if not full or exact is None or found.least_error.min() > NOISE:
+    if not full or exact is None or shortlist.least_error.min() > NOISE:
         return math.inf
-    rows = found.teeth if not task.by_size else found.least_teeth[found.least_error <= NOISE]
+    rows = shortlist.teeth if not task.by_size else shortlist.least_teeth[shortlist.least_error <= NOISE]
     settled = (all if not task.by_size else any)(_train(row).ratio == exact for row in rows)
-    return float(found.size.max()) if settled else math.inf
+    return float(shortlist.size.max()) if settled else math.inf
 
 
 def _candidates(task: Task, k: int, near: float) -> Candidates:
@@ -241,12 +243,12 @@ def order(task: Task, trains: Iterable[Train], hunting: Container[Train] = ()) -
     return sorted(trains, key=key)
 
 
-def _may_have_dropped(task: Task, trains: list[Train], found: Found, wanted: int) -> bool:
+def _may_have_dropped(task: Task, trains: list[Train], shortlist: Found, wanted: int) -> bool:
     """Whether a train that was left out could belong among the first ``wanted``."""
-    if found.kept[0] < len(found.error) or not trains:
+    if shortlist.kept[0] < len(shortlist.error) or not trains:
         return False
     last = trains[min(wanted, len(trains)) - 1]
-    dropped = _train(found.teeth[-1])
+    dropped = _train(shortlist.teeth[-1])
     if task.by_size and last.size(task.largest) != dropped.size(task.largest):
         return False
     if task.target.nearer(last.ratio, dropped.ratio) == 0:
@@ -266,10 +268,10 @@ def _equally_near(task: Task, ratio: Fraction) -> list[Fraction]:
     return [ratio, mirrored] if possible else [ratio]
 
 
-def _pareto(task: Task, found: Found, tolerance: Fraction | None) -> list[Train]:
+def _pareto(task: Task, shortlist: Found, tolerance: Fraction | None) -> list[Train]:
     """The nearest train of each size that is nearer than all smaller ones."""
     front: list[Train] = []
-    for row in found.least_teeth[np.isfinite(found.least_error)]:
+    for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)]:
         train = _train(row)
         if tolerance is not None and not task.target.within(train.ratio, tolerance):
             continue

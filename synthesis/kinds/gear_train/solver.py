@@ -80,17 +80,17 @@ def _gears(task: Task, train: Train) -> tuple[object, ...]:
 
 
 def _least_error(task: Task, outcome: Outcome) -> float | None:
-    found = [*outcome.trains, *outcome.pareto, *([outcome.nearest] if outcome.nearest else [])]
-    return min((abs(task.target.relative_error(train.ratio)) for train in found), default=None)
+    trains = [*outcome.trains, *outcome.pareto, *([outcome.nearest] if outcome.nearest else [])]
+    return min((abs(task.target.relative_error(train.ratio)) for train in trains), default=None)
 
 
 def _stages(problem: GearTrainProblem, task: Task, train: Train) -> list[Stage]:
     """The meshes with their modules."""
-    found = []
+    stages = []
     for number, ((driver, driven), mark) in enumerate(zip(train.meshes, train.marks, strict=True)):
         place = mark if problem.reverted else min(number, len(task.modules) - 1)
-        found.append(Stage(driver=driver, driven=driven, module=float(task.modules[place])))
-    return found
+        stages.append(Stage(driver=driver, driven=driven, module=float(task.modules[place])))
+    return stages
 
 
 def _mechanism(problem: GearTrainProblem, task: Task, train: Train) -> GearTrainMechanism | None:

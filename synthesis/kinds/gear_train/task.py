@@ -136,14 +136,14 @@ def needs_idler(problem: GearTrainProblem, stages: int) -> bool:
 
 def _stage_counts(problem: GearTrainProblem, stocked: int | None) -> tuple[int, ...]:
     """Numbers of stages that the direction and the stock permit."""
-    found = []
+    counts = []
     for k in range(2 if problem.reverted else 1, problem.max_stages + 1):
         idler = needs_idler(problem, k)
         # An idler in one stage of a reverted train would spread its shafts.
         if (idler and problem.reverted) or (stocked is not None and stocked < 2 * k + idler):
             continue
-        found.append(k)
-    return tuple(found)
+        counts.append(k)
+    return tuple(counts)
 
 
 def _sound_meshes(problem: GearTrainProblem, most: int, coprime: bool) -> NDArray[np.bool_]:

@@ -203,10 +203,10 @@ def _front(one: Options, other: Options, wanted: _Wanted) -> list[Choice]:
             total = one.size[firsts] + size
             error[error > wanted.bound[total] + SAME] = np.inf
             for k in _firsts(total, error):
-                found = (float(error[k]), int(firsts[k]), int(rows[partner[k]]))
+                candidate = (float(error[k]), int(firsts[k]), int(rows[partner[k]]))
                 whole = int(total[k])
-                if math.isfinite(found[0]) and (whole not in best or found[0] < best[whole][0] - SAME):
-                    best[whole] = found
+                if math.isfinite(candidate[0]) and (whole not in best or candidate[0] < best[whole][0] - SAME):
+                    best[whole] = candidate
     front: list[Choice] = []
     for whole in sorted(best):
         least, first, second = best[whole]

@@ -152,28 +152,28 @@ class GearboxProblem(StatedProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Limits the wrong way round or too wide, a structure with another number of speeds, a progression too wide."""
-        found = []
+        contradictions = []
         half = 0.5 * math.log(self.speeds.progression_ratio)
         if self.widest >= half:
             detail = f"must be below half a step, {half:.4g}, beyond which a speed is nearer to another nominal one"
-            found.append(Contradiction("/tolerance", detail))
-        found += tooth_faults(self.teeth, self.tooth_sum)
+            contradictions.append(Contradiction("/tolerance", detail))
+        contradictions += tooth_faults(self.teeth, self.tooth_sum)
         if self.structure is not None and math.prod(self.structure) != self.speeds.count:
             detail = f"gives {math.prod(self.structure)} speeds, but speeds.count is {self.speeds.count}"
-            found.append(Contradiction("/structure", detail))
+            contradictions.append(Contradiction("/structure", detail))
         if self.structure is not None and self.structure.count(1) > 1:
             # Every ratio of one fixed stage goes with every ratio of the other: minutes, and more than the memory.
-            found.append(Contradiction("/structure", "at most one fixed stage; join the others to it"))
+            contradictions.append(Contradiction("/structure", "at most one fixed stage; join the others to it"))
         if self.structure is not None and self.fixed_stage:
-            found.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
+            contradictions.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
         if self.speeds.progression_ratio ** (self.speeds.count - 1) > 1e6:
-            found.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
+            contradictions.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
         if self.tooth_sum.max > MOST_TOOTH_SUM:
-            found.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
+            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
         elif (pairs := self.pairs_of_a_stage) > MOST_PAIRS:
             detail = f"leaves {pairs} pairs of gears for a stage, of which at most {MOST_PAIRS} are searched; "
-            found.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))
-        return found
+            contradictions.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))
+        return contradictions
 
     @property
     def pairs_of_a_stage(self) -> int:

@@ -77,15 +77,17 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
 
         choices[groups], count = _choices(problem, groups, ratio, within)
         covered += count
-    made = []
+    gearboxes = []
     for groups, front in choices.items():
         orders = [structure for structure in tried if tuple(sorted(structure)) == groups]
-        made += [_ordered(choice, groups, orders) for choice in front]
-    made.sort(key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque))
+        gearboxes += [_ordered(choice, groups, orders) for choice in front]
+    gearboxes.sort(
+        key=lambda m: (m.error, m.size, m.torque) if problem.rank_by == "error" else (m.size, m.error, m.torque)
+    )
     unsearched = _unsearched(problem, tried)
     sifting = Sifting[GearboxDesign](problem)
-    sifting.reject(OUTRANKED, covered - len(made[: problem.max_designs]))
-    sifting.sift(made[: problem.max_designs], partial(_design, problem))
+    sifting.reject(OUTRANKED, covered - len(gearboxes[: problem.max_designs]))
+    sifting.sift(gearboxes[: problem.max_designs], partial(_design, problem))
     progress(1.0, "done")
     return GearboxResult(
         designs=sifting.designs(list),
@@ -98,18 +100,18 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
 
 def _structures(problem: GearboxProblem) -> list[Structure]:
     if problem.structure is None:
-        found = structures(problem.speeds.count, problem.max_pairs)
-        return [(FIXED, *structure) for structure in found] if problem.fixed_stage else found
+        candidates = structures(problem.speeds.count, problem.max_pairs)
+        return [(FIXED, *structure) for structure in candidates] if problem.fixed_stage else candidates
     stated = [pairs for pairs in problem.structure if pairs > 1]
-    found = []
+    candidates = []
     for order in itertools.permutations(range(len(stated))):
         characteristic, groups = 1, {}
         for at in order:
             groups[at] = Group(stated[at], characteristic)
             characteristic *= stated[at]
         several = iter([groups[at] for at in range(len(stated))])
-        found.append(tuple(FIXED if pairs == 1 else next(several) for pairs in problem.structure))
-    return found
+        candidates.append(tuple(FIXED if pairs == 1 else next(several) for pairs in problem.structure))
+    return candidates
 
 
 def _limits(problem: GearboxProblem) -> StageLimits:
@@ -137,13 +139,13 @@ def _choices(
             known[group] = stage_options(group, ratio, problem.widest, limits)
     stages = [known[group] for group in groups]
     level = math.log(problem.speeds.min / problem.input_speed)
-    found = best_choices(stages, level, problem.widest, progress)
-    return found, math.prod(stage.covered for stage in stages)
+    front = best_choices(stages, level, problem.widest, progress)
+    return front, math.prod(stage.covered for stage in stages)
 
 
 def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Made:
     """The order of the stages that loads the shafts between input and spindle least, of those that are allowed."""
-    found = []
+    gearboxes = []
     for structure in orders:
         rest = list(zip(groups, choice.stages, strict=True))
         # Equal groups may have different teeth; the faster one stands nearer to the input.
@@ -156,18 +158,18 @@ def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structu
         for total, drivers in placed[:-1]:
             speed *= min(drivers) / (total - min(drivers))
             torque += 1.0 / speed
-        found.append(_Made(choice.error, choice.size, torque, structure, tuple(placed)))
-    return min(found, key=lambda made: made.torque)
+        gearboxes.append(_Made(choice.error, choice.size, torque, structure, tuple(placed)))
+    return min(gearboxes, key=lambda gearbox: gearbox.torque)
 
 
-def _design(problem: GearboxProblem, made: _Made) -> GearboxDesign:
+def _design(problem: GearboxProblem, gearbox: _Made) -> GearboxDesign:
     stages = []
-    for group, (total, drivers) in zip(made.structure, made.stages, strict=True):
+    for group, (total, drivers) in zip(gearbox.structure, gearbox.stages, strict=True):
         pairs = [GearPairTeeth(driver=z, driven=total - z) for z in drivers]
         distance = 0.5 * problem.module * total
         stages.append(GearboxStage(characteristic=group.characteristic, pairs=pairs, centre_distance=distance))
     mechanism = GearboxMechanism(
-        formula=formula(made.structure),
+        formula=formula(gearbox.structure),
         input_speed=problem.input_speed,
         stages=stages,
         module=problem.module,
@@ -184,8 +186,8 @@ def _design(problem: GearboxProblem, made: _Made) -> GearboxDesign:
     )
 
 
-def _verdict(structure: Structure, found: list[Choice]) -> StructureVerdict:
-    best = found[-1] if found else None
+def _verdict(structure: Structure, front: list[Choice]) -> StructureVerdict:
+    best = front[-1] if front else None
     return StructureVerdict(
         formula=formula(structure), max_error=best.error if best else None, tooth_sum=best.size if best else None
     )

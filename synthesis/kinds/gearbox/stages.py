@@ -90,7 +90,7 @@ def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits
         Teeth, tooth sums and ratios allowed.
     """
     step = group.characteristic * math.log(ratio)
-    found = [
+    options = [
         (np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros((0, group.pairs), np.int64)),
     ]
     covered = 0
@@ -103,8 +103,8 @@ def stage_options(group: Group, ratio: float, widest: float, limits: StageLimits
         kept = high - low <= 2.0 * widest + SAME
         c, h, drivers = 0.5 * (low + high)[kept], 0.5 * (high - low)[kept], drivers[kept]
         worth = worth_having(c, h, np.zeros(len(c), np.int64))
-        found.append((c[worth], h[worth], np.full(len(worth), total), drivers[worth]))
-    middle, half, size, drivers = (np.concatenate(part) for part in zip(*found, strict=True))
+        options.append((c[worth], h[worth], np.full(len(worth), total), drivers[worth]))
+    middle, half, size, drivers = (np.concatenate(part) for part in zip(*options, strict=True))
     worth = worth_having(middle, half, size)
     return Options(middle[worth], half[worth], size[worth], worth[:, None], ((size, drivers),), covered)
 
@@ -141,7 +141,7 @@ def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
     ends = np.flatnonzero(np.diff(size[order], append=np.iinfo(np.int64).max)) + 1
     # Those kept, by rising middle, for the sizes up to here.
     kept, c, h = np.zeros(0, np.int64), np.zeros(0), np.zeros(0)
-    found = [kept]
+    chosen = [kept]
     for own in np.split(order, ends[:-1]):
         if not len(own):
             break
@@ -153,11 +153,11 @@ def worth_having(middle: Real, half: Real, size: Whole) -> Whole:
             replaced |= np.append(_least_before(h - c), (h - c).min())[at] <= left + SAME
             replaced |= np.append(np.minimum.accumulate((h + c)[::-1])[::-1], np.inf)[at] <= right + SAME
         new = own[~replaced]
-        found.append(new)
+        chosen.append(new)
         kept = np.concatenate((kept, new))
         kept = kept[np.argsort(middle[kept], kind="stable")]
         c, h = middle[kept], half[kept]
-    return np.concatenate(found)
+    return np.concatenate(chosen)
 
 
 def _least_before(values: Real) -> Real:

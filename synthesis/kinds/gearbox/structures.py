@@ -32,26 +32,26 @@ def formula(structure: Structure) -> str:
 
 def structures(count: int, most: int) -> list[Structure]:
     """All structures of ``count`` speeds with 2 to ``most`` pairs in a stage."""
-    found = []
+    orders = []
     for factors in _factorizations(count, most):
         for order in itertools.permutations(range(len(factors))):
             characteristic, groups = 1, {}
             for at in order:
                 groups[at] = Group(factors[at], characteristic)
                 characteristic *= factors[at]
-            found.append(tuple(groups[at] for at in range(len(factors))))
-    return found
+            orders.append(tuple(groups[at] for at in range(len(factors))))
+    return orders
 
 
 def _factorizations(count: int, most: int) -> list[tuple[int, ...]]:
     """Ordered factorizations into factors 2 to ``most``."""
     if count == 1:
         return [()]
-    found = []
+    factorizations = []
     for factor in range(2, min(count, most) + 1):
         if count % factor == 0:
-            found += [(factor, *rest) for rest in _factorizations(count // factor, most)]
-    return found
+            factorizations += [(factor, *rest) for rest in _factorizations(count // factor, most)]
+    return factorizations
 
 
 def spread(group: Group, ratio: float) -> float:

@@ -76,13 +76,13 @@ def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list
         torque=sum(mechanism.input_speed / shaft.speeds[0] for shaft in shafts[1:-1]),
         speeds=[
             SpindleSpeed(
-                speed=float(found.speed),
+                speed=float(own.speed),
                 nominal=wanted,
-                error=float(found.speed) / wanted - 1.0,
+                error=float(own.speed) / wanted - 1.0,
                 standard=near,
-                engaged=list(found.engaged),
+                engaged=list(own.engaged),
             )
-            for found, wanted, near in zip(speeds, nominal, rounded, strict=True)
+            for own, wanted, near in zip(speeds, nominal, rounded, strict=True)
         ],
         shafts=shafts,
     )
@@ -98,7 +98,7 @@ def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]
     if len(speeds) != problem.speeds.count:
         return []
     return [
-        abs(math.log(float(found.speed) / wanted)) for found, wanted in zip(speeds, problem.speeds.nominal, strict=True)
+        abs(math.log(float(own.speed) / wanted)) for own, wanted in zip(speeds, problem.speeds.nominal, strict=True)
     ]
 
 

@@ -59,12 +59,12 @@ class LayshaftProblem(StatedProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Limits the wrong way round, gears out of order or stated twice."""
-        found = tooth_faults(self.teeth, self.tooth_sum)
+        contradictions = tooth_faults(self.teeth, self.tooth_sum)
         for k, (before, after) in enumerate(zip(self.ratios, self.ratios[1:], strict=False), start=1):
             if after >= before:
-                found.append(Contradiction(f"/ratios/{k}", "must be below the gear before it"))
+                contradictions.append(Contradiction(f"/ratios/{k}", "must be below the gear before it"))
         if self.rank_by == "size" and self.tolerance is None:
-            found.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratios"))
+            contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratios"))
         if self.tooth_sum.max > MOST_TOOTH_SUM:
-            found.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
-        return found
+            contradictions.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
+        return contradictions

@@ -167,9 +167,9 @@ def _sound_idler(counts: Whole, one: Whole, idler: Whole, other: Whole, angle: f
     least = np.where(sound.any(axis=1), counts[sound.argmax(axis=1)], counts[-1] + 1)
     most = counts[-1] - sound[:, ::-1].argmax(axis=1)
     at, to = one - counts[0], other - counts[0]
-    found = np.maximum(idler, np.maximum(least[at], least[to]))
-    sound_one = found <= np.minimum(most[at], most[to])
-    return np.asarray(np.where(sound_one, found, counts[-1] + 1), np.int64)
+    smallest = np.maximum(idler, np.maximum(least[at], least[to]))
+    sound_one = smallest <= np.minimum(most[at], most[to])
+    return np.asarray(np.where(sound_one, smallest, counts[-1] + 1), np.int64)
 
 
 def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) -> list[_Box]:
@@ -178,7 +178,7 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
         return []
     most = min(count, len(level.heads))
     limit = np.partition(level.error, most - 1)[most - 1]
-    found = []
+    boxes = []
     for k in np.flatnonzero(level.error <= limit + CLOSE).tolist():
         own = int(level.heads[k])
         gears = tuple(None if c is None else (int(c[k]), size - int(c[k])) for c in level.layshaft)
@@ -191,8 +191,8 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
         errors = [abs(r / t - 1) for r, t in zip(ratios.forward, demanded, strict=True)]
         if ratios.reverse is not None and problem.reverse is not None:
             errors.append(abs(-ratios.reverse / Fraction(repr(problem.reverse)) - 1))
-        found.append(_Box(max(errors), size, (own, size - own), gears, reverse))
-    return sorted(found, key=lambda box: box[:3])[:count]
+        boxes.append(_Box(max(errors), size, (own, size - own), gears, reverse))
+    return sorted(boxes, key=lambda box: box[:3])[:count]
 
 
 def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:

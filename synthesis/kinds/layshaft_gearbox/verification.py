@@ -61,7 +61,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
     if len(mechanism.gears) != len(demanded) or (mechanism.reverse is None) != (problem.reverse is None):
         return None
     head = Rolling("input", "layshaft", GROUND, mechanism.head.driver, mechanism.head.driven)
-    found = []
+    errors = []
     for gear, target in zip(mechanism.gears, demanded, strict=True):
         ratio = Fraction(1)
         if gear.layshaft is not None and gear.mainshaft is not None:
@@ -71,7 +71,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
             return None
         if ratio != gear.ratio.exact:
             return None
-        found.append(ratio / target - 1)
+        errors.append(ratio / target - 1)
     if mechanism.reverse is not None and problem.reverse is not None:
         back = mechanism.reverse
         pairs = (
@@ -81,8 +81,8 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
         ratio = speed_ratio(Train((head, *pairs)), "input", "mainshaft") or Fraction(0)
         if ratio != back.ratio.exact or ratio >= 0:
             return None
-        found.append(-ratio / Fraction(repr(problem.reverse)) - 1)
-    return found
+        errors.append(-ratio / Fraction(repr(problem.reverse)) - 1)
+    return errors
 
 
 def _coaxial_pairs(mechanism: LayshaftMechanism) -> list[tuple[int, int]]:

@@ -116,7 +116,7 @@ def nearest(
         form = arrangement_form(arrangement.name, *roles)
         return _of_one_set(arrangement.name, tables[0], roles, form, target, count)
     coupling = _Coupling.of(arrangement, roles)
-    return None if coupling is None else _TwoSets(arrangement.name, tables, roles, coupling, target).found(count)
+    return None if coupling is None else _TwoSets(arrangement.name, tables, roles, coupling, target).nearest(count)
 
 
 def _errors(over: Real, under: Real, target: Fraction) -> Real:
@@ -142,15 +142,15 @@ def _ranks(errors: list[Fraction]) -> Whole:
 
 
 def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int) -> Nearest:
-    found = Nearest()
+    nearest_trains = Nearest()
     if not form.over:
-        return found
+        return nearest_trains
     size = len(table.size)
     over, under = evaluated(form.over, table.values, size), evaluated(form.under, table.values, size)
     errors = _errors(over, under, target)
     possible = int(np.count_nonzero(np.isfinite(errors)))
     if not possible:
-        return found
+        return nearest_trains
 
     def candidates(rows: Whole, first_by: str, most: int) -> tuple[list[Candidate], int]:
         ratios, exact, which = _exact_errors(over[rows], under[rows], target)
@@ -179,13 +179,13 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
 
     most = min(count, possible)
     limit = np.partition(errors, most - 1)[most - 1]
-    found.best, found.ties = candidates(np.flatnonzero(errors <= limit + CLOSE), "error", most)
+    nearest_trains.best, nearest_trains.ties = candidates(np.flatnonzero(errors <= limit + CLOSE), "error", most)
     order, starts, sizes = table.by_size
     least = np.minimum.reduceat(errors[order], starts)
     close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + CLOSE
     listed, _ = candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
-    found.by_size = {candidate.size: candidate for candidate in listed}
-    return found
+    nearest_trains.by_size = {candidate.size: candidate for candidate in listed}
+    return nearest_trains
 
 
 class TrainValue(NamedTuple):
@@ -307,12 +307,12 @@ class _TwoSets:
         self._coupling, self._target = coupling, target
         self._sides = [table.train_values for table in tables]
 
-    def found(self, count: int) -> Nearest:
+    def nearest(self, count: int) -> Nearest:
         """The best trains and the best of each size."""
-        found = Nearest()
+        nearest_trains = Nearest()
         pairs, errors = self._near_pairs(count)
         if not len(errors):
-            return found
+            return nearest_trains
         limit = np.partition(errors, min(count, len(errors)) - 1)[min(count, len(errors)) - 1]
         kept = pairs[:, errors <= limit + CLOSE]
         one, other = (side.part(at) for side, at in zip(self._sides, kept, strict=True))
@@ -322,12 +322,12 @@ class _TwoSets:
             for a, b, w in zip(kept[0].tolist(), kept[1].tolist(), which.tolist(), strict=True)
         )
         # Each pair of values gives at least one train, and none better than the pair's own least size and teeth.
-        found.best = sorted(
+        nearest_trains.best = sorted(
             candidate
             for error, _, _, a, b, w in ranked[:count]
             for candidate in self._members(a, b, error, ratios[w], count)
         )[:count]
-        found.ties = sum(
+        nearest_trains.ties = sum(
             len(self._sides[0].members(a)) * len(self._sides[1].members(b))
             for error, _, _, a, b, _ in ranked
             if error == ranked[0][0]
@@ -335,8 +335,8 @@ class _TwoSets:
         for size in np.unique(np.concatenate([table.size for table in self._tables])).tolist():
             best = [c for swap in (False, True) if (c := self._best_of_size(size, swap)) is not None]
             if best:
-                found.by_size[size] = min(best)
-        return found
+                nearest_trains.by_size[size] = min(best)
+        return nearest_trains
 
     def _near_pairs(self, count: int) -> tuple[Whole, Real]:
         """Pairs of distinct train values among which the ``count`` best are, and their errors."""
@@ -364,8 +364,8 @@ class _TwoSets:
     def _members(self, a: int, b: int, error: Fraction, ratio: Fraction, count: int) -> list[Candidate]:
         """The smallest trains with a pair of train values."""
         rows = [side.members(at).tolist() for side, at in zip(self._sides, (a, b), strict=True)]
-        made = [self._candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
-        return sorted(made)[:count]
+        candidates = [self._candidate(one, other, error, ratio) for one, other in itertools.product(*rows)]
+        return sorted(candidates)[:count]
 
     def _candidate(self, one: int, other: int, error: Fraction, ratio: Fraction) -> Candidate:
         first, second = self._tables
@@ -401,6 +401,6 @@ class _TwoSets:
         for k, w in zip(kept.tolist(), which.tolist(), strict=True):
             rows = [int(first.rows[pairs[0, k]]), int(second.rows[pairs[1, k]])]
             one, other = rows[::-1] if swap else rows
-            made = self._candidate(one, other, exact[w], ratios[w])
-            best = made if best is None or made < best else best
+            candidate = self._candidate(one, other, exact[w], ratios[w])
+            best = candidate if best is None or candidate < best else best
         return best

@@ -166,34 +166,34 @@ class PlanetaryProblem(StatedProblem):
         return [*self._members(), *self._limits(), *self._extent()]
 
     def _members(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         parts = {"input": self.input, "output": self.output, "fixed": self.fixed}
         rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
         known = sorted({member for row in rows for member in row.members})
         for k, (part, member) in enumerate(parts.items()):
             if member is not None and member not in known:
-                found.append(Contradiction(f"/{part}", f"expected one of {', '.join(known)}, got {member!r}"))
+                contradictions.append(Contradiction(f"/{part}", f"expected one of {', '.join(known)}, got {member!r}"))
             elif member is not None and member in list(parts.values())[:k]:
-                found.append(Contradiction(f"/{part}", f"{member} already has another part"))
-        if not found and not self.arrangements:
-            found.append(Contradiction("/input", "no arrangement has all the stated members"))
-        return found
+                contradictions.append(Contradiction(f"/{part}", f"{member} already has another part"))
+        if not contradictions and not self.arrangements:
+            contradictions.append(Contradiction("/input", "no arrangement has all the stated members"))
+        return contradictions
 
     def _limits(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         teeth = self.teeth
         if teeth.min > teeth.max:
-            found.append(Contradiction("/teeth/max", "must not be below min"))
+            contradictions.append(Contradiction("/teeth/max", "must not be below min"))
         rows = list(ARRANGEMENTS.values()) if self.arrangement == "auto" else [ARRANGEMENTS[self.arrangement]]
         known = sorted({gear for row in rows for gear in row.gear_names})
         for gear, own in teeth.gears.items():
             if gear not in known:
-                found.append(Contradiction(f"/teeth/gears/{gear}", f"expected one of {', '.join(known)}"))
+                contradictions.append(Contradiction(f"/teeth/gears/{gear}", f"expected one of {', '.join(known)}"))
             elif own.min > own.max:
-                found.append(Contradiction(f"/teeth/gears/{gear}/max", "must not be below min"))
+                contradictions.append(Contradiction(f"/teeth/gears/{gear}/max", "must not be below min"))
         if self.rank_by == "size" and self.tolerance is None:
-            found.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
-        return found
+            contradictions.append(Contradiction("/tolerance", "ranking by size needs a tolerance for the ratio"))
+        return contradictions
 
     def _extent(self) -> list[Contradiction]:
         """Refuse a search that would take hours."""

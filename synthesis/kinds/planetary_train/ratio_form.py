@@ -60,14 +60,14 @@ def arrangement_form(name: str, driver: str, driven: str, held: str) -> RatioFor
 
 def set_rows(arrangement: Arrangement, planets: tuple[str, ...]) -> list[Row]:
     """Speed equations of the meshes of one planet set."""
-    found = []
+    rows = []
     for one, other in arrangement.meshes:
         bodies = arrangement.places[one].body, arrangement.places[other].body
         on = [body for body in bodies if body in planets]
         if on:
             carrier = arrangement.carriers[on[0]]
-            found.append(mesh_row(*bodies, carrier, (one, other), arrangement.sense(one, other)))
-    return found
+            rows.append(mesh_row(*bodies, carrier, (one, other), arrangement.sense(one, other)))
+    return rows
 
 
 def evaluated(polynomial: Polynomial, values: Mapping[str, NDArray[np.float64]], size: int) -> NDArray[np.float64]:
@@ -135,12 +135,12 @@ def _reduced(over: Polynomial, under: Polynomial) -> RatioForm:
     number = gcd(*over.values(), *under.values())
 
     def divided(polynomial: Polynomial) -> Polynomial:
-        found = {}
+        quotient = {}
         for term, coefficient in polynomial.items():
             rest = list(term)
             for name in common:
                 rest.remove(name)
-            found[tuple(rest)] = coefficient // number
-        return found
+            quotient[tuple(rest)] = coefficient // number
+        return quotient
 
     return RatioForm(divided(over), divided(under))

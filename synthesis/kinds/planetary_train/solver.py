@@ -56,7 +56,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
     PlanetaryResult
         Always complete: every combination of tooth numbers within the limits was covered.
     """
-    found = _Found(problem)
+    ranking = _Ranking(problem)
     rows = problem.arrangements
     for k, arrangement in enumerate(rows):
         progress(k / len(rows), f"{arrangement.name}: tooth numbers")
@@ -71,9 +71,9 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
         roles = problem.roles(arrangement)
         for j, members in enumerate(roles):
             progress((k + j / len(roles)) / len(rows), f"{arrangement.name}: {' to '.join(members[:2])}")
-            found.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
+            ranking.take(numbers, nearest(arrangement, tables, members, problem.target, problem.max_designs))
     progress(1.0, "done")
-    return found.result()
+    return ranking.result()
 
 
 def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
@@ -88,7 +88,7 @@ def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
     )
 
 
-class _Found:
+class _Ranking:
     """What has been found so far over all arrangements and members."""
 
     def __init__(self, problem: PlanetaryProblem) -> None:
@@ -226,14 +226,14 @@ def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMech
 def _places(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int]) -> dict[str, PlanetPlaces]:
     """Equal angles, or the places where planets can be put in that are nearest to equal angles."""
     count = problem.planets
-    found = {}
+    places = {}
     for planets in arrangement.planet_sets:
         whole = count
         if problem.spacing == "nearest":
             whole = int(divisions(arrangement, planets, {gear: np.array([z]) for gear, z in teeth.items()})[0]) or count
         steps = [(2 * k * whole + count) // (2 * count) for k in range(count)]
-        found.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
-    return found
+        places.update({planet: PlanetPlaces(divisions=whole, steps=steps) for planet in planets})
+    return places
 
 
 def _addendum(problem: PlanetaryProblem, arrangement: Arrangement, teeth: dict[str, int], gear: str) -> float:

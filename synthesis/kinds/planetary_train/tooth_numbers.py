@@ -249,14 +249,14 @@ def _assembly_forms(
 ) -> list[tuple[frozenset[str], Callable[[Block], Whole]]]:
     """Whole numbers that must be divisible by n for n planets at equal angles, with the gears that they need."""
     phases = _phases(arrangement, planets)
-    found: list[tuple[frozenset[str], Callable[[Block], Whole]]] = []
+    forms: list[tuple[frozenset[str], Callable[[Block], Whole]]] = []
     for (sign, gear), *others in phases.values():
         for other_sign, other in others:
 
             def along(block: Block, a: int = sign, x: str = gear, b: int = other_sign, y: str = other) -> Whole:
                 return np.asarray(a * block[x] - b * block[y])
 
-            found.append((frozenset({gear, other}), along))
+            forms.append((frozenset({gear, other}), along))
     for planet in planets:
         first, *others_on = [gear.name for gear in arrangement.gears if gear.body == planet]
         for second in others_on:
@@ -273,8 +273,8 @@ def _assembly_forms(
                 one, two = block[own[0]], block[own[1]]
                 return np.asarray((two * a * block[x] - one * b * block[y]) // np.gcd(one, two))
 
-            found.append((frozenset({first, second, gear, other}), stepped))
-    return found
+            forms.append((frozenset({first, second, gear, other}), stepped))
+    return forms
 
 
 def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, list[tuple[int, str]]]:
@@ -283,16 +283,16 @@ def _phases(arrangement: Arrangement, planets: tuple[str, ...]) -> dict[str, lis
     A gear without a sun or ring takes over, with the opposite sign, what the planet gear says that it meshes with.
     """
     own = [gear.name for gear in arrangement.gears if gear.body in planets]
-    found: dict[str, list[tuple[int, str]]] = {gear: [] for gear in own}
+    meshing: dict[str, list[tuple[int, str]]] = {gear: [] for gear in own}
     for planet in planets:
         for gear, mate in arrangement.central_meshes(planet):
-            found[gear].append((arrangement.sense(gear, mate), mate))
-    direct = {gear: list(phases) for gear, phases in found.items()}
+            meshing[gear].append((arrangement.sense(gear, mate), mate))
+    direct = {gear: list(phases) for gear, phases in meshing.items()}
     for one, other in arrangement.meshes:
-        if one in found and other in found:
+        if one in meshing and other in meshing:
             for here, there in ((one, other), (other, one)):
-                found[here] += [(-sign, gear) for sign, gear in direct[there]]
-    return found
+                meshing[here] += [(-sign, gear) for sign, gear in direct[there]]
+    return meshing
 
 
 def _mesh_rules(numbers: ToothNumbers) -> list[_Rule]:

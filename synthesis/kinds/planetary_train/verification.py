@@ -102,13 +102,13 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
 
 def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
     """The stated ratio is that of the teeth, it has the demanded direction, and it is within the tolerance."""
-    found = exact_ratio_of(mechanism)
+    ratio = exact_ratio_of(mechanism)
     members = (mechanism.input, mechanism.output, mechanism.fixed)
-    if found is None or members not in problem.roles(arrangement):
+    if ratio is None or members not in problem.roles(arrangement):
         return Check(name="ratio", passed=False)
-    error = abs(found / problem.target - 1)
+    error = abs(ratio / problem.target - 1)
     limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
-    passed = found == mechanism.ratio.exact and found * problem.target > 0 and (limit is None or error <= limit)
+    passed = ratio == mechanism.ratio.exact and ratio * problem.target > 0 and (limit is None or error <= limit)
     return Check(name="ratio", passed=passed, value=float(error), limit=problem.tolerance)
 
 
@@ -173,13 +173,13 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
 
 
 def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
-    found = {}
+    meshes = {}
     for one, other in arrangement.meshes:
         pinion, gear = (other, one) if arrangement.places[one].internal else (one, other)
-        found[one, other] = Mesh(
+        meshes[one, other] = Mesh(
             _gear(mechanism, arrangement, pinion, gear), _gear(mechanism, arrangement, gear, pinion)
         )
-    return found
+    return meshes
 
 
 def _apart(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float:
