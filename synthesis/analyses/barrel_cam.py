@@ -14,7 +14,7 @@ from pydantic import ConfigDict, Field
 from kinematics.cam.unrolled import UnrolledWall
 from kinematics.errors import DimensionError
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
-from synthesis.analyses.cam import MOST_EFFORT, FollowerSeries, ForceSeries, Load, force_series
+from synthesis.analyses.cam import MAX_EFFORT, FollowerSeries, ForceSeries, Load, force_series
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenBarrelCam, GivenCurve
 
@@ -61,7 +61,7 @@ class BarrelCamAnalysisRequest(DrivenRequest[GivenBarrelCam]):
         at, speed, time = self.motion.inputs()
         given = self.mechanism
         radius, roller = given.cylinder_radius, given.follower.roller_radius
-        if len(at) * len(given.lower_wall.x) > MOST_EFFORT:
+        if len(at) * len(given.lower_wall.x) > MAX_EFFORT:
             raise MechanismError("/lower_wall", "too many points for so many positions; take fewer of one of them")
         x = radius * np.radians(at)
         walls = self._wall_of("lower_wall", given.lower_wall), self._wall_of("upper_wall", given.upper_wall)

@@ -32,16 +32,17 @@ from synthesis.model.statement import (
 
 Real = NDArray[np.float64]
 
-MOST_EFFORT = 40_000_000
+MAX_EFFORT = 40_000_000
 """Positions times points of the profile at most: about two seconds."""
 
 MEASURED = 1440
 """Cam angles at which the program of a profile is measured for vibrations."""
 
-COARSEST = 24
+MIN_POSITIONS = 24
 """Positions that a cutter's path with a chordal tolerance starts from."""
 
-MOST_CHORDS = 20_000
+MAX_CHORDS = 20_000
+"""Moves of a cutter's path at most: a finer tolerance than the profile itself has would never be met."""
 
 
 class Load(Statement):
@@ -127,7 +128,7 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
         """Everything over the motion, in the shape of :class:`CamAnalysis`."""
         at, speed, time = self.motion.inputs()
         contour, follower = self.mechanism.contour(), self.mechanism.core_follower()
-        if len(at) * len(contour.points) > MOST_EFFORT:
+        if len(at) * len(contour.points) > MAX_EFFORT:
             raise MechanismError("/profile", "too many points for so many positions; take fewer of one of them")
         rotation = self.mechanism.rotation
         contact = contour.follow(follower, np.radians(at), rotation)
@@ -201,10 +202,10 @@ class CamAnalysisRequest(DrivenRequest[GivenCam]):
 
         theta = np.radians(at)
         if cutter.chordal_tolerance is not None:
-            theta = even_angles(COARSEST)
+            theta = even_angles(MIN_POSITIONS)
             theta = np.append(theta, math.tau)
             path = centres(theta)
-            while len(theta) < MOST_CHORDS:
+            while len(theta) < MAX_CHORDS:
                 middle = 0.5 * (theta[:-1] + theta[1:])
                 between = centres(middle)
                 chord = np.diff(path)

@@ -1,4 +1,4 @@
-"""The cycle of a linkage: from which input to which it is driven to see all of its motion, and the work that it is."""
+"""The cycle of a linkage: the range of inputs that shows all of its motion, and the effort of following it."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from kinematics.linkage.planar.branches import (
 from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 
-MOST_EFFORT = 200
-"""The most that is done in an answer that a client waits for; some seconds."""
+MAX_EFFORT = 200
+"""Greatest effort of an answer that a client waits for: some seconds."""
 
 
 def effort(mechanism: Mechanism) -> int:
-    """A measure of the work that the circuits of a mechanism are: closures × assemblies × turns of a cycle.
+    """The effort of listing the circuits of a mechanism: closures × assemblies × turns of a cycle.
 
     A dyad closes two links, or one link and a slide, and has two assemblies. The turns are those of the fastest link
     that gears tie to the input. An eightbar has an effort of 24.
@@ -34,7 +34,7 @@ def listed_branches(mechanism: Mechanism) -> list[Branch]:
     TopologyError
         Where they cannot be listed, or not while a client waits.
     """
-    if effort(mechanism) > MOST_EFFORT:
+    if effort(mechanism) > MAX_EFFORT:
         raise TopologyError("there are too many assemblies, or turns until all repeats, to be listed at once")
     return branches(mechanism)
 

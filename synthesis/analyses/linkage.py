@@ -15,7 +15,7 @@ from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
-from synthesis.analyses.cycle import MOST_EFFORT, cycle_of, effort
+from synthesis.analyses.cycle import MAX_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
@@ -92,7 +92,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
     def answer(self) -> dict[str, Any]:
         """Everything over the motion, in the shape of :class:`LinkageAnalysis`."""
         mechanism = self.mechanism.mechanism()
-        if decompose(mechanism).left and effort(mechanism) > MOST_EFFORT:
+        if decompose(mechanism).left and effort(mechanism) > MAX_EFFORT:
             raise MechanismError("", "this has too many links that no dyads close to be followed at once")
         slide, motion = mechanism.driven_by_slide, self.motion
         if slide and motion.speed_rpm is not None:

@@ -16,8 +16,11 @@ from synthesis.model.statement import (
     Statement,
 )
 
-MOST_POSITIONS = 10_000
+MAX_POSITIONS = 10_000
 """Positions of one analysis at most; a finer run is asked for in parts."""
+
+ROUNDING = 1e-12
+"""Share of a number of steps by which it may fall short of a whole one: 0.3/0.1 is three steps."""
 
 RAD_PER_S = math.pi / 30.0
 """One revolution a minute in rad/s."""
@@ -59,7 +62,7 @@ class Sweep(_Motion):
 
     start: Number = Field(default=0.0, alias="from", description="First input angle, degrees.")
     end: Number = Field(default=360.0, alias="to", description="Last input angle, degrees.")
-    steps: Annotated[Count, Field(ge=1, le=MOST_POSITIONS - 1)] = 360
+    steps: Annotated[Count, Field(ge=1, le=MAX_POSITIONS - 1)] = 360
 
     def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs, speeds and no times."""
@@ -96,13 +99,13 @@ class Run(_Motion):
         faults, span = super().faults(), self.time
         if span.end < span.start:
             faults.append(("/motion/time/end", "the end lies before the start"))
-        elif (span.end - span.start) / span.step > MOST_POSITIONS - 1:
-            faults.append(("/motion/time/step", f"more than {MOST_POSITIONS} positions; take larger steps"))
+        elif (span.end - span.start) / span.step > MAX_POSITIONS - 1:
+            faults.append(("/motion/time/step", f"more than {MAX_POSITIONS} positions; take larger steps"))
         return faults
 
     def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs (degrees, or lengths along the input ``slide``), speeds and times."""
-        count = math.floor((self.time.end - self.time.start) / self.time.step * (1.0 + 1e-12)) + 1
+        count = math.floor((self.time.end - self.time.start) / self.time.step * (1.0 + ROUNDING)) + 1
         t = np.asarray(self.time.start + self.time.step * np.arange(max(count, 1)), np.float64)
         turned = self.rate * t + 0.5 * self.acceleration * t * t
         moved = turned if slide else np.degrees(turned)

@@ -22,7 +22,7 @@ from synthesis.model.statement import (
     Statement,
 )
 
-MOST_MESHES = 8
+MAX_MESHES = 8
 """The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""
 
 ToothCount = Annotated[int, Field(strict=True, ge=1, le=10_000)]
@@ -48,7 +48,7 @@ class GivenPlanetaryTrain(Statement):
     type: Literal["planetary_train"]
     arrangement: str | None = None
     teeth: dict[str, ToothCount] | None = None
-    meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MOST_MESHES)
+    meshes: list[GivenMesh] | None = Field(default=None, min_length=1, max_length=MAX_MESHES)
     planet_bodies: list[Body] = Field(default=[], max_length=24, description="With `meshes`: bodies that turn free.")
     input: Body | None = None
     output: Body | None = None

@@ -25,10 +25,10 @@ from synthesis.model.statement import (
     Statement,
 )
 
-MOST_POINTS = 20_000
+MAX_POINTS = 20_000
 """Points of a given profile at most."""
 
-Coordinates = Annotated[list[Coordinate], Field(min_length=16, max_length=MOST_POINTS)]
+Coordinates = Annotated[list[Coordinate], Field(min_length=16, max_length=MAX_POINTS)]
 
 
 FollowerType = Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
@@ -110,7 +110,7 @@ class GivenCurve(Statement):
 
     x: Coordinates
     y: Coordinates
-    angle: list[Degrees] | None = Field(default=None, max_length=MOST_POINTS)
+    angle: list[Degrees] | None = Field(default=None, max_length=MAX_POINTS)
 
     def points(self, path: str) -> NDArray[np.complex128]:
         """As complex numbers; faults are told under its path."""

@@ -29,6 +29,9 @@ Real = NDArray[np.float64]
 SAMPLES, MOST_SAMPLES = 720, 200_000
 """Input angles for each turn of the faster pin, and at most, at which an assembly is looked for."""
 
+ANGLE_RESOLUTION = 1e-15
+"""Radians at which a search for the best angle ends: no float of an angle is finer."""
+
 BEST = 16
 """How many of the places where the pins are farthest inside are looked at closely."""
 
@@ -106,7 +109,7 @@ class GivenGearedFivebar(GivenByDimensions):
                 :BEST
             ]
         ]
-        while step > 1e-15:
+        while step > ANGLE_RESOLUTION:
             tried = best[:, None] + step * np.array([-0.5, 0.0, 0.5])
             best = tried[np.arange(len(best)), np.argmax(inside(tried), axis=1)]
             step *= 0.7

@@ -36,6 +36,9 @@ from synthesis.kinds.cam.problem import (
 from synthesis.kinds.cam.sizing import Size
 from synthesis.outcome.sifting import Sifting
 
+FORCE_SLACK = 1e-9
+"""Relative slack of the least contact force: the least preload gives exactly that, but for rounding."""
+
 SLOW = 10.0
 """Natural frequency over cam speed below which the follower's own vibration is worth a warning (Norton §15.4)."""
 
@@ -112,7 +115,7 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         changes = np.unique(np.degrees(running.reversals()).round(9)).tolist()
     elif force.least < 0.0:
         warnings.append("the follower leaves the cam")
-    elif force.least < dynamics.least_force * arm * (1.0 - 1e-9):
+    elif force.least < dynamics.least_force * arm * (1.0 - FORCE_SLACK):
         warnings.append("the contact force falls below the least that was asked for")
     ratio = load.natural_frequency / speed
     if 0.0 < ratio < SLOW:

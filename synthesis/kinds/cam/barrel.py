@@ -42,8 +42,8 @@ from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
 from synthesis.kinds.cam.reproduction import REPRODUCED, reported
 from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (
-    LARGEST,
     MARGIN,
+    MAX_RADIUS,
     Size,
 )
 from synthesis.model.kind import Progress
@@ -100,7 +100,7 @@ def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Progra
     fall = math.tan(math.radians(limits.falling_pressure_angle))
     least = max(v.greatest / rise, -v.least / fall, limits.hub_radius, roller)
     rho = least_pitch_radius(limits, roller)
-    stop = LARGEST * (least + program.peaks[2].largest + rho)
+    stop = MAX_RADIUS * (least + program.peaks[2].largest + rho)
     radius = smallest_allowed(program, _curvature(rho), least, stop)
     return None if radius is None else Size(radius * (1.0 + MARGIN), proven=True)
 

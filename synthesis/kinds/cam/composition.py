@@ -2,8 +2,8 @@
 
 Segments with a law, dwells and polynomials are taken as they are. Automatic segments take the laws whose velocity and
 acceleration fit their neighbours, and among those the best by the criterion: a shortest path over the states at the
-joints. What is then still open is made of runs of neighbouring optimal segments, one convex program each, or one for
-all of them where the criterion belongs to the whole cam (size, contact force).
+joints. The segments that are still open form runs of neighbouring optimal segments. Each run is one convex program;
+where the criterion belongs to the whole cam (size, contact force), one program covers all runs.
 """
 
 from __future__ import annotations
@@ -75,12 +75,12 @@ SAMPLES = 721
 
 
 def silent(fraction: float, message: str) -> None:
-    """A progress that nobody follows."""
+    """The default progress: it reports nothing."""
 
 
 @dataclass(frozen=True)
 class _GridProgress:
-    """Tells how far the programs of several runs are, within a part of the whole work."""
+    """Reports the convex programs of several runs, within a part of the whole work."""
 
     progress: Progress
     reach: tuple[float, float]

@@ -1,11 +1,11 @@
-"""Worst points of a motion program, and the smallest radius for which none of them is too bad.
+"""Worst points of a motion program, and the smallest radius for which all of them keep the limit.
 
 A limit on pressure angle or curvature must hold at every cam angle θ, and it depends on one radius p: it is a
 semi-infinite constraint g(θ, p) ≤ 0. Where the set of radii that it allows at a given θ is an interval, the smallest
 radius is a greatest value over θ, found exactly. Where it is not, as for curvature, radii are exchanged for angles
-(Hettich & Kortanek, SIAM Review 35 (1993) 380, doi:10.1137/1035089): at a radius the worst angles are found exactly;
-each excludes all radii from there to the next one that it allows; the greatest of those is the next radius. No
-allowed radius is ever stepped over, and close to the end the steps are Newton's.
+(Hettich & Kortanek, SIAM Review 35 (1993) 380, doi:10.1137/1035089): at the current
+radius the worst angles are found exactly; each excludes all radii up to the next one that it allows, and the greatest
+of these is the next radius. No allowed radius is skipped, and near the solution the steps are those of Newton.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.cam.knots import KnotMotion
-from synthesis.kinds.cam.motion_program import Block, ConvexProgram, Multipliers, Solution, Weights
+from synthesis.kinds.cam.motion_program import RANK_TOLERANCE, Block, ConvexProgram, Multipliers, Solution, Weights
 from synthesis.kinds.cam.piecewise import Piecewise
 
 Real = NDArray[np.float64]
@@ -240,6 +240,6 @@ def _stationary(block: Block, weights: Real, measure: _Measure) -> tuple[Real, b
                     influence[k, column] += coefficient * at ** (k - i) / math.factorial(k - i)
     for _ in range(2):
         start, _ = _costate(block.times, _with_conditions(block, weights, measure))
-        weights = weights - np.linalg.lstsq(influence, start, rcond=1e-12)[0]
+        weights = weights - np.linalg.lstsq(influence, start, rcond=RANK_TOLERANCE)[0]
     left, _ = _costate(block.times, _with_conditions(block, weights, measure))
     return weights, bool(np.abs(left).max(initial=0.0) <= VANISHES * np.abs(weights).max(initial=1.0))

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.cam.problem import CamProblem, Move
+from synthesis.kinds.cam.reproduction import reported
 from synthesis.model.answer import Check
 from synthesis.model.dimension import Dimension
 
@@ -109,13 +110,13 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
                 )
             )
     off = max(_displacement_deviation(problem, measure, part) for part in parts) / lift
-    checks.append(Check(name="meets_positions", passed=off <= reproduced, value=min(off, 1e9), limit=reproduced))
+    checks.append(Check(name="meets_positions", passed=off <= reproduced, value=reported(off), limit=reproduced))
     for order, name in ((1, "meets_velocities"), (2, "meets_accelerations")):
         worst = [_rate_deviation(problem, measure, part, order) for part in parts]
         stated = [value for value in worst if value is not None]
         if stated:
             slack = CONDITION_SLACK[order]
-            checks.append(Check(name=name, passed=max(stated) <= slack, value=min(max(stated), 1e9), limit=slack))
+            checks.append(Check(name=name, passed=max(stated) <= slack, value=reported(max(stated)), limit=slack))
     return checks
 
 

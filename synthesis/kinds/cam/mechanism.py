@@ -27,20 +27,20 @@ from synthesis.mechanisms.cam import dimensions_of, follower_by_dimensions, foll
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-APART = 1e-9
+SAME_ANGLE_TOLERANCE = 1e-9
 """Radians below which a joint and an equal step are one angle."""
 
-MOST = 5760
+MAX_EQUAL_STEPS = 5760
 """Equal steps of a profile at most."""
 
-SPAN_OF_ROLLER = 5.0
+MIN_CHORDS_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
 
 
-FINEST_PARTS = 8
+MAX_PARTS = 8
 """Parts that a step is divided in at once, at most."""
 
-STEPS_OF_MOVE = 12
+MIN_STEPS_OF_MOVE = 12
 """Steps of the profile within a segment that moves, at least."""
 
 
@@ -50,15 +50,15 @@ def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_ra
     A small roller asks for close points too: its radius spans five chords of the curve that it touches.
     """
     short = [
-        np.linspace(start, end, STEPS_OF_MOVE + 1)[:-1]
+        np.linspace(start, end, MIN_STEPS_OF_MOVE + 1)[:-1]
         for start, end, segment in zip(program.joints[:-1], program.joints[1:], program.segments, strict=True)
-        if segment.pieces.polynomial.shape[1] > 1 and end - start < STEPS_OF_MOVE * TURN / count
+        if segment.pieces.polynomial.shape[1] > 1 and end - start < MIN_STEPS_OF_MOVE * TURN / count
     ]
     while True:
         angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1], *short]))
-        angle = angle[np.append(True, np.diff(angle) > APART)]
+        angle = angle[np.append(True, np.diff(angle) > SAME_ANGLE_TOLERANCE)]
         chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
-        if chord * SPAN_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MOST:
+        if chord * MIN_CHORDS_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MAX_EQUAL_STEPS:
             return angle
         count *= 2
 
@@ -70,7 +70,7 @@ def refined(angle: Real, off: Real, allowed: float) -> Real:
     the next round divides again.
     """
     closed = np.append(angle, TURN + angle[0])
-    parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, FINEST_PARTS).astype(np.int64)
+    parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, MAX_PARTS).astype(np.int64)
     parts = np.maximum(parts, np.minimum(np.roll(parts, -1), 2))
     parts = np.maximum(parts, np.minimum(np.roll(parts, 1), 2))
     low, step = np.repeat(closed[:-1], parts), np.repeat(np.diff(closed) / parts, parts)

@@ -30,6 +30,9 @@ from synthesis.numerics.convex import minimized, modeling
 
 Real = NDArray[np.float64]
 
+RANK_TOLERANCE = 1e-12
+"""Singular values below this share of the greatest are taken for zero: conditions that say the same twice."""
+
 VARIABLE_SCALE = 0.1
 """The i-th derivative is held in the program as 0.1ⁱ times its value: those of a unit lift grow about so fast."""
 
@@ -352,7 +355,7 @@ def corrected(block: Block, start: Real, control: Real) -> KnotMotion:
         gap = np.array(
             [c.value - sum(k * motion.states[block.knot(t), i] for t, i, k in c.terms) for c in block.conditions]
         )
-        change = np.linalg.lstsq(scaled, gap, rcond=1e-12)[0]
+        change = np.linalg.lstsq(scaled, gap, rcond=RANK_TOLERANCE)[0]
         start = start + change[:m]
         control = control + change[m:] / root
         motion = integrated(block.times, start, control)

@@ -1,7 +1,7 @@
 """Motions that are best by a criterion, with a lower bound for all motions: the door to the convex programs.
 
-A run is what the client leaves open between two parts of a motion program that are given: one segment, or several in
-a row. What is known at its ends and within stands in conditions; limits and demands hold throughout. The criteria are
+A run is one open segment of a motion program, or several in a row, between segments that are given. Conditions state
+what is known at its ends and at single angles; limits and demands hold at every angle. The criteria are
 
 - the peak or the root mean square of a derivative of s: a linear, or a quadratic program;
 - the peak of a contact force F = Σ w_i s⁽ⁱ⁾ + F₀ that must not fall below a floor: linear, the preload F₀ given or
@@ -44,6 +44,9 @@ TORQUE_STEPS = 800
 
 TIGHTENED = 1e-7
 """Share by which limits are narrowed for the solver, so that its own tolerance does not break them."""
+
+MAX_SCALED_RADIUS = 1e4
+"""Radius and offset, in units of the cam's own size, that the bound has to cover: a cam beyond is no candidate."""
 
 SAME_TIME = 1e-9
 """Times closer than this share of the run are one."""
@@ -251,7 +254,11 @@ def best_roller_size(
             right.append(room / unit + sign * known)
         objective: Literal["scalar", "norm"] = "scalar" if offset is not None else "norm"
         return ConvexProgram(
-            tuple(blocks), objective, rows=np.array(rows), right=np.array(right), box=np.full(1 + len(free), 1e4)
+            tuple(blocks),
+            objective,
+            rows=np.array(rows),
+            right=np.array(right),
+            box=np.full(1 + len(free), MAX_SCALED_RADIUS),
         )
 
     def value(solution: Solution) -> float:

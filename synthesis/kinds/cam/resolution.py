@@ -1,4 +1,4 @@
-"""As many points of a profile as its verification needs: closer where the cam is sound but its points are too few."""
+"""Refinement of a profile: points are added where a sound cam fails its verification because its points are too few."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from synthesis.model.kind import Progress
 
 Real = NDArray[np.float64]
 
-FINEST = 12_000
+MAX_POINTS = 12_000
 """Points of a curve at most. Where a motion changes its acceleration within less than a step, points are put closer
 until the profile reproduces it; beyond this number the design fails its verification."""
 
-REFINEMENTS = 8
+MAX_REFINEMENTS = 8
 """Times that points are put closer at most."""
 
 
@@ -54,11 +54,11 @@ def resolved(
     """
     mechanism = make(angle)
     verification, measured = verify(mechanism)
-    for _ in range(REFINEMENTS):
+    for _ in range(MAX_REFINEMENTS):
         if measured is None or not np.isfinite(measured.off).all():
             break
         finer = closer(angle, measured, {check.name for check in verification.checks if not check.passed})
-        if finer is None or len(finer) > FINEST:
+        if finer is None or len(finer) > MAX_POINTS:
             break
         angle = finer
         progress(0.8, f"verifying with {len(angle)} points")

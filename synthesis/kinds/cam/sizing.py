@@ -36,19 +36,29 @@ from synthesis.kinds.cam.critical import critical_motion, smallest_allowed
 
 Real = NDArray[np.float64]
 
-LARGEST = 1e4
+MAX_RADIUS = 1e4
 """Radii are looked for up to this many times the follower's travel and the given lengths."""
 
 MARGIN = 1e-9
 """Share by which a radius at a limit is enlarged, so that the limit holds when it is measured on the finished cam."""
 
+CENTRE_CLEARANCE = 1e-6
+"""Distance, as a share of the lift, that the trace point keeps from the cam's centre, where no radius is left."""
+
+ANGLE_CLEARANCE = 1e-9
+"""Radians by which an arm stays clear of being in line with pivot and centre, where the contact is not determined."""
+
+VALLEY_TOLERANCE = 1e-7
+"""Accuracy of a searched dimension as a share of its range, where each evaluation sizes a cam: the radius is flat at
+its minimum, so that it is good to the square of it."""
+
 COARSE = 48
 """Values of a free dimension from which its search starts."""
 
-NONE = 1e30
+UNSOUND_RADIUS = 1e30
 """Stands for a radius where there is none: finite, so that the search can calculate with it."""
 
-CLOSER = 1e-10
+MINIMUM_TOLERANCE = 1e-10
 """Relative accuracy of a searched dimension: the radius is flat there, to the square of it."""
 
 
@@ -146,7 +156,7 @@ def _least_height(program: Program, offset: float, limits: RollerLimits) -> floa
 def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, program: Program) -> float:
     """Least d by pressure angle, by the prime circle's own least, and such that the trace point passes no centre."""
     least = math.sqrt(max(limits.least**2 - offset**2, 0.0))
-    needed = [least, float(-motion.s.min()) + 1e-6 * program.lift]
+    needed = [least, float(-motion.s.min()) + CENTRE_CLEARANCE * program.lift]
     for sign, angle in limits.angles:
         on = _on(sign, motion.v)
         if on.any():
@@ -169,7 +179,7 @@ def _translating_curvature(offset: float, radius: float) -> Callable[[Motion, Re
 def _reach(program: Program, length: float, limits: RollerLimits) -> float:
     peaks = program.peaks
     size = peaks[0].largest + peaks[1].largest + peaks[2].largest + abs(length) + limits.pitch_radius + limits.least
-    return LARGEST * size
+    return MAX_RADIUS * size
 
 
 def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, limits: RollerLimits) -> Size | None:
@@ -179,7 +189,7 @@ def oscillating_roller(program: Program, arm: float, pivot: float, sense: int, l
     found by exchange.
     """
     s = program.peaks[0]
-    low, high = max(0.0, -s.least) + 1e-9, math.pi - max(s.greatest, 0.0) - 1e-9
+    low, high = max(0.0, -s.least) + ANGLE_CLEARANCE, math.pi - max(s.greatest, 0.0) - ANGLE_CLEARANCE
     functions: list[Callable[[Motion], Real]] = []
     for _, angle in limits.angles:
         functions += [_start_needed(sign, angle, arm, pivot, sense) for sign in (1.0, -1.0)]
@@ -251,7 +261,7 @@ def translating_flat(program: Program, least_radius: float, least: float) -> Siz
     """The smallest base radius of a translating flat-faced follower: R + s + a ≥ ρ everywhere."""
     motion = critical_motion(program, lambda m: m.s + m.a, lambda m: m.s)
     needed = least_radius - float((motion.s + motion.a).min())
-    standing = 1e-6 * program.lift - float(motion.s.min())
+    standing = CENTRE_CLEARANCE * program.lift - float(motion.s.min())
     radius = max(needed, least, standing)
     return Size(radius + MARGIN * max(radius, program.lift), proven=True)
 
@@ -292,8 +302,8 @@ def oscillating_flat(
     if reach >= 1.0:
         return None
     low = max(float(lower(motion).max()), math.asin(max(reach, 0.0)))
-    low = max(low, math.asin(min(1.0, max(face_offset, 0.0) / pivot)) - s.least + 1e-9)
-    high = min(float(upper(motion).min()), 0.5 * math.pi - s.greatest - 1e-9)
+    low = max(low, math.asin(min(1.0, max(face_offset, 0.0) / pivot)) - s.least + ANGLE_CLEARANCE)
+    high = min(float(upper(motion).min()), 0.5 * math.pi - s.greatest - ANGLE_CLEARANCE)
     if low > high:
         return None
     if width is not None:
@@ -333,7 +343,9 @@ def _narrow_enough(program: Program, pivot: float, sense: int, width: float, low
 
 def _minimized(function: Callable[[float], float], low: float, high: float) -> float:
     """Where a convex function is least."""
-    minimum = minimize_scalar(function, bounds=(low, high), method="bounded", options={"xatol": CLOSER * (high - low)})
+    minimum = minimize_scalar(
+        function, bounds=(low, high), method="bounded", options={"xatol": MINIMUM_TOLERANCE * (high - low)}
+    )
     return min((low, float(minimum.x), high), key=function)
 
 
@@ -345,14 +357,18 @@ def _searched(size: Callable[[float], Size | None], low: float, high: float) -> 
         value = float(value)
         if value not in cache:
             smallest = size(value)
-            cache[value] = NONE if smallest is None else smallest.radius
+            cache[value] = UNSOUND_RADIUS if smallest is None else smallest.radius
         return cache[value]
 
     grid = [float(value) for value in np.linspace(low, high, COARSE + 1)]
     values = [radius(value) for value in grid]
-    valleys = [k for k in range(len(grid)) if values[k] < NONE and values[k] == min(values[max(k - 1, 0) : k + 2])]
+    valleys = [
+        k for k in range(len(grid)) if values[k] < UNSOUND_RADIUS and values[k] == min(values[max(k - 1, 0) : k + 2])
+    ]
     for k in sorted(valleys, key=lambda k: values[k])[:3]:
         left, right = grid[max(k - 1, 0)], grid[min(k + 1, COARSE)]
-        minimize_scalar(radius, bounds=(left, right), method="bounded", options={"xatol": 1e-7 * (high - low)})
+        minimize_scalar(
+            radius, bounds=(left, right), method="bounded", options={"xatol": VALLEY_TOLERANCE * (high - low)}
+        )
     best = min(cache, key=lambda value: cache[value])
-    return Size(cache[best], False, best) if cache[best] < NONE else None
+    return Size(cache[best], False, best) if cache[best] < UNSOUND_RADIUS else None

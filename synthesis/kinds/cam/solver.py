@@ -78,19 +78,19 @@ SHAPE = {"curvature_ratio", "min_radius", "convex"}
 UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
 """Checks that more points do not mend."""
 
-SMOOTHER = (6.0, 8.0, 11.0, 16.0)
+PEAK_ACCELERATIONS = (6.0, 8.0, 11.0, 16.0)
 """Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
 
 JERK_SHARE = 25.0
 """Peak jerk that goes with them: the acceleration may change fully within an eighth of the angle of a segment."""
 
-NEAR_BOUND = 0.01
+BOUND_TOLERANCE = 0.01
 """A cam within this share of the bound is small enough."""
 
 NOT_ZERO = 1e-300
 """Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
 
-LEAST_BASE = 1e-3
+MIN_BASE = 1e-3
 """Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
 
 
@@ -166,16 +166,16 @@ def _smoothed(problem: CamProblem, composed: Composition, progress: Progress) ->
     unlimited = stated.acceleration is None and stated.jerk is None
     best, least = composed, math.inf if unlimited else _radius(problem, composed)
     span = min(s.angle for s in composed.program.segments if s.pieces.count > 1)
-    for n, share in enumerate(SMOOTHER):
-        if least <= composed.bound * (1.0 + NEAR_BOUND):
+    for n, share in enumerate(PEAK_ACCELERATIONS):
+        if least <= composed.bound * (1.0 + BOUND_TOLERANCE):
             break
-        progress(0.4 + 0.1 * n / len(SMOOTHER), "trading size by pressure angle against size by curvature")
+        progress(0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), "trading size by pressure angle against size by curvature")
         a = share * composed.program.lift / span**2
         j = JERK_SHARE * a / span
         limits = stated.model_copy(
             update={"acceleration": min(stated.acceleration or a, a), "jerk": min(stated.jerk or j, j)}
         )
-        reach = 0.4 + 0.1 * n / len(SMOOTHER), 0.4 + 0.1 * (n + 1) / len(SMOOTHER)
+        reach = 0.4 + 0.1 * n / len(PEAK_ACCELERATIONS), 0.4 + 0.1 * (n + 1) / len(PEAK_ACCELERATIONS)
         other = compose(problem.model_copy(update={"limits": limits}), STEPS[:1], progress, reach)
         if isinstance(other, Composition):
             radius = _radius(problem, other)
@@ -216,7 +216,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     try:
         if rollers is None:
             return _flat_cam(problem, program)
-        least = rollers[0] + max(limits.hub_radius, LEAST_BASE * program.lift)
+        least = rollers[0] + max(limits.hub_radius, MIN_BASE * program.lift)
         rise = math.radians(limits.pressure_angle)
         fall = math.radians(limits.falling_pressure_angle)
         roller_limits = RollerLimits(rise, fall, least_pitch_radius(limits, rollers[0]), least)
@@ -256,7 +256,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
 
 def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     follower, limits = problem.follower, problem.limits
-    least = max(limits.hub_radius, LEAST_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
+    least = max(limits.hub_radius, MIN_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
     size: Size | None
     core_follower: core.Flat
     if isinstance(follower, TranslatingFlat):
@@ -284,7 +284,7 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
         return cam
     curvature = max(cam.pitch_curvature_extremes.largest, NOT_ZERO)
     allowed = 1.0 / curvature / least_pitch_radius(problem.limits, 1.0)
-    hub = max(problem.limits.hub_radius, LEAST_BASE * cam.program.lift)
+    hub = max(problem.limits.hub_radius, MIN_BASE * cam.program.lift)
     radius = max(min(largest, allowed, follower.prime_radius - hub), follower.roller_radius)
     return replace(cam, follower=replace(follower, roller_radius=radius))
 

@@ -32,6 +32,9 @@ from synthesis.numerics.convex import minimized, modeling
 
 Real = NDArray[np.float64]
 
+STANDSTILL = 1e-9
+"""Share of the greatest velocity that stands for zero where the follower rests, so that 1/v̄ stays finite."""
+
 PASSES = 4
 """Programs at most."""
 
@@ -146,7 +149,7 @@ def _best_velocity(times: Real, measure: str, lift: float, ends: tuple[float, fl
 def _bound(times: Real, velocity: Real, measure: str, lift: float, ends: tuple[float, float]) -> float:
     """The bound above, for v̄ constant on each step and the best α."""
     step = np.diff(times)
-    mean = np.maximum(0.5 * (velocity[1:] + velocity[:-1]), 1e-9 * velocity.max())
+    mean = np.maximum(0.5 * (velocity[1:] + velocity[:-1]), STANDSTILL * velocity.max())
     at_left = np.cumsum((step / mean)[::-1])[::-1]
     first, last = 0.5 * ends[0] ** 2, 0.5 * ends[1] ** 2
     known = lift - 0.5 * float(mean @ step) - first * float(at_left[0])

@@ -3,7 +3,7 @@
 :class:`Halves` are all choices of drivers and all choices of driven gears, whose products meet in the middle: k gears
 of n tooth numbers are only C(n+k−1, k) multisets, and the ratio does not depend on the pairing. :class:`Meshes` are all
 meshes a:b, in groups of equal centre distance for reverted trains, or in one group where the demands on the meshes
-leave so few of them that it is the shorter way.
+leave so few of them that this list is shorter than the choices of drivers and driven gears.
 """
 
 from __future__ import annotations
@@ -26,6 +26,9 @@ from synthesis.kinds.gear_train.kernels import (
     Rule,
 )
 from synthesis.kinds.gear_train.task import Task
+
+WINDOW_MARGIN = 1e-9
+"""Share by which a window of ratios is widened, so that the rounding of its powers loses no train."""
 
 FEW_TRAINS = 20_000_000
 """Trains that are gone through one by one, where they are no more than so many."""
@@ -220,8 +223,8 @@ def few_meshes(task: Task, k: int, reach: tuple[float, float], tolerance: float)
         return None
     low, high = reach
     ratio = float(task.target)
-    least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - 1e-9)
-    most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + 1e-9)
+    least = ratio * (1.0 - tolerance) / high ** (k - 1) * (1.0 - WINDOW_MARGIN)
+    most = ratio * (1.0 + tolerance) / low ** (k - 1) * (1.0 + WINDOW_MARGIN)
     a, b, mark = _meshes(task, 0, 1, task.allowed)
     kept = (b / a >= least) & (b / a <= most)
     if not math.comb(int(np.count_nonzero(kept)) + k - 1, k) <= FEW_TRAINS:

@@ -7,8 +7,8 @@ T_hi·D is split without rounding (Dekker), and N minus its head is exact where 
 good to a few units of its own last place, however small, down to about 2⁻¹⁰⁰. Two errors that differ by less than
 :data:`SAME` of themselves are taken for a tie here; the callers order what comes out in exact arithmetic.
 
-What is found goes into a :class:`Found`: the best few trains in order, and the least error of each size, from which
-the Pareto set follows. A hit is looked at only if it could enter one of the two.
+The results are collected in a :class:`Found`: the best trains in order, as many as it has room for, and the least error
+of each size, from which the Pareto set follows. A train is decoded only if it could enter one of the two.
 """
 
 from __future__ import annotations
@@ -24,6 +24,12 @@ Floats = NDArray[np.float64]
 Gears = NDArray[np.int16]
 
 MOST_STAGES = 4
+
+SPLITTER = 134217729.0
+"""2²⁷ + 1: times a float of 53 bits it parts it into two of 26 bits, whose products are exact (Veltkamp, Dekker)."""
+
+WINDOW_MARGIN = 1e-12
+"""Share by which the window of errors is widened: rounding must not lose a train, and the order is exact later."""
 
 SAME = 1e-14
 """Errors closer than this share of themselves count as tied in the loops: some thirty roundings."""
@@ -92,9 +98,9 @@ def error_of(n: int, d: int, target: float, rest: float) -> float:
     """Relative error of the ratio n/d."""
     x, y = float(d), target
     p = x * y
-    c = 134217729.0 * x
+    c = SPLITTER * x
     xh = c - (c - x)
-    c = 134217729.0 * y
+    c = SPLITTER * y
     yh = c - (c - y)
     xl, yl = x - xh, y - yh
     low = ((xh * yh - p) + xh * yl + xl * yh) + xl * yl
@@ -235,7 +241,7 @@ def enter(e: float, s: int, teeth: Integers, shortlist: Found, by_size: bool) ->
 @njit(cache=True, nogil=True, inline="always")
 def _window(ranked: float, front: float, tolerance: float) -> float:
     """Error up to which hits matter, a little wide: rounding must not lose one."""
-    return min(max(ranked, front), tolerance) * (1.0 + 1e-12) + 1e-14
+    return min(max(ranked, front), tolerance) * (1.0 + WINDOW_MARGIN) + SAME
 
 
 @njit(cache=True, nogil=True)

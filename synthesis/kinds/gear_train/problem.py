@@ -28,6 +28,9 @@ MOST_COAXIAL = 3_000_000_000
 FINEST_PITCHES = 10**9
 """Modules are compared as whole multiples of their common measure, at most so many of it."""
 
+ROUNDING = 1e-12
+"""Share by which a limit of teeth is lowered before it is rounded up: at 30° it is 8, not the 9 of a rounded sine."""
+
 NEAR = Fraction(1, 100)
 """Relative error up to which trains are of interest where no tolerance is stated: those of the Pareto set, and those
 among which the smallest are sought. Of all trains whatever their error the smallest would be no answer to a ratio."""
@@ -171,7 +174,7 @@ class GearTrainProblem(StatedProblem):
     @property
     def fewest_teeth(self) -> int:
         """Fewest teeth that a rack of the pressure angle does not undercut: 2 / sin² φ, rounded up."""
-        return math.ceil(2.0 / math.sin(math.radians(self.pressure_angle)) ** 2 * (1.0 - 1e-12))
+        return math.ceil(2.0 / math.sin(math.radians(self.pressure_angle)) ** 2 * (1.0 - ROUNDING))
 
     def position_ranges(self) -> list[tuple[int, int]]:
         """Fewest and most teeth of driver and driven gear of each stage up to ``max_stages``."""

@@ -1,13 +1,13 @@
 """The search for the best gear trains, with its proof.
 
-All numbers of stages in turn, a :class:`~synthesis.kinds.gear_train.candidates.Candidates` for each. The compiled loops
-keep somewhat more trains than are wanted; those are ordered in exact arithmetic. If the loops could have dropped a
-train that belongs among the wanted, because two errors differ by less than they can tell, the search is done again with
-more room.
+Every number of stages is searched in turn, with its own
+:class:`~synthesis.kinds.gear_train.candidates.Candidates`. The compiled loops keep a few more trains than the number
+requested, and these are ordered in exact arithmetic. Where two errors differ by less than double precision resolves,
+the loops could have dropped a train that belongs to the answer; then the search is repeated with a larger capacity.
 
-A ratio that no tolerance is stated for is first sought within :data:`~synthesis.kinds.gear_train.problem.NEAR`, where
-the loops have the least to look at; only if fewer trains than are wanted are that near, and the ratio is within reach,
-all errors are searched.
+Without a stated tolerance the search begins within :data:`~synthesis.kinds.gear_train.problem.NEAR`, which leaves the
+loops the fewest trains. All errors are searched only if that finds fewer trains than requested and the ratio is within
+reach.
 """
 
 from __future__ import annotations
@@ -32,12 +32,16 @@ from synthesis.kinds.gear_train.candidates import (
 from synthesis.kinds.gear_train.kernels import (
     MOST_STAGES,
     NOISE,
+    WINDOW_MARGIN,
     Found,
     Integers,
 )
 from synthesis.kinds.gear_train.problem import NEAR
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 from synthesis.model.ratio_target import Target
+
+ZERO_WINDOW = 1e-15
+"""Added to a tolerance, so that rounding loses no exact train where the tolerance is zero."""
 
 SPARE = 54
 """Trains kept beyond those wanted."""
@@ -103,7 +107,7 @@ def search(task: Task, tolerance: Fraction | None, wanted: int, progress: Progre
     reach = {k: _reach(task, k) for k in task.stage_counts}
     spans = [span for span in reach.values() if span is not None]
     whole = (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
-    near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + 1e-12) + 1e-15
+    near = float(NEAR) if tolerance is None else float(tolerance) * (1.0 + WINDOW_MARGIN) + ZERO_WINDOW
     counts = tuple(k for k, span in reach.items() if span is not None and _reaches(task.target, span, near))
     outcome = _searched(task, counts, near, tolerance, wanted, progress)
     nearest = None

@@ -19,10 +19,10 @@ from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_answer import mesh_geometries
 from synthesis.proof.checks import tolerated
 
-SAME_DISTANCE = 1e-12
+DISTANCE_TOLERANCE = 1e-12
 """Share of a centre distance by which equal ones may differ in rounding."""
 
-BITS = 256
+ENCLOSURE_BITS = 256
 """Width of the target's enclosure; errors of trains are told to some sixty digits."""
 
 
@@ -74,7 +74,7 @@ def verify(problem: GearTrainProblem, mechanism: GearTrainMechanism) -> GearTrai
 
 def _errors(problem: GearTrainProblem, ratio: Fraction) -> tuple[Fraction, Fraction]:
     """Relative error of the ratio, for the two ends of the target's enclosure."""
-    low, high = problem.target.enclosure(BITS)
+    low, high = problem.target.enclosure(ENCLOSURE_BITS)
     return ratio / high - 1, ratio / low - 1
 
 
@@ -127,7 +127,7 @@ def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[C
     if problem.reverted:
         distances = metrics.centre_distances
         apart = max(distances) - min(distances)
-        checks.append(tolerated("coaxial", apart, SAME_DISTANCE * max(distances), LENGTH))
+        checks.append(tolerated("coaxial", apart, DISTANCE_TOLERANCE * max(distances), LENGTH))
     if problem.hunting_tooth == "require":
         checks.append(Check(name="hunting_tooth", passed=metrics.hunting_tooth))
     if problem.interference == "refuse":

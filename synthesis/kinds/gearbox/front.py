@@ -1,13 +1,13 @@
-"""The least error of a gearbox for every tooth sum: stages put together, by widening the errors that are looked at.
+"""The least error of a gearbox for every tooth sum: stages combined, the admitted error widened run by run.
 
-:mod:`synthesis.kinds.gearbox.stages` says by what a choice of teeth enters: middle c, half width h and tooth sum. The
-stages but one or two are put together, and for what comes of it the best partner among the others is found by
-bisection.
+A choice of teeth for a stage enters by three numbers, its middle c, half width h and tooth sum
+(:mod:`synthesis.kinds.gearbox.stages`). All stages but one or two are combined; the best partner of each combination
+among the remaining stages is found by bisection.
 
-Most combinations are far too wide to be of use, since gearboxes of the larger tooth sums are far better than the
-tolerance. So the search is run for a small part of the tolerated error first. What it finds bounds the error that is
-worth looking at for each tooth sum when the search is run again with a larger part, until the bounds allow for all that
-is tolerated. Each run is exact for what its bounds let in, and the last lets in everything that could be better.
+Most combinations have an error far above the least, because gearboxes with large tooth sums come much closer than the
+tolerance asks. The first run therefore admits only a small share of the tolerated error. The errors that it finds are
+upper bounds, one for each tooth sum, for the next run with a larger share, until a run admits the whole tolerance. Each
+run is exact within its bounds, and the last admits everything that could be better.
 """
 
 from __future__ import annotations

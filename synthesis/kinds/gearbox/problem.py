@@ -20,9 +20,15 @@ from synthesis.model.statement import (
     Statement,
 )
 
-MOST_SPEEDS = 36
+STRICTLY = 1e-9
+"""Share by which a deviation stays below a quarter of a step, up to which alone every gearbox has a structure."""
 
-MOST_PAIRS = 16_000
+MAX_SPEED_RANGE = 1e6
+"""Highest over lowest speed, beyond which a progression is a typing error."""
+
+MAX_SPEEDS = 36
+
+MAX_PAIRS = 16_000
 """Pairs of gears that a stage may be made of. The search of a stage rises with their number, that of all stages with
 its square at worst: three stages of so many take some seconds for each structure, five some ten."""
 
@@ -34,7 +40,7 @@ class SpindleSpeeds(Statement):
     """Speeds in geometric progression: the lowest, how many, and one of highest, ratio of neighbours, or series."""
 
     min: Annotated[PositiveNumber, ROTATIONAL_SPEED] = Field(description="Lowest speed, revolutions a minute.")
-    count: Annotated[Count, Field(ge=2, le=MOST_SPEEDS)]
+    count: Annotated[Count, Field(ge=2, le=MAX_SPEEDS)]
     max: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(default=None, description="Highest speed.")
     ratio: Annotated[float, Field(strict=True, gt=1.0, le=10.0)] | None = Field(
         default=None, description="Each speed over the one below it, φ."
@@ -148,7 +154,7 @@ class GearboxProblem(StatedProblem):
         another then differ by 4 E at most over what else is engaged, and as they are whole they are equal where 4 E is
         below a step: every pair has a number of steps of its own.
         """
-        return 0.25 * math.log(self.speeds.progression_ratio) * (1.0 - 1e-9)
+        return 0.25 * math.log(self.speeds.progression_ratio) * (1.0 - STRICTLY)
 
     def contradictions(self) -> list[Contradiction]:
         """Limits the wrong way round or too wide, a structure with another number of speeds, a progression too wide."""
@@ -166,12 +172,12 @@ class GearboxProblem(StatedProblem):
             contradictions.append(Contradiction("/structure", "at most one fixed stage; join the others to it"))
         if self.structure is not None and self.fixed_stage:
             contradictions.append(Contradiction("/fixed_stage", "write a fixed stage as 1 in structure"))
-        if self.speeds.progression_ratio ** (self.speeds.count - 1) > 1e6:
+        if self.speeds.progression_ratio ** (self.speeds.count - 1) > MAX_SPEED_RANGE:
             contradictions.append(Contradiction("/speeds", "the highest speed is more than a million times the lowest"))
         if self.tooth_sum.max > MOST_TOOTH_SUM:
             contradictions.append(Contradiction("/tooth_sum/max", f"at most {MOST_TOOTH_SUM}"))
-        elif (pairs := self.pairs_of_a_stage) > MOST_PAIRS:
-            detail = f"leaves {pairs} pairs of gears for a stage, of which at most {MOST_PAIRS} are searched; "
+        elif (pairs := self.pairs_of_a_stage) > MAX_PAIRS:
+            detail = f"leaves {pairs} pairs of gears for a stage, of which at most {MAX_PAIRS} are searched; "
             contradictions.append(Contradiction("/tooth_sum/max", detail + "narrow tooth_sum, teeth or stage_ratio"))
         return contradictions
 

@@ -7,13 +7,13 @@ least d of each stage to the sum of the greatest, so that with the middle c and 
 
     largest |ln(n/n_nominal)| = |Σ c − L| + Σ h
 
-A choice of teeth thus enters by c, h and its tooth sum alone. One with c', h' and no greater sum takes its place
-wherever |c − c'| + h' ≤ h without making anything worse; such choices are left out, which loses no best gearbox, of one
-stage or of several together.
+A choice of teeth thus enters by c, h and its tooth sum alone. It is dominated by a choice c', h' of the same or a
+smaller tooth sum where |c − c'| + h' ≤ h, whatever the other stages are. Dominated choices are left out; the best
+gearbox is never lost by that.
 
-In one stage of a given tooth sum few are left from the start. Take any choice, and let δ be the least of its d: with
-the smallest d not below δ for each pair instead, the interval from the least to the greatest d lies within the old one.
-So δ runs through the d of all drivers and pairs, and all other choices need never be made.
+For a given tooth sum of one stage few choices have to be made at all. Let δ be the least d of a choice. Taking for each
+pair the smallest d that is not below δ gives an interval from least to greatest d that lies within that of the choice,
+and so dominates it. It is enough to let δ run through the d of all drivers and pairs.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ from synthesis.outcome.sifting import OUTRANKED, Sifting
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-CLOSE = 1e-12
+ERROR_TOLERANCE = 1e-12
 """Errors nearer to each other than this are compared as exact fractions."""
 
 
@@ -179,7 +179,7 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
     most = min(count, len(level.heads))
     limit = np.partition(level.error, most - 1)[most - 1]
     boxes = []
-    for k in np.flatnonzero(level.error <= limit + CLOSE).tolist():
+    for k in np.flatnonzero(level.error <= limit + ERROR_TOLERANCE).tolist():
         own = int(level.heads[k])
         gears = tuple(None if c is None else (int(c[k]), size - int(c[k])) for c in level.layshaft)
         reverse = None

@@ -1,13 +1,13 @@
 """The trains of an arrangement whose ratio is nearest to a target: by error, and for every size.
 
-All ratios are evaluated as whole numbers over whole numbers in double precision, where they are exact; their quotients
-are then off by a rounding of 1e-16. What lies within :data:`CLOSE` of a place in the order is compared as exact
-fractions, so that rounding decides nothing.
+Numerator and denominator of every ratio are whole numbers that double precision holds exactly; only their quotient is
+rounded, by 1e-16 of itself. Errors that differ by less than :data:`ERROR_TOLERANCE` are compared as exact fractions, so
+that rounding never decides the order.
 
-A train of one planet set is ranked by looking at all its sound tooth numbers. Where two sets are coupled, each enters
-the ratio by one number, its train value x, and for fixed x₁ the ratio is a quotient of two linear functions of x₂. On
-the number line closed at infinity such a function is one-to-one, so that going away from the x₂ that would give the
-target, either way round, the error only grows: the k nearest values of x₂ on both sides hold the k best partners of x₁.
+Trains of one planet set are ranked over all its sound tooth numbers. Where two sets are coupled, each enters the ratio
+by one number, its train value x, and for a fixed x₁ the ratio is a quotient of two linear functions of x₂. On the
+projective line such a function is one-to-one, so that the error grows monotonically to both sides of the x₂ that would
+meet the target: the k nearest values of x₂ on each side contain the k best partners of x₁.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Real = NDArray[np.float64]
 Roles = tuple[str, str, str]
 """Input, output and fixed member."""
 
-CLOSE = 1e-12
+ERROR_TOLERANCE = 1e-12
 """Errors nearer to each other than this are compared exactly; quotients of whole numbers are rounded by 2e-16."""
 
 
@@ -179,10 +179,12 @@ def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, targe
 
     most = min(count, possible)
     limit = np.partition(errors, most - 1)[most - 1]
-    nearest_trains.best, nearest_trains.ties = candidates(np.flatnonzero(errors <= limit + CLOSE), "error", most)
+    nearest_trains.best, nearest_trains.ties = candidates(
+        np.flatnonzero(errors <= limit + ERROR_TOLERANCE), "error", most
+    )
     order, starts, sizes = table.by_size
     least = np.minimum.reduceat(errors[order], starts)
-    close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + CLOSE
+    close = errors[order] <= np.repeat(least, np.diff([*starts, size])) + ERROR_TOLERANCE
     listed, _ = candidates(order[close & np.isfinite(errors[order])], "size", len(sizes))
     nearest_trains.by_size = {candidate.size: candidate for candidate in listed}
     return nearest_trains
@@ -314,7 +316,7 @@ class _TwoSets:
         if not len(errors):
             return nearest_trains
         limit = np.partition(errors, min(count, len(errors)) - 1)[min(count, len(errors)) - 1]
-        kept = pairs[:, errors <= limit + CLOSE]
+        kept = pairs[:, errors <= limit + ERROR_TOLERANCE]
         one, other = (side.part(at) for side, at in zip(self._sides, kept, strict=True))
         ratios, exact, which = _exact_errors(*self._coupling.quotient(one, other), self._target)
         ranked = sorted(
@@ -395,7 +397,7 @@ class _TwoSets:
         errors = _errors(over, under, self._target)
         if not np.isfinite(errors).any():
             return None
-        kept = np.flatnonzero(errors <= errors.min() + CLOSE)
+        kept = np.flatnonzero(errors <= errors.min() + ERROR_TOLERANCE)
         ratios, exact, which = _exact_errors(over[kept], under[kept], self._target)
         best: Candidate | None = None
         for k, w in zip(kept.tolist(), which.tolist(), strict=True):

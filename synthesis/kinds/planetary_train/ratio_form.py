@@ -1,8 +1,8 @@
 """The speed ratio of an arrangement as a quotient of polynomials in its tooth numbers.
 
-The speed equations of the meshes, with one member held and one driven at speed 1, are as many as the speeds that they
-leave open. By Cramer's rule the ratio input over output is a quotient of two determinants whose entries are tooth
-numbers; both are expanded once, and then evaluated for millions of tooth numbers at a time.
+With one member held and one driven at speed 1, there are as many speed equations as unknown speeds. By Cramer's rule
+the ratio input over output is a quotient of two determinants whose entries are tooth numbers; both are expanded once,
+and then evaluated for millions of tooth numbers at a time.
 """
 
 from __future__ import annotations

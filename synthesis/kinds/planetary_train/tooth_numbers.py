@@ -1,8 +1,9 @@
 """All sound tooth numbers of one planet set, found by trying every combination of its independent gears.
 
-Gears are chosen one after the other. Coaxiality gives a sun or ring a planet meshes with besides its first; every other
-condition (limits, sound teeth, assembly, room) cuts combinations as soon as its gears are chosen, for whole blocks of
-them at a time. Lengths are in half modules, so that a pin's distance from the axis is a whole number: s + p or r − p.
+Gears are chosen one after the other. Where a planet meshes with a second sun or ring, coaxiality gives its teeth. Every
+other condition (limits, sound teeth, assembly, room) rejects combinations as soon as all its gears are chosen, for
+whole blocks at a time. Lengths are in half modules, so that a pin's distance from the axis is a whole number: s + p or
+r − p.
 
 Assembly: the places where a planet set can be put in are the multiples of 1/M of a turn, with M the greatest common
 divisor of ±S ± R for two gears about the axis on one planet gear (or on two that mesh), and of
@@ -29,7 +30,10 @@ Mask = NDArray[np.bool_]
 Block = dict[str, Whole]
 """Teeth by gear, one array each, of combinations that passed so far."""
 
-LARGEST_BLOCK = 1 << 17
+ROUNDING = 1e-12
+"""Share of half a turn within which two planets stand opposite each other, where they cannot touch."""
+
+MAX_BLOCK = 1 << 17
 """Combinations that are tested at once: large enough for the arrays' overhead, small enough for the cache."""
 
 
@@ -102,7 +106,7 @@ class ToothNumbers:
             return
         gear = self._free[step]
         values = np.arange(self.combinations and self._demands.limits[gear][0], self._demands.limits[gear][1] + 1)
-        at_once = max(1, LARGEST_BLOCK // len(values))
+        at_once = max(1, MAX_BLOCK // len(values))
         before = frozenset(block)
         for start in range(0, rows, at_once):
             part = {name: array[start : start + at_once] for name, array in block.items()}
@@ -430,5 +434,5 @@ def _offsets(numbers: ToothNumbers, block: Block, own_copy: bool) -> Iterator[Re
 def _bevel_clear(planet: Whole, side: Real, count: int, numbers: ToothNumbers, block: Block, need: float) -> Mask:
     """Room between bevel planets' large ends, in half modules, as for :func:`kinematics.gear.assembly.gaps`."""
     narrowest = np.min(np.stack([np.minimum(turn, 2.0 * np.pi - turn) for turn in _offsets(numbers, block, False)]), 0)
-    half = np.where(narrowest < np.pi * (1.0 - 1e-12), side * np.tan(np.minimum(0.5 * narrowest, 1.57)), np.inf)
+    half = np.where(narrowest < np.pi * (1.0 - ROUNDING), side * np.tan(np.minimum(0.5 * narrowest, 1.57)), np.inf)
     return np.asarray(2.0 * (half - planet - 2.0 * side / np.hypot(side, planet)) >= need, np.bool_)
