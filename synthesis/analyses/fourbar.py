@@ -172,6 +172,7 @@ def fourbar_analysis(mechanism: Mechanism, at: Real, topics: list[Topic]) -> dic
 
 
 def _cognates(stated: Assembled, reference: float) -> dict[str, Any]:
+    """The two cognates of Roberts and Chebyshev and the geared fivebar of the same curve, as statements."""
     linkage, assembly = stated
     pair = cognates(linkage)
     fivebar = geared_fivebar_cognate(linkage)
@@ -223,6 +224,7 @@ def _stated(cognate: Cognate, reference: float, assembly: int) -> dict[str, Any]
 
 
 def _parallel_motion(linkage: Fourbar, a: complex, b: complex, p: complex) -> dict[str, Any]:
+    """The sixbar whose link moves parallel to itself along the coupler curve."""
     translating = parallel_motion(linkage)
     o2 = complex(linkage.input_pivot)
     joints = {

@@ -168,6 +168,7 @@ class GearTrainAnalysis(DrivenAnalysis):
 
 
 def _analysis(request: GearTrainAnalysisRequest) -> dict[str, Any]:
+    """Speeds, torques, gears and meshes of a train over the motion."""
     at, speed, time = request.motion.inputs()
     train = request.mechanism.train()
     shares = tuple(tuple(_share(request, mesh) for mesh in stage) for stage in train.meshes)
@@ -200,6 +201,7 @@ def _share(request: GearTrainAnalysisRequest, mesh: Mesh) -> float | None:
 def _gears(
     request: GearTrainAnalysisRequest, train: OrdinaryTrain, at: NDArray[np.float64], speed: NDArray[np.float64]
 ) -> list[dict[str, Any]]:
+    """Every gear with its dimensions and its motion, from the input to the output."""
     gears = []
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True), 1):
         roles = ["driver", *("idler" for _ in stage.idlers), "driven"]
@@ -231,6 +233,7 @@ def _meshes(
     torques: tuple[float, ...],
     speed: float,
 ) -> list[dict[str, Any]]:
+    """Every mesh with its contact and its forces at the first position."""
     geometries = iter(mesh_geometries(train))
     loaded = []
     for stage, meshes, efficiencies, turns, torque in zip(

@@ -217,6 +217,7 @@ def _shape(
     ratios: list[tuple[str, Fraction]],
     speeds: list[tuple[list[int], Fraction]],
 ) -> dict[str, Any]:
+    """The answer that both kinds of gearbox have in common."""
     return {
         "input_angle": at.tolist(),
         "time": None if time is None else time.tolist(),

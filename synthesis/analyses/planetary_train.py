@@ -147,6 +147,7 @@ class PlanetaryAnalysisRequest(DrivenRequest[GivenPlanetaryTrain]):
         return faults or self._unknown_bodies()
 
     def _unknown_bodies(self) -> list[tuple[str, str]]:
+        """Names in speeds, clutches, torques and loads that the train does not have."""
         train = self.mechanism.train()
         named = [
             *((f"/speeds/{body}", body) for body in self.speeds or ()),
@@ -218,6 +219,7 @@ class PlanetaryAnalysis(DrivenAnalysis):
 
 
 def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
+    """Speeds of all bodies; torques and powers too where the speeds are complete."""
     at, speed, time = request.motion.inputs()
     mechanism, train = request.mechanism, request.mechanism.train()
     turning = request.speeds is None

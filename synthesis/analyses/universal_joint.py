@@ -136,6 +136,7 @@ class UniversalJointRequest(DrivenRequest[GivenUniversalJoint]):
         }
 
     def _largest_angle(self) -> float | None:
+        """The largest joint angle (degrees) within the stated limits; None without limits."""
         limits = self.limits
         if limits is None:
             return None

@@ -117,6 +117,7 @@ def _curvature(rho: float) -> Callable[[Motion, Real], Real]:
 def _metrics(
     problem: CamProblem, program: Program, mechanism: BarrelCamMechanism, measured: MeasuredBarrel
 ) -> BarrelMetrics:
+    """The measured groove as the answer has it."""
     roller = mechanism.follower.roller_radius
     least = reported(measured.least_radius)
     return BarrelMetrics(

@@ -266,6 +266,7 @@ def _choose_row(
     names: list[str],
     row: list[int],
 ) -> NoProgram | None:
+    """Choose the laws of one row of automatic segments: a shortest path over the states at its joints."""
     count = len(segments)
     before, after = ends[row[0] - 1], ends[(row[-1] + 1) % count]
     closed = len(row) == count

@@ -121,6 +121,7 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
 
 
 def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
+    """Automatic and optimal segments, each measured on its own grid."""
     start = 0.0
     for index, (segment, heights) in enumerate(zip(problem.segments, problem.heights(), strict=True)):
         span = math.radians(segment.angle)

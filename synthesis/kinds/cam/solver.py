@@ -143,6 +143,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
 
 
 def _not_laid_on(cam: Cam) -> str:
+    """Why the follower cannot be laid against the profile."""
     if cam.program.smoothness < 2:
         return "where the displacement or the velocity jumps the profile breaks off; choose laws that join"
     if cam.roller_radius <= 0.0:
@@ -255,6 +256,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
 
 
 def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
+    """The smallest cam under a flat face, or the one whose radius is stated; None where no radius is sound."""
     follower, limits = problem.follower, problem.limits
     least = max(limits.hub_radius, MIN_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
     size: Size | None
@@ -290,6 +292,7 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
 
 
 def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
+    """The measured profile as the answer has it."""
     program = cam.program
     roller = cam.roller_radius > 0.0
     return CamMetrics(

@@ -154,6 +154,7 @@ def _summary(problem: GearTrainProblem, task: Task, outcome: Outcome, accepted: 
 
 
 def _why_none(problem: GearTrainProblem, task: Task, outcome: Outcome) -> str:
+    """The reason why the search is empty, as the end of a sentence."""
     if not task.stage_counts:
         if problem.reverted and problem.demanded_sign < 0 and problem.max_stages < 3:
             return "a reverted train of two stages turns input and output alike; allow three stages"

@@ -84,6 +84,7 @@ def _ratio_checks(
     train: OrdinaryTrain,
     errors: tuple[Fraction, Fraction],
 ) -> list[Check]:
+    """Ratio, error and direction, in exact fractions."""
     stated = mechanism.ratio.exact
     checks = [Check(name="ratio", passed=stated == train.ratio and mechanism.ratio.value == float(stated))]
     tolerance = problem.exact_tolerance
@@ -100,6 +101,7 @@ def _ratio_checks(
 def _gear_checks(
     problem: GearTrainProblem, mechanism: GearTrainMechanism, train: OrdinaryTrain, metrics: GearTrainMetrics
 ) -> list[Check]:
+    """Numbers of stages and teeth, the stock, and the largest stage ratio."""
     count = len(train.stages)
     checks = [tolerated("stages", count, problem.max_stages)]
     if problem.stock is not None:
@@ -123,6 +125,7 @@ def _gear_checks(
 
 
 def _mesh_checks(problem: GearTrainProblem, metrics: GearTrainMetrics) -> list[Check]:
+    """Coaxial shafts, hunting teeth and interference, as far as they are demanded."""
     checks = []
     if problem.reverted:
         distances = metrics.centre_distances

@@ -99,6 +99,7 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
 
 
 def _structures(problem: GearboxProblem) -> list[Structure]:
+    """The structures to search: all of them, or those with the stated pairs in the stated order."""
     if problem.structure is None:
         candidates = structures(problem.speeds.count, problem.max_pairs)
         return [(FIXED, *structure) for structure in candidates] if problem.fixed_stage else candidates
@@ -115,6 +116,7 @@ def _structures(problem: GearboxProblem) -> list[Structure]:
 
 
 def _limits(problem: GearboxProblem) -> StageLimits:
+    """The limits on the teeth of a stage."""
     return StageLimits(
         (problem.teeth.min, problem.teeth.max),
         (problem.tooth_sum.min, problem.tooth_sum.max),
@@ -163,6 +165,7 @@ def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structu
 
 
 def _design(problem: GearboxProblem, gearbox: _Made) -> GearboxDesign:
+    """A gearbox of the front as a verified design."""
     stages = []
     for group, (total, drivers) in zip(gearbox.structure, gearbox.stages, strict=True):
         pairs = [GearPairTeeth(driver=z, driven=total - z) for z in drivers]
@@ -208,6 +211,7 @@ def _unsearched(problem: GearboxProblem, tried: list[Structure]) -> str:
 
 
 def _summary(problem: GearboxProblem, tried: list[Structure], passed: list[GearboxDesign], covered: int) -> str:
+    """What the search covered and what is best, in one sentence."""
     count = problem.speeds.count
     if not tried:
         return f"{count} speeds cannot be made by stages of 2 to {problem.max_pairs} pairs."

@@ -104,6 +104,7 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
 
 
 def _level(problem: LayshaftProblem, size: int) -> _Level:
+    """The best pair of every gear for each head pair of one tooth sum."""
     low, high = problem.teeth.min, problem.teeth.max
     own = np.arange(max(low, size - high), min(high, size - low) + 1)
     if problem.interference == "refuse" and len(own):
@@ -196,6 +197,7 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
 
 
 def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
+    """A choice of teeth as a verified design."""
     ratios = layshaft_ratios(box.head, box.gears, box.reverse)
     reverse = None
     if box.reverse is not None and ratios.reverse is not None:
@@ -222,6 +224,7 @@ def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
 
 
 def _front(best: list[_Box]) -> list[ParetoLayshaft]:
+    """The Pareto set of error against tooth sum."""
     front: list[ParetoLayshaft] = []
     least: Fraction | None = None
     for box in best:
@@ -233,6 +236,7 @@ def _front(best: list[_Box]) -> list[ParetoLayshaft]:
 
 
 def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:
+    """What the search covered and what is best, in one sentence."""
     counted = f"{covered:,} combinations of tooth numbers covered"
     if passed:
         first = passed[0]

@@ -142,6 +142,7 @@ def _ranks(errors: list[Fraction]) -> Whole:
 
 
 def _of_one_set(name: str, table: SetTable, roles: Roles, form: RatioForm, target: Fraction, count: int) -> Nearest:
+    """The nearest trains where one planet set gives the ratio: all its tooth numbers evaluated."""
     nearest_trains = Nearest()
     if not form.over:
         return nearest_trains

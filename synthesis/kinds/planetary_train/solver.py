@@ -77,6 +77,7 @@ def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> Plan
 
 
 def _demands(problem: PlanetaryProblem, arrangement: Arrangement) -> Demands:
+    """The demands on tooth numbers of one arrangement, lengths in half modules."""
     return Demands(
         {gear.name: problem.teeth.limits(gear.name, gear.internal) for gear in arrangement.gears},
         problem.planets,
@@ -149,6 +150,7 @@ class _Ranking:
         return front
 
     def _summary(self) -> str:
+        """What the search covered and what is best, in one sentence."""
         problem, sifting = self._problem, self._sifting
         covered = f"{sifting.candidates:,} combinations of tooth numbers and members covered"
         if sifting.passed:
@@ -190,6 +192,7 @@ def _holds(problem: PlanetaryProblem, candidate: Candidate) -> bool:
 
 
 def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryTrain:
+    """A train of the Pareto set as the answer has it."""
     one, two, three = candidate.roles
     return ParetoPlanetaryTrain(
         arrangement=candidate.arrangement,
@@ -204,6 +207,7 @@ def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryT
 
 
 def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMechanism:
+    """The dimensions of a train."""
     arrangement = ARRANGEMENTS[candidate.arrangement]
     known = dict(candidate.teeth)
     teeth = {gear: known[gear] for gear in arrangement.gear_names}

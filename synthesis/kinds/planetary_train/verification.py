@@ -113,6 +113,7 @@ def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement
 
 
 def _limits(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    """Tooth numbers within their limits; planets and module as stated."""
     within = all(
         low <= mechanism.teeth[gear.name] <= high
         for gear in arrangement.gears
@@ -146,6 +147,7 @@ def _gaps(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Gap]:
 
 
 def _clearance(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> Check:
+    """Least room between tips of gears that do not mesh."""
     rooms = _gaps(mechanism, arrangement)
     least = min((gap.room for gap in rooms), default=math.inf)
     return Check(
@@ -173,6 +175,7 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
 
 
 def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
+    """Every mesh with its teeth."""
     meshes = {}
     for one, other in arrangement.meshes:
         pinion, gear = (other, one) if arrangement.places[one].internal else (one, other)
@@ -188,6 +191,7 @@ def _apart(arrangement: Arrangement, pair: tuple[str, str], mesh: Mesh) -> float
 
 
 def _meshes(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement: Arrangement) -> list[Check]:
+    """Interference and contact ratio of all meshes."""
     try:
         meshes: Mapping[tuple[str, str], Mesh] = _toothed(mechanism, arrangement)
     except DimensionError:
