@@ -9,21 +9,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 
-from kinematics import errors as kinematics
 from kinematics.linkage.planar.branches import Branch
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from service.render import NotBuilt
 from service.render.page.svg import Points
 from synthesis.analyses.cycle import branch_of, cycle_along
-from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.model.linkage_answer import DrivenTo
+from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
-
-_GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
 
 class DrivenLinkage:
@@ -44,10 +40,10 @@ class DrivenLinkage:
         NotBuilt
             Where it is none that the analysis core would be given.
         """
-        try:
-            return cls(_GIVEN.validate_python(design.mechanism.model_dump()).mechanism())
-        except (ValidationError, MechanismError, kinematics.MechanismError) as error:
-            raise NotBuilt(type(error).__name__) from error
+        mechanism = rebuilt(design.mechanism, from_skeleton=True)
+        if mechanism is None:
+            raise NotBuilt(design.mechanism.type)
+        return cls(mechanism)
 
     @cached_property
     def branch(self) -> Branch | None:

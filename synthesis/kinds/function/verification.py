@@ -46,6 +46,7 @@ from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
 from synthesis.proof.checks import TARGET_REACHED, reaches_targets, tolerated
+from synthesis.proof.closer import least_near
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured
 
@@ -54,9 +55,6 @@ Complex = NDArray[np.complex128]
 
 DRIVEN = 2001
 """Places of the range at which the structural error is measured at first."""
-
-CLOSER, LOOKS = 17, 6
-"""Places in each closer look at an extreme, and the number of looks: 8⁶ times finer than the first."""
 
 SHOWN = 201
 """Places of the error curve that are returned."""
@@ -366,20 +364,13 @@ def _extremes(errors: Callable[[Real], Real], curve: _Curve) -> Real:
     x, e = curve.values, curve.errors
     steps = np.diff(e)
     turns = np.flatnonzero(steps[:-1] * steps[1:] < 0.0) + 1
-    found = []
-    for k in turns:
-        at, step = x[k], float(x[1] - x[0])
+
+    def extreme(k: int) -> float:
         upward = 1.0 if e[k] > e[k - 1] else -1.0
-        best = upward * e[k]
-        for _ in range(LOOKS):
-            near = np.clip(at + step * np.linspace(-1.0, 1.0, CLOSER), x[k - 1], x[k + 1])
-            values = upward * errors(near)
-            values = np.where(np.isfinite(values), values, -np.inf)
-            if values.max() > best:
-                at, best = near[int(values.argmax())], float(values.max())
-            step *= 2.0 / (CLOSER - 1)
-        found.append(at)
-    return np.array([x[0], *found, x[-1]])
+        near = slice(k - 1, k + 2)
+        return least_near(lambda inputs: -upward * errors(inputs), x[near], -upward * e[near])[0]
+
+    return np.array([x[0], *map(extreme, turns.tolist()), x[-1]])
 
 
 def _stated(problem: FunctionProblem, extremes: _Curve, curve: _Curve, rms: float) -> StructuralError:

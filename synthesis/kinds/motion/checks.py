@@ -1,18 +1,21 @@
-"""What is checked of a linkage that carries a body: the targets, the motion, what the client fixed of its sides."""
+"""What is stated and checked of a linkage that carries a body: targets, motion, what the client fixed of its sides."""
 
 from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
-from synthesis.model.answer import Check
-from synthesis.model.linkage_answer import Target
+from synthesis.model.answer import Check, Verification
+from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism, LinkageMetrics, Target
 from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
+from synthesis.proof.constraints import constraint_checks
+from synthesis.proof.measures import Measures
 
 
 class Side(NamedTuple):
@@ -52,8 +55,68 @@ class Driven(NamedTuple):
     input_side: Side
     output_side: Side
 
+    @property
+    def fixed_pivots(self) -> list[complex]:
+        """Of both sides."""
+        return [side.pivot for side in (self.input_side, self.output_side) if side.pivot is not None]
 
-def targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool = False) -> list[Target]:
+    @property
+    def moving_pivots(self) -> list[complex]:
+        """Of both sides, at the first target."""
+        return [complex(side.pins[0]) for side in (self.input_side, self.output_side) if side.pins is not None]
+
+
+def linkage_design(
+    problem: MotionProblem,
+    mechanism: LinkageMechanism,
+    target: Demanded,
+    driven: Driven,
+    measures: Measures,
+    inputs: Real,
+    *,
+    on_circuit: bool,
+    slides: bool = False,
+    own: Sequence[Check] = (),
+) -> LinkageDesign:
+    """A driven linkage of any type with its proof.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        What was asked.
+    mechanism : LinkageMechanism
+        The dimensions that were driven.
+    target, driven, measures
+        What is demanded of the body, and what was measured.
+    inputs : float, shape (targets,)
+        At the targets, in one run: degrees, or length units where the input slides.
+    on_circuit, slides : bool
+        Whether all targets are met on one circuit, and whether the input slides.
+    own : sequence of Check
+        Checks of the linkage's type.
+    """
+    travelled = float(inputs[-1] - inputs[0])
+    return LinkageDesign(
+        mechanism=mechanism,
+        targets=_targets(inputs, target, driven, slides=slides),
+        verification=Verification.of(
+            [
+                *_motion_checks(target, driven, on_circuit),
+                *_choice_checks(problem, target, driven),
+                *constraint_checks(problem.constraints, measures, driven.fixed_pivots, driven.moving_pivots),
+                *own,
+            ]
+        ),
+        metrics=LinkageMetrics(
+            input_rotation=None if slides else travelled,
+            input_travel=travelled if slides else None,
+            rms_residual=target.rms(driven.offsets),
+            **measures.within(LinkageMetrics),
+        ),
+    )
+
+
+def _targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool) -> list[Target]:
     """Targets as they are met; inputs in degrees, or in length units where the input slides."""
     residuals = target.residuals(driven.offsets)
     return [
@@ -69,7 +132,7 @@ def targets(inputs: Real, target: Demanded, driven: Driven, *, slides: bool = Fa
     ]
 
 
-def motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[Check]:
+def _motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[Check]:
     """What the task itself demands: held coordinates are met, others within their tolerance, all on one circuit."""
     checks = []
     if target.held.any():
@@ -82,7 +145,7 @@ def motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[Ch
     return [*checks, Check(name="same_circuit", passed=on_circuit)]
 
 
-def choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> list[Check]:
+def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> list[Check]:
     """Whether the driven linkage keeps what the client fixed of each side: shares of the task's size, and radians.
 
     Places on the body are compared with the body in the demanded first position, which a fit may miss a little.
@@ -100,8 +163,7 @@ def choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> l
         gap = max(_gaps(choices, side, point, pin, target.size))
         checks.append(tolerated(name, gap, CHOICE_KEPT))
     if problem.ground_line is not None:
-        pivots = [side.pivot for side in (driven.input_side, driven.output_side) if side.pivot is not None]
-        gap = max(abs(problem.ground_line.offset(pivot)) for pivot in pivots) / target.size
+        gap = max(abs(problem.ground_line.offset(pivot)) for pivot in driven.fixed_pivots) / target.size
         checks.append(tolerated("ground_line", gap, CHOICE_KEPT))
     return checks
 
@@ -109,8 +171,8 @@ def choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> l
 def _gaps(choices: DyadChoices, side: Side, point: complex, pin: complex | None, size: float) -> list[float]:
     """Deviations from each stated number; infinite where the dyad has no such thing."""
     gaps = [0.0]
-    for found, stated in ((side.pivot, choices.fixed_pivot), (pin, choices.moving_pivot)):
-        coordinates = (math.inf, math.inf) if found is None else (found.real, found.imag)
+    for pivot, stated in ((side.pivot, choices.fixed_pivot), (pin, choices.moving_pivot)):
+        coordinates = (math.inf, math.inf) if pivot is None else (pivot.real, pivot.imag)
         for value, wanted in zip(coordinates, stated or (None, None), strict=True):
             if wanted is not None:
                 gaps.append(abs(value - wanted) / size)

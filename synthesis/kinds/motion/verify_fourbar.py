@@ -24,7 +24,7 @@ from kinematics.linkage.fourbar import (
     transmission_extremes,
     traverse,
 )
-from synthesis.kinds.motion.checks import Driven, Side, choice_checks, motion_checks, targets
+from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import Motion, closest_inputs
 from synthesis.kinds.motion.demanded import (
     Complex,
@@ -32,18 +32,12 @@ from synthesis.kinds.motion.demanded import (
     Real,
 )
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.model.answer import Verification
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    LinkageDesign,
-    LinkageMetrics,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
 from synthesis.model.linkages import (
     DrivenFourbar,
     body_shift,
     driven_fourbar,
 )
-from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5
@@ -95,26 +89,9 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         visits_in_order=way.in_order,
         full_rotation=barker.motion in TURNS_THROUGH,
     )
-    metrics = LinkageMetrics(
-        input_rotation=math.degrees(way.angles[-1] - way.angles[0]),
-        rms_residual=target.rms(driven.offsets),
-        **measures.within(LinkageMetrics),
-    )
-    checks = [*motion_checks(target, driven, way.same_circuit), *choice_checks(problem, target, driven)]
-    checks += constraint_checks(
-        problem.constraints,
-        measures,
-        [complex(o2[0]), complex(o4[0])],
-        [complex(pin_a[0]), complex(pin_b[0])],
-    )
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
-    return LinkageDesign(
-        mechanism=mechanism,
-        targets=targets(inputs, target, driven),
-        verification=Verification.of(checks),
-        metrics=metrics,
-    )
+    return linkage_design(problem, mechanism, target, driven, measures, inputs, on_circuit=way.same_circuit)
 
 
 def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
@@ -127,10 +104,10 @@ def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None
     pins = target.points - complex(linkage.coupler_point) * np.exp(1j * coupler_angles)
     angles = np.angle(pins - complex(linkage.input_pivot))
     signs = np.array([fourbar.assembly, -fourbar.assembly])
-    found = positions(linkage, angles, signs)
-    off = found.coupler_angle - coupler_angles
+    driven = positions(linkage, angles, signs)
+    off = driven.coupler_angle - coupler_angles
     turned_off = np.abs(off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)))
-    residuals = np.where(found.valid, np.maximum(np.abs(found.p - target.points) / target.size, turned_off), np.inf)
+    residuals = np.where(driven.valid, np.maximum(np.abs(driven.p - target.points) / target.size, turned_off), np.inf)
     # The first target is met by the reference configuration itself, or not at all.
     first = abs(complex(reference.p) - target.points[0]) / target.size
     off_reference = residuals[0, 0] < first
@@ -140,11 +117,11 @@ def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None
     best = residuals.argmin(axis=0), np.arange(len(target.points))
     if not np.all(np.isfinite(residuals[best])):
         return None
-    turns = found.coupler_angle[best] - reference.coupler_angle + shift
-    points = found.p[best]
+    turns = driven.coupler_angle[best] - reference.coupler_angle + shift
+    points = driven.p[best]
     if off_reference:
         points[0], turns[0] = reference.p, shift
-    return _Met(angles, signs[best[0]], turns, _joints(linkage, found.a[best], found.b[best], points))
+    return _Met(angles, signs[best[0]], turns, _joints(linkage, driven.a[best], driven.b[best], points))
 
 
 def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:
@@ -163,11 +140,11 @@ def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | No
 
         return motion
 
-    found = [closest_inputs(motion_in(int(sign)), target, -math.pi, math.pi) for sign in signs]
-    misses = np.stack([missed for _, missed in found])
+    closest = [closest_inputs(motion_in(int(sign)), target, -math.pi, math.pi) for sign in signs]
+    misses = np.stack([missed for _, missed in closest])
     row = np.where(misses[0] <= OWN * misses[1], 0, 1)
     row[0] = 0
-    angles = np.stack([inputs for inputs, _ in found])[row, np.arange(len(row))]
+    angles = np.stack([inputs for inputs, _ in closest])[row, np.arange(len(row))]
     if not np.all(np.isfinite(angles)):
         return None
     at = positions(linkage, angles, signs)

@@ -9,7 +9,6 @@ least transmission angle at each closure is looked for.
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,15 +16,14 @@ from numpy.typing import NDArray
 
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import Branch, cycle
-from kinematics.linkage.planar.closures import decompose
-from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import (
     branches,
     holding_reference,
     limit_positions,
 )
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
-from synthesis.kinds.motion.checks import Driven, Side, choice_checks, motion_checks, targets
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import closest_inputs
 from synthesis.kinds.motion.demanded import (
     Complex,
@@ -33,20 +31,19 @@ from synthesis.kinds.motion.demanded import (
     Real,
 )
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.model.answer import Check, Verification
+from synthesis.model.answer import Check
 from synthesis.model.linkage_answer import (
     InvertedSliderCrankMechanism,
     LinkageDesign,
     LinkageMechanism,
-    LinkageMetrics,
     SixbarMechanism,
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import body_shift
 from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles
-from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
+from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
 
 OWN = 1.5
@@ -83,21 +80,21 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     if mechanism is None:
         return None
     try:
-        found = branches(mechanism)
+        listed = branches(mechanism)
     except MechanismError:
         return None
-    here = holding_reference(mechanism, found)
+    here = holding_reference(mechanism, listed)
     if here is None:
         return None
-    body = _Body(mechanism, body_shift(design, problem.positions[0].angle))
-    met = _closest(body, target, found, here)
+    shift = body_shift(design, problem.positions[0].angle)
+    bodies = [_Body(mechanism, branch, shift) for branch in listed]
+    own = listed.index(here)
+    met = _closest(bodies, target, own)
     if met is None:
         return None
-    same_branch = bool(np.all(met.rows == found.index(here)))
-    on_circuit = bool(all(found[row].circuit == here.circuit for row in met.rows))
+    same_branch = bool(np.all(met.rows == own))
     way = _way(mechanism, here, met.inputs) if same_branch else _Way(met.inputs, False)
-    joints, turns = _at_targets(body, found, met)
-    fixed = list(mechanism.links[GROUND])
+    joints, turns = _at_targets(bodies, met)
     driven = _driven(design, mechanism, joints, turns, target)
     whole = isinstance(design, SixbarMechanism)
     used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
@@ -105,7 +102,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         link_lengths(design),
         reach_of(mechanism),
         target.size,
-        least_angles(partial(body.drive, branch=here), np.linspace(*used, GRID)) if same_branch else {},
+        least_angles(bodies[own].at, np.linspace(*used, GRID)) if same_branch else {},
         np.array(list(joints.values())),
         barker=barker_of(mechanism) if isinstance(design, SixbarMechanism) else None,
         same_branch=same_branch,
@@ -113,59 +110,39 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         full_rotation=here.full,
     )
     slides = mechanism.driven_by_slide
-    inputs = way.inputs if slides else np.degrees(way.inputs)
-    gone = float(inputs[-1] - inputs[0])
-    metrics = LinkageMetrics(
-        input_rotation=None if slides else gone,
-        input_travel=gone if slides else None,
-        rms_residual=target.rms(driven.offsets),
-        **measures.within(LinkageMetrics),
-    )
-    checks = [*motion_checks(target, driven, on_circuit), *choice_checks(problem, target, driven)]
-    pins = [complex(joints[pin][0]) for pin in ("A", "B") if pin in joints]
-    pivots = [complex(joints[joint][0]) for joint in fixed if joint != "O6"]
-    checks += constraint_checks(problem.constraints, measures, pivots, pins)
-    if isinstance(design, SixbarMechanism):
-        checks += _driver_checks(problem, design, mechanism, here, way)
-    return LinkageDesign(
-        mechanism=design,
-        targets=targets(inputs, target, driven, slides=slides),
-        verification=Verification.of(checks),
-        metrics=metrics,
+    return linkage_design(
+        problem,
+        design,
+        target,
+        driven,
+        measures,
+        way.inputs if slides else np.degrees(way.inputs),
+        on_circuit=bool(all(listed[row].circuit == here.circuit for row in met.rows)),
+        slides=slides,
+        own=_driver_checks(problem, design, mechanism, here, way) if isinstance(design, SixbarMechanism) else (),
     )
 
 
-class _Body:
-    """The body on the coupler: its pose at inputs, on any branch."""
+class _Body(OnBranch):
+    """The body on the coupler, on one branch; it is turned by ``shift`` against the first demanded pose."""
 
-    def __init__(self, mechanism: Mechanism, shift: float) -> None:
-        self.mechanism, self.shift = mechanism, shift
-        self.reference = float(mechanism.link_angle("coupler"))
-        self._steps = decompose(mechanism).steps
+    def __init__(self, mechanism: Mechanism, branch: Branch, shift: float) -> None:
+        super().__init__(mechanism, branch)
+        self._first = float(mechanism.link_angle("coupler")) - shift
 
-    def drive(self, inputs: Real, branch: Branch) -> MechanismMotion:
-        """The mechanism at inputs of shape (n,) on a branch."""
-        signs = None
-        if branch.signs:
-            left = iter(branch.signs)
-            signs = tuple(np.asarray(next(left) if step.has_two_solutions else 1) for step in self._steps)
-        return drive(self.mechanism, inputs, signs=signs, order=0)
-
-    def pose(self, inputs: Real, branch: Branch) -> tuple[Complex, Real]:
+    def pose(self, inputs: Real) -> tuple[Complex, Real]:
         """P and the body's rotation from the first demanded pose, at inputs of any shape."""
-        motion = self.drive(inputs.ravel(), branch)
+        motion = self.at(inputs.ravel())
         points = motion.joints["P"][0].reshape(inputs.shape)
-        return points, (motion.angles["coupler"][0] - self.reference + self.shift).reshape(inputs.shape)
+        return points, (motion.angles["coupler"][0] - self._first).reshape(inputs.shape)
 
 
-def _closest(body: _Body, target: Demanded, found: list[Branch], here: Branch) -> _Met | None:
+def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     """The inputs at which the targets are met best, on the reference's branch where that is as good as any."""
-    own = found.index(here)
-    rows = [own, *(n for n, branch in enumerate(found) if n != own and branch.signs)]
+    rows = [own, *(n for n, body in enumerate(bodies) if n != own and body.branch.signs)]
     inputs, misses = [], []
     for n in rows:
-        low, high = _range(body.mechanism, found[n])
-        at, missed = closest_inputs(partial(body.pose, branch=found[n]), target, low, high)
+        at, missed = closest_inputs(bodies[n].pose, target, *bodies[n].range)
         inputs.append(at)
         misses.append(missed)
     missed = np.stack(misses)
@@ -176,17 +153,6 @@ def _closest(body: _Body, target: Demanded, found: list[Branch], here: Branch) -
     columns = np.arange(missed.shape[1])
     at = np.stack(inputs)[best, columns]
     return _Met(at, np.array(rows)[best]) if np.all(np.isfinite(at)) else None
-
-
-def _range(mechanism: Mechanism, branch: Branch) -> tuple[float, float]:
-    """The branch's inputs as they follow on from the reference input."""
-    if mechanism.driven_by_slide:
-        return branch.low, branch.high
-    at, period = float(mechanism.reference_input), cycle(mechanism)
-    if branch.full:
-        return at - 0.5 * period, at + 0.5 * period
-    low = branch.low + period * round((at - 0.5 * (branch.low + branch.high)) / period)
-    return low, low + branch.high - branch.low
 
 
 def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
@@ -204,15 +170,14 @@ def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
     return _Way(inputs[0] + min(ways, key=lambda way: abs(float(way[-1]))), True)
 
 
-def _at_targets(body: _Body, found: list[Branch], met: _Met) -> tuple[dict[str, Complex], Real]:
+def _at_targets(bodies: list[_Body], met: _Met) -> tuple[dict[str, Complex], Real]:
     """All joints at the targets, and the body's rotations there."""
     joints: dict[str, list[complex]] = {}
     turns = []
-    for at, row in zip(met.inputs, met.rows, strict=True):
-        motion = body.drive(np.array([at]), found[row])
-        for name, point in motion.joints.items():
+    for at, row in zip(met.inputs[:, None], met.rows, strict=True):
+        for name, point in bodies[row].at(at).joints.items():
             joints.setdefault(name, []).append(complex(point[0, 0]))
-        turns.append(float(motion.angles["coupler"][0, 0]) - body.reference + body.shift)
+        turns.append(float(bodies[row].pose(at)[1][0]))
     return {name: np.array(points) for name, points in joints.items()}, np.array(turns)
 
 

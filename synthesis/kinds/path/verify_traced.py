@@ -6,15 +6,13 @@ comes nearest to each point, in order, within one cycle: a turn of the crank, or
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
-from numpy.typing import NDArray
 
 from kinematics.errors import MechanismError
-from kinematics.linkage.planar.branches import Branch, cycle
-from kinematics.linkage.planar.closures import decompose
-from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.limits import branches, holding_reference
-from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
@@ -26,38 +24,8 @@ from synthesis.model.linkage_answer import (
 )
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
-
-class _Drive:
-    """A mechanism on one of its branches."""
-
-    def __init__(self, mechanism: Mechanism, branch: Branch) -> None:
-        self.mechanism, self.branch = mechanism, branch
-        steps, left = decompose(mechanism).steps, iter(branch.signs)
-        self._signs = (
-            tuple(np.asarray(next(left) if step.has_two_solutions else 1) for step in steps) if branch.signs else None
-        )
-
-    def at(self, inputs: Real) -> MechanismMotion:
-        """The mechanism at inputs of shape (n,)."""
-        return drive(self.mechanism, inputs, signs=self._signs, order=0)
-
-    def place(self, inputs: Real) -> Complex:
-        """P at inputs of any shape; NaN where there is no position."""
-        motion = self.at(inputs.ravel())
-        return np.asarray(np.where(motion.valid, motion.joints["P"][0], np.nan).reshape(inputs.shape))
-
-    def range(self) -> tuple[float, float]:
-        """The branch's inputs as they follow on from the reference input."""
-        at, period = float(self.mechanism.reference_input), cycle(self.mechanism)
-        if self.branch.full:
-            return at - 0.5 * period, at + 0.5 * period
-        low = at - float(np.mod(at - self.branch.low, period))
-        return low, low + self.branch.high - self.branch.low
 
 
 def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFivebarMechanism) -> PathDesign | None:
@@ -84,11 +52,11 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         return None
     if here is None:
         return None
-    driven = _Drive(mechanism, here)
+    driven = OnBranch(mechanism, here)
+    place = partial(driven.joint, "P")
     points = np.array([point.point for point in problem.points])
-    low, high = driven.range()
     period = cycle(mechanism) if here.full else None
-    inputs = ordered_run(driven.place, points, low, high, period)
+    inputs = ordered_run(place, points, *driven.range, period)
     motion = driven.at(inputs)
     if not motion.valid.all():
         return None
@@ -111,7 +79,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
     )
     gone = None
     if problem.matched:
-        gone = astray(driven.place, used, points, problem.closed, float(misses.max()))._asdict()
+        gone = astray(place, used, points, problem.closed, float(misses.max()))._asdict()
     pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
     moving = [complex(joints[pin][0]) for pin in pins]
     at_points = AtPoints(np.degrees(inputs), misses, True, fixed_pivots(mechanism), moving)

@@ -1,0 +1,56 @@
+"""A mechanism on one of its branches: driven in its assembly, over inputs that follow on from the reference."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.branches import Branch, cycle
+from kinematics.linkage.planar.closures import decompose
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import Mechanism
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class OnBranch:
+    """A mechanism on any of its branches, the reference's or another.
+
+    Inputs are radians, or lengths along the input slide.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        With its reference configuration on any branch.
+    branch : Branch
+        One of its branches; where that has no signs, those of the reference are taken.
+    """
+
+    def __init__(self, mechanism: Mechanism, branch: Branch) -> None:
+        self.mechanism, self.branch = mechanism, branch
+        signs = iter(branch.signs)
+        steps = decompose(mechanism).steps if branch.signs else ()
+        self._signs = tuple(np.asarray(next(signs) if step.has_two_solutions else 1) for step in steps) or None
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """First and last input, the reference's between them; half a cycle to either side of it for a full turn."""
+        low, high = self.branch.low, self.branch.high
+        if self.mechanism.driven_by_slide:
+            return low, high
+        at, period = float(self.mechanism.reference_input), cycle(self.mechanism)
+        if self.branch.full:
+            return at - 0.5 * period, at + 0.5 * period
+        # Branches are known to full turns.
+        first = low + period * round((at - 0.5 * (low + high)) / period)
+        return first, first + high - low
+
+    def at(self, inputs: Real) -> MechanismMotion:
+        """The mechanism at inputs of shape (n,)."""
+        return drive(self.mechanism, inputs, signs=self._signs, order=0)
+
+    def joint(self, name: str, inputs: Real) -> Complex:
+        """A joint at inputs of any shape; NaN where there is no position."""
+        motion = self.at(inputs.ravel())
+        return np.asarray(np.where(motion.valid, motion.joints[name][0], np.nan).reshape(inputs.shape))
