@@ -21,20 +21,20 @@ ROUNDING = 1e-12
 """A tip this share of its limit beyond it is on it."""
 
 
-def external_sound(one: Real, other: Real, angle: float) -> Mask:
+def external_sound(pinion: Real, gear: Real, angle: float) -> Mask:
     """Whether neither of two external gears digs into the other."""
-    squared, span = np.sin(angle) ** 2, (one + other) ** 2
-    limits = [np.sqrt(z * z * (1.0 - squared) + span * squared) for z in (one, other)]
+    squared, span = np.sin(angle) ** 2, (pinion + gear) ** 2
+    limits = [np.sqrt(z * z * (1.0 - squared) + span * squared) for z in (pinion, gear)]
     return np.asarray(
-        (one + 2.0 <= limits[0] * (1.0 + ROUNDING)) & (other + 2.0 <= limits[1] * (1.0 + ROUNDING)), np.bool_
+        (pinion + 2.0 <= limits[0] * (1.0 + ROUNDING)) & (gear + 2.0 <= limits[1] * (1.0 + ROUNDING)), np.bool_
     )
 
 
-def external_contact(one: Real, other: Real, angle: float) -> Real:
+def external_contact(pinion: Real, gear: Real, angle: float) -> Real:
     """Contact ratio of two external gears."""
     cosine, sine = np.cos(angle), np.sin(angle)
-    tips = [np.sqrt((z + 2.0) ** 2 - (z * cosine) ** 2) for z in (one, other)]
-    return np.asarray((tips[0] + tips[1] - (one + other) * sine) / (2.0 * np.pi * cosine))
+    tips = [np.sqrt((z + 2.0) ** 2 - (z * cosine) ** 2) for z in (pinion, gear)]
+    return np.asarray((tips[0] + tips[1] - (pinion + gear) * sine) / (2.0 * np.pi * cosine))
 
 
 def ring_addendum(planet: Real, ring: Real, angle: float) -> Real:

@@ -84,11 +84,11 @@ class Target:
             bits *= 4
         return 0
 
-    def nearer(self, one: Fraction, other: Fraction) -> int:
-        """−1 where ``one`` lies nearer to the target than ``other``, +1 where it lies farther, 0 where equally near."""
-        if one == other:
+    def nearer(self, first: Fraction, second: Fraction) -> int:
+        """−1 where ``first`` lies nearer to the target than ``second``, +1 where farther, 0 where equally near."""
+        if first == second:
             return 0
-        low, high = min(one, other), max(one, other)
+        low, high = min(first, second), max(first, second)
         if self.compared(low) <= 0:
             nearest = low
         elif self.compared(high) >= 0:
@@ -98,7 +98,7 @@ class Target:
             if side == 0:
                 return 0
             nearest = low if side < 0 else high
-        return -1 if nearest == one else 1
+        return -1 if nearest == first else 1
 
     def within(self, ratio: Fraction, tolerance: Fraction) -> bool:
         """Whether |ratio − target| ≤ tolerance × target."""
@@ -212,9 +212,9 @@ def _parse(text: str) -> tuple[int, Target]:
 
 
 def _unexpected(body: str, place: int) -> TargetSyntaxError:
-    found = f"{body[place:].strip()[:12]!r}" if body[place:].strip() else "the end"
+    met = f"{body[place:].strip()[:12]!r}" if body[place:].strip() else "the end"
     return TargetSyntaxError(
-        f"expected numbers, pi, e or sqrt(number) joined by * or /, such as 127/50 or pi/2; got {found}"
+        f"expected numbers, pi, e or sqrt(number) joined by * or /, such as 127/50 or pi/2; got {met}"
     )
 
 

@@ -104,6 +104,6 @@ class StatedProblem(Statement):
 
     def require_consistent(self) -> None:
         """Raise the first contradiction, if there is one."""
-        found = self.contradictions()
-        if found:
-            raise ContradictionError(found[0])
+        contradictions = self.contradictions()
+        if contradictions:
+            raise ContradictionError(contradictions[0])

@@ -52,12 +52,12 @@ def widest_apart(joints: NDArray[np.complex128], count: int, aparts: Iterable[fl
 @njit(cache=True, nogil=True)
 def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArray[np.int64]:
     chosen = np.empty(min(count, len(joints)), np.int64)
-    found = 0
+    taken = 0
     for i in range(len(joints)):
-        if found == len(chosen):
+        if taken == len(chosen):
             break
         differs = True
-        for j in chosen[:found]:
+        for j in chosen[:taken]:
             gap = 0.0
             for k in range(joints.shape[1]):
                 gap = max(gap, abs(joints[i, k] - joints[j, k]))
@@ -65,9 +65,9 @@ def _distinct(joints: NDArray[np.complex128], count: int, apart: float) -> NDArr
                 differs = False
                 break
         if differs:
-            chosen[found] = i
-            found += 1
-    return chosen[:found]
+            chosen[taken] = i
+            taken += 1
+    return chosen[:taken]
 
 
 ROUNDING = 1e-12

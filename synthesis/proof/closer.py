@@ -1,4 +1,4 @@
-"""Extremes of what a driven mechanism does: a grid's, looked at ever closer."""
+"""Extremes of what a driven mechanism does: those of a grid, refined about them without derivatives."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Real = NDArray[np.float64]
 Quantity = Callable[[MechanismMotion], Real]
 
 GRID = 1441
-"""Inputs at which transmission angles are looked at first."""
+"""Inputs of the first grid: a quarter of a degree of a full turn."""
 
-CLOSER, LOOKS = 17, 6
-"""Inputs in each closer look, and the number of looks: 8⁶ times finer than the grid."""
+SAMPLES, REFINEMENTS = 17, 6
+"""Inputs in each refinement of the grid about the least value, and their number: 8⁶ times finer than the grid."""
 
 
 def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
-    """The least of a quantity, looked for ever closer about its least value on a grid.
+    """The least of a quantity, by ever finer grids about its least value on a given one.
 
     Parameters
     ----------
@@ -45,16 +45,16 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
     at, least, place = float(inputs[n]), float(values[n]), float(inputs[n])
     step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
     low, high = sorted((inputs[0], inputs[-1]))
-    for _ in range(LOOKS):
-        closer = np.clip(np.linspace(at - step, at + step, CLOSER), low, high)
-        found = of(closer)
-        if not np.isfinite(found).any():
+    for _ in range(REFINEMENTS):
+        closer = np.clip(np.linspace(at - step, at + step, SAMPLES), low, high)
+        refined = of(closer)
+        if not np.isfinite(refined).any():
             break
-        n = int(np.argmin(np.where(np.isfinite(found), found, np.inf)))
+        n = int(np.argmin(np.where(np.isfinite(refined), refined, np.inf)))
         at = float(closer[n])
-        if found[n] < least:
-            place, least = at, float(found[n])
-        step *= 2.0 / (CLOSER - 1)
+        if refined[n] < least:
+            place, least = at, float(refined[n])
+        step *= 2.0 / (SAMPLES - 1)
     return place, least
 
 
@@ -66,7 +66,7 @@ def least_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> 
 def extremes_of(mechanism: Mechanism, inputs: Real, values: Real, of: Quantity) -> tuple[float, float]:
     """The least and the greatest of a quantity."""
     least = least_of(mechanism, inputs, values, of)
-    return least, -least_of(mechanism, inputs, -values, lambda found: -of(found))
+    return least, -least_of(mechanism, inputs, -values, lambda motion: -of(motion))
 
 
 def least_angles(

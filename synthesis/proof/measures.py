@@ -154,9 +154,9 @@ def link_lengths(mechanism: Dimensioned) -> list[float]:
 def reach_of(mechanism: Mechanism) -> float:
     """Greatest distance between two joints of one link, the ground and the coupler with its point among them."""
     return max(
-        abs(complex(mechanism.joints[one] - mechanism.joints[other]))
+        abs(complex(mechanism.joints[first] - mechanism.joints[second]))
         for joints in mechanism.links.values()
-        for one, other in combinations(joints, 2)
+        for first, second in combinations(joints, 2)
     )
 
 

@@ -43,6 +43,9 @@ Real = NDArray[np.float64]
 GRID = 2880
 """Crank angles of the turn: every eighth of a degree."""
 
+WHOLE_STEP = 1e-9
+"""Steps of the grid by which rounding may put an angle above a whole number of them."""
+
 WAY_MET = 1e-6
 """How far swing or stroke may be from the demanded one, as a share of it."""
 
@@ -90,8 +93,8 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     size = diagonal(places)
     slides = design.type == "dwell_slider"
 
-    def output(found: MechanismMotion) -> Real:
-        return np.asarray(found.slides["D"][0] if slides else np.degrees(found.angles["output"][0]))
+    def output(motion: MechanismMotion) -> Real:
+        return np.asarray(motion.slides["D"][0] if slides else np.degrees(motion.angles["output"][0]))
 
     values = output(motion)
     turned = abs(float(values[-1] - values[0]))
@@ -163,10 +166,10 @@ def _checks(
 
 def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:
     """The dwells of periodic values: one, or one near each end, the one that begins first at the front."""
-    window = math.ceil(problem.dwell_angle / 360.0 * GRID - 1e-9) + 1
+    window = math.ceil(problem.dwell_angle / 360.0 * GRID - WHOLE_STEP) + 1
     jitter, mean = _ranges(values, window), _means(values, window)
     middle = 0.5 * (low + high)
-    found = []
+    rests = []
     for near in (mean > middle, mean <= middle):
         if near.any():
             start = int(np.where(near, jitter, np.inf).argmin())
@@ -174,10 +177,10 @@ def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list
             held = np.take(values, np.arange(start, start + window), mode="wrap")
             level = 0.5 * float(held.max() + held.min())
             width = _width(values, start, window, problem.allowed)
-            found.append(_Rest(start, level, float(jitter[start]), width, float(off)))
+            rests.append(_Rest(start, level, float(jitter[start]), width, float(off)))
     if problem.count == 1:
-        return [min(found, key=lambda rest: rest.jitter)]
-    return sorted(found, key=lambda rest: rest.start) if len(found) == 2 else []
+        return [min(rests, key=lambda rest: rest.jitter)]
+    return sorted(rests, key=lambda rest: rest.start) if len(rests) == 2 else []
 
 
 def _ranges(values: Real, window: int) -> Real:
@@ -209,4 +212,4 @@ def _lengths(mechanism: Mechanism) -> list[float]:
     """Lengths of ground (O2–O4), input, coupler, rocker, and of link 5 and the output."""
     place = {name: complex(z) for name, z in mechanism.joints.items()}
     pairs = [("O2", "O4"), ("O2", "A"), ("A", "B"), ("O4", "B"), ("P", "D"), ("O6", "D"), ("O6", "C")]
-    return [abs(place[one] - place[other]) for one, other in pairs if one in place and other in place]
+    return [abs(place[first] - place[second]) for first, second in pairs if first in place and second in place]

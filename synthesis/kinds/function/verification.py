@@ -65,6 +65,9 @@ SHOWN_TARGETS = 9
 LEVEL = 1e-3
 """Extremes within this share of the greatest error have reached it."""
 
+CLEARLY_NEARER = 1e-3
+"""Share of the own assembly's error at a target below which the opposite assembly is the one that was meant there."""
+
 DIAL_KEPT = 1e-9
 """Deviation of a dial from what was stated, radians or shares of the range: what rounding leaves."""
 
@@ -122,8 +125,8 @@ class _Fourbar(_Drive):
         self.full = self.barker.motion in TURNS_THROUGH
 
     def at(self, angles: Real, assembly: int) -> _Driven:
-        found = positions(self.linkage, angles, assembly)
-        return _Driven(found.valid, found.output_angle, found.a, found.b)
+        at = positions(self.linkage, angles, assembly)
+        return _Driven(at.valid, at.output_angle, at.a, at.b)
 
     def on_branch(self, start: float, end: float) -> bool:
         return bool(stays_on_branch(self.linkage, start, end))
@@ -151,8 +154,8 @@ class _Slider(_Drive):
         self.full = bool(slider_crank.full_rotation(self.linkage))
 
     def at(self, angles: Real, assembly: int) -> _Driven:
-        found = slider_crank.positions(self.linkage, angles, assembly)
-        return _Driven(found.valid, found.travel, found.a, found.b)
+        at = slider_crank.positions(self.linkage, angles, assembly)
+        return _Driven(at.valid, at.travel, at.a, at.b)
 
     def on_branch(self, start: float, end: float) -> bool:
         return slider_range.stays_on_branch(self.linkage, start, end)
@@ -306,11 +309,11 @@ def _met(drive: _Drive, targets: _Wanted) -> tuple[_Driven, NDArray[np.int64]]:
     """The linkage at the targets, in its own assembly unless the other one is clearly meant; NaN where in none."""
     both = [drive.at(targets.angles, sign) for sign in (drive.assembly, -drive.assembly)]
     off = [np.where(d.valid, np.abs(_off(d.place, targets.places, drive.turns)), np.inf) for d in both]
-    other = (off[0] > TARGET_REACHED) & (off[1] < 1e-3 * off[0])
+    opposite = (off[0] > TARGET_REACHED) & (off[1] < CLEARLY_NEARER * off[0])
     # The reference is the first target's configuration: it is met there, or not at all.
-    other[0] = False
-    place, a, b = (np.where(other, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "a", "b"))
-    return _Driven(both[0].valid, place, a, b), np.where(other, -drive.assembly, drive.assembly)
+    opposite[0] = False
+    place, a, b = (np.where(opposite, getattr(both[1], part), getattr(both[0], part)) for part in ("place", "a", "b"))
+    return _Driven(both[0].valid, place, a, b), np.where(opposite, -drive.assembly, drive.assembly)
 
 
 def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Where a driven body comes nearest to demanded poses: by looking closer and closer, without derivatives."""
+"""Where a driven body comes nearest to demanded poses: a grid of inputs, refined without derivatives."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from synthesis.kinds.motion.demanded import (
 )
 
 GRID = 720
-"""Inputs that are looked at first: half a degree of a full turn."""
+"""Steps of the first grid: half a degree of a full turn."""
 
-CLOSER = 33
-"""Inputs in each closer look, over the two steps around the best of the last: 16 times finer."""
+SAMPLES = 33
+"""Inputs in each refinement, over the two steps around the best of the last: 16 times finer."""
 
-LOOKS = 10
-"""Closer looks: 16¹⁰ times finer than the grid, 1e-14 radians."""
+REFINEMENTS = 10
+"""Their number: 16¹⁰ times finer than the grid, 1e-14 radians."""
 
 Motion = Callable[[Real], tuple[Complex, Real]]
 """P and the body's rotation from the first demanded pose, at inputs of shape (n, m); NaN where there is no position."""
@@ -46,19 +46,18 @@ def closest_inputs(motion: Motion, target: Demanded, low: float, high: float) ->
 
     def missed_by(points: Complex, turns: Real, by: Real) -> Real:
         offsets = target.offsets(points, turns) * by[:, None, :]
-        found = np.sqrt(np.einsum("...c,...c->...", offsets, offsets))
-        return np.where(np.isfinite(found), found, np.inf)
+        missed = np.sqrt(np.einsum("...c,...c->...", offsets, offsets))
+        return np.where(np.isfinite(missed), missed, np.inf)
 
     grid = np.linspace(low, high, GRID + 1)
     best = grid[missed_by(*motion(grid[None]), weights).argmin(axis=1)]
     rows = np.arange(n)
     step = (high - low) / GRID
-    spread = np.linspace(-1.0, 1.0, CLOSER)
-    for _ in range(LOOKS):
+    spread = np.linspace(-1.0, 1.0, SAMPLES)
+    for _ in range(REFINEMENTS):
         inputs = np.clip(best[:, None] + step * spread, low, high)
-        inputs[:, CLOSER // 2] = best
-        found = missed_by(*motion(inputs), alone)
-        best = inputs[rows, found.argmin(axis=1)]
-        step *= 2.0 / (CLOSER - 1)
+        inputs[:, SAMPLES // 2] = best
+        best = inputs[rows, missed_by(*motion(inputs), alone).argmin(axis=1)]
+        step *= 2.0 / (SAMPLES - 1)
     missed = missed_by(*motion(best[:, None]), 1.0 / units)[:, 0]
     return np.where(np.isfinite(missed), best, np.nan), missed

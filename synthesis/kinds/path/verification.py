@@ -165,10 +165,10 @@ def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> 
     if problem.prescribed:
         turns = np.array(problem.crank_turns)
         ways = (turns, -turns) if problem.crank_direction == "either" else (turns,)
-        found = [
+        driven = [
             passed for way in ways if (passed := at_angles(fourbar, points, way, both=not problem.fitted)) is not None
         ]
-        return min(found, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
+        return min(driven, key=lambda passed: float(np.sum(passed.misses**2)), default=None)
     if not problem.fitted:
         return at_points(fourbar, points)
     return in_order(fourbar, points) if problem.constraints.in_order else nearest(fourbar, points)

@@ -48,8 +48,8 @@ def with_cognates(design: PathDesign) -> PathDesign:
         text = "P is on a moving pivot, so that its path is a circle or an arc of one, and there are no cognates."
         return design.model_copy(update={"cognate_choice": text})
     measured = _measured("left", pair.left, source, design), _measured("right", pair.right, source, design)
-    found = [one for one in measured if one is not None]
-    return design.model_copy(update={"cognates": found, "cognate_choice": _choice(design, found)})
+    driven = [cognate for cognate in measured if cognate is not None]
+    return design.model_copy(update={"cognates": driven, "cognate_choice": _choice(design, driven)})
 
 
 def _measured(
@@ -80,23 +80,25 @@ def _measured(
     )
 
 
-def _choice(design: PathDesign, found: list[PathCognate]) -> str:
+def _choice(design: PathDesign, driven: list[PathCognate]) -> str:
     """Who has the better transmission, who turns through, and what keeps a cognate from being used."""
     ours = design.metrics.min_transmission_angle
     parts = [f"This {_words(design.metrics.grashof)} transmits at {ours:.1f}° at least."]
-    for one in found:
-        (x2, y2), (x4, y4) = one.mechanism.fixed_pivots.input, one.mechanism.fixed_pivots.output
-        name = f"The {one.side} cognate, a {_words(one.grashof)} on ({x2:.4g}, {y2:.4g}) and ({x4:.4g}, {y4:.4g}),"
-        if not one.same_branch:
+    for cognate in driven:
+        (x2, y2), (x4, y4) = cognate.mechanism.fixed_pivots.input, cognate.mechanism.fixed_pivots.output
+        name = (
+            f"The {cognate.side} cognate, a {_words(cognate.grashof)} on ({x2:.4g}, {y2:.4g}) and ({x4:.4g}, {y4:.4g}),"
+        )
+        if not cognate.same_branch:
             parts.append(f"{name} passes a toggle between the points when its input drives.")
-        elif not one.visits_in_order:
+        elif not cognate.visits_in_order:
             parts.append(f"{name} does not meet the points in order when its input turns one way.")
         else:
-            gain = one.min_transmission_angle - ours
+            gain = cognate.min_transmission_angle - ours
             better = "as much" if abs(gain) <= ALIKE else "more" if gain > 0.0 else "less"
-            timing = "at the same crank angles" if one.same_timing else "its input turning with this one's coupler"
+            timing = "at the same crank angles" if cognate.same_timing else "its input turning with this one's coupler"
             parts.append(f"{name} guides P through the points {timing} and transmits {better}: ")
-            parts[-1] += f"{one.min_transmission_angle:.1f}° at least."
+            parts[-1] += f"{cognate.min_transmission_angle:.1f}° at least."
     return " ".join(parts)
 
 

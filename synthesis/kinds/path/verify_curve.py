@@ -134,12 +134,12 @@ def distances(places: Complex, points: Complex, closed: bool, missed: float) -> 
     sides = ends - starts
     squares = np.maximum(sides.real**2 + sides.imag**2, np.finfo(float).tiny)
     allowed = missed + BULGE * np.abs(sides)
-    found, beyond = np.empty(len(places)), np.empty(len(places))
+    nearest, beyond = np.empty(len(places)), np.empty(len(places))
     for first in range(0, len(places), ROWS):
         rows = slice(first, min(first + ROWS, len(places)))
         gaps = places[rows, None] - starts
         share = np.clip((gaps.real * sides.real + gaps.imag * sides.imag) / squares, 0.0, 1.0)
         off = np.abs(gaps - share * sides)
-        found[rows] = off.min(axis=1)
+        nearest[rows] = off.min(axis=1)
         beyond[rows] = np.maximum(off - allowed, 0.0).min(axis=1)
-    return found, beyond
+    return nearest, beyond

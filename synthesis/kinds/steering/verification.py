@@ -49,6 +49,9 @@ LOCKED = 1e-9
 HALVINGS = 60
 """Times that a range is halved to find a lock: 2⁻⁶⁰ of it is less than rounding leaves."""
 
+FARTHEST = 1e6
+"""Pivot distances that the bar is moved by at most to lock a wheel; a gear that needs more locks none."""
+
 EXACT = 1e-9
 """Degrees of steering error that are rounding: what Davis's gear may have."""
 
@@ -195,7 +198,7 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
     far = size
     while not float(arm("left_arm", np.array([far]))[0]) > lock:
         far *= 2.0
-        if far > 1e6 * size:
+        if far > FARTHEST * size:
             return None
     low, high = 0.0, far
     for _ in range(HALVINGS):

@@ -177,11 +177,11 @@ def _driven(mechanism: Mechanism, inputs: Real, start: complex, along: complex, 
     if not motion.smooth.all():
         return None
 
-    def across(found: MechanismMotion) -> Real:
-        return np.asarray(((found.joints["P"][0] - start) * along.conjugate()).imag)
+    def across(motion: MechanismMotion) -> Real:
+        return np.asarray(((motion.joints["P"][0] - start) * along.conjugate()).imag)
 
-    def velocity(found: MechanismMotion) -> Real:
-        return np.asarray(sense * (found.joints["P"][1] * along.conjugate()).real)
+    def velocity(motion: MechanismMotion) -> Real:
+        return np.asarray(sense * (motion.joints["P"][1] * along.conjugate()).real)
 
     local = (motion.joints["P"][0] - start) * along.conjugate()
     return _Along(
