@@ -23,14 +23,11 @@ from synthesis.fit.chart import (
     natural,
 )
 from synthesis.fit.coupler_curve import place, place_with_slopes, sweep
+from synthesis.kinds.path.curve_candidates import draw
 from synthesis.kinds.path.curve_descent import descend
 from synthesis.kinds.path.curve_match import with_cognates
-from synthesis.kinds.path.curve_shapes import (
-    SHAPE_POINTS,
-    alike,
-    draw,
-    equal_steps,
-)
+from synthesis.kinds.path.curve_shapes import alike
+from synthesis.kinds.path.curve_target import SHAPE_POINTS, equal_steps
 from synthesis.kinds.path.verify_curve import verify_curve
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem

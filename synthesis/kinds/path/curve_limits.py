@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, natural
 from synthesis.fit.demands import (
+    BOXES,
     CHANGE_POINT,
     COSINE,
     EQUATIONS,
     FAMILY,
+    GIVEN,
     LIMITS,
     LINKS,
     RATIO,
@@ -38,6 +40,9 @@ Complex = NDArray[np.complex128]
 ROOM = 1e-9
 """Relative excess of a length that is rounding: cognates repeat a curve to some roundings."""
 
+EDGE = 1e-7
+"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
+
 USABLE = 25.0
 """Transmission angle, degrees, with which designs are offered beside the nearest where none is demanded: fits tend to
 change points, where it vanishes."""
@@ -55,6 +60,18 @@ def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
     setting[CHANGE_POINT] = setting[TIMED] = setting[ORDERED] = 0.0
     setting[WHOLE] = problem.closed or problem.constraints.full_rotation
     return setting
+
+
+def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
+    """Least and greatest x and y of O2, then of the other fixed pivot, shape (4, 2), in the task's unit.
+
+    Regions are drawn in by :data:`EDGE`; where a coordinate is given both are it.
+    """
+    setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
+    within = setting[BOXES : BOXES + 8].reshape(4, 2)
+    margin = np.minimum(EDGE, 0.25 * (within[:, 1] - within[:, 0]))
+    given = setting[GIVEN : GIVEN + 4, None]
+    return np.where(np.isnan(given), within + np.stack([margin, -margin], axis=1), given)
 
 
 def usable(setting: Real) -> Real | None:

@@ -40,12 +40,8 @@ from synthesis.kinds.path.curve_placement import (
     searched,
     stated,
 )
-from synthesis.kinds.path.curve_shapes import (
-    SHAPE_POINTS,
-    Starts,
-    alike,
-    equal_steps,
-)
+from synthesis.kinds.path.curve_shapes import Starts, alike
+from synthesis.kinds.path.curve_target import SHAPE_POINTS, Target
 from synthesis.kinds.path.design import (
     CurveSweep,
     PathDesign,
@@ -99,9 +95,6 @@ LOOKED_AT = 121
 LIMITED = 7
 """Refined linkages of a family, all different, that are brought within the problem's limits."""
 
-FEW_POINTS, FILL = 12, 0.1
-"""Fewer points than this say little of a curve: the lines between them count too, with this share of the weight."""
-
 HALVES = 0.4
 """A linkage stays in the running while its error is below the best one's over this; demands may choose among them."""
 
@@ -138,7 +131,7 @@ class _Candidate(NamedTuple):
 
 def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by matching the whole curve."""
-    target = _Target(problem)
+    target = Target(problem)
     sought = searched(problem)
     setting = curve_setting(sought, target.centre, target.size)
     sweep = None
@@ -166,7 +159,7 @@ def solve_curve_match(problem: PathProblem, progress: Progress) -> PathResult:
 
 
 def _alike(
-    problem: PathProblem, target: _Target, setting: Real, progress: Progress
+    problem: PathProblem, target: Target, setting: Real, progress: Progress
 ) -> tuple[list[_Candidate], CurveSweep]:
     """The linkages in the running of those whose curves have the target's shape."""
     families = families_of(problem)
@@ -197,7 +190,7 @@ def _alike(
     return _running(candidates), CurveSweep(linkages=drawn, curves=swept, refined=followed)
 
 
-def _at_given_pivots(problem: PathProblem, target: _Target, progress: Progress) -> list[FourbarConfiguration]:
+def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -> list[FourbarConfiguration]:
     """Linkages with fixed pivots where they are demanded, fitted to points along the target; in the target's unit.
 
     They are fitted to the target's own points, and where these are not many to equal steps too: between points that lie
@@ -234,36 +227,8 @@ def warm_up() -> None:
         descend_within(family, start, float(starts.sign[0]), circle, np.ones(SHAPE_POINTS), setting)
 
 
-class _Target:
-    """The target, moved to the origin and scaled to a unit diagonal of the box around it."""
-
-    def __init__(self, problem: PathProblem) -> None:
-        given = np.array([point.point for point in problem.points])
-        if problem.closed and len(given) > 3 and given[-1] == given[0]:
-            given = given[:-1]
-        self.closed = problem.closed
-        self.centre = complex(0.5 * (given.real.min() + given.real.max()), 0.5 * (given.imag.min() + given.imag.max()))
-        self.size = math.hypot(float(np.ptp(given.real)), float(np.ptp(given.imag)))
-        self.points = (given - self.centre) / self.size
-        self.steps, self.places = equal_steps(self.points, self.closed, SHAPE_POINTS)
-        few = len(given) < FEW_POINTS
-        self.fitted = np.concatenate([self.points, self.steps]) if few else self.points
-        fill = FILL * len(given) / SHAPE_POINTS
-        self.weights = np.concatenate([np.ones(len(given)), np.full(SHAPE_POINTS if few else 0, fill)])
-
-    def angles(self, theta: Real) -> Real:
-        """Crank angles at the points to be fitted, from those at equal steps along the target."""
-        share = np.linspace(0.0, 1.0, SHAPE_POINTS, endpoint=not self.closed)
-        known = theta
-        if self.closed:
-            turn = math.copysign(2.0 * math.pi, theta[-1] - theta[0])
-            share, known = np.append(share, 1.0), np.append(theta, theta[0] + turn)
-        at = np.interp(self.places, share, known)
-        return np.concatenate([at, theta]) if len(self.fitted) > len(self.points) else at
-
-
 def _refined(
-    target: _Target, starts: Starts, setting: Real, least: float, *, traded: bool
+    target: Target, starts: Starts, setting: Real, least: float, *, traded: bool
 ) -> tuple[list[_Candidate], float]:
     """The starts' linkages after least squares, and the least cost at equal steps, of earlier families too.
 
@@ -316,7 +281,7 @@ def _refined(
 
 
 def _at_all_points(
-    target: _Target, family: int, thinned: Descent, sign: Real, thin: slice, longest: float, rows: list[int]
+    target: Target, family: int, thinned: Descent, sign: Real, thin: slice, longest: float, rows: list[int]
 ) -> Descent:
     """Descents from a part of the points go on with all of them."""
     x, cost = thinned.x.copy(), thinned.cost.copy()
@@ -341,7 +306,7 @@ def _rough(family: int, x: Real, sign: float, theta: Real) -> _Candidate:
     return _Candidate(family, x, sign, float(theta[0]), math.inf)
 
 
-def _candidate(target: _Target, family: int, x: Real, sign: float, theta: Real) -> _Candidate:
+def _candidate(target: Target, family: int, x: Real, sign: float, theta: Real) -> _Candidate:
     """A linkage with its error at the target's own points."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
@@ -398,7 +363,7 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
 
 def _verified(
-    problem: PathProblem, target: _Target, setting: Real, joints: FourbarConfiguration
+    problem: PathProblem, target: Target, setting: Real, joints: FourbarConfiguration
 ) -> PathDesign | str | None:
     """A linkage in the target's unit, driven and measured; or why it is not driven."""
     links = joints.lengths

@@ -10,7 +10,7 @@ transform of the product of their Fourier descriptors (Zahn & Roskies 1972, doi:
 count as alike: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point and needs no
 shift; it is compared with windows of every candidate, of several lengths and places along it.
 
-Candidates are drawn at run time, by lengths relative to the crank, and swept by the compiled kernel.
+Candidates are drawn at run time (:mod:`synthesis.kinds.path.curve_candidates`) and swept by the compiled kernel.
 """
 
 from __future__ import annotations
@@ -25,28 +25,17 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy import fft
-from scipy.stats import qmc
 
-from synthesis.fit.chart import (
-    CRANK_ROCKER,
-    DOUBLE_CRANK,
-    FOURBAR,
-    GEARED_FIVEBAR,
-    OPTIONS,
-    SLIDER_CRANK,
-    SLIDER_ROCKER,
-    UNKNOWNS,
-    natural,
-)
+from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, SLIDER_CRANK, SLIDER_ROCKER, natural
 from synthesis.fit.coupler_curve import sweep
+from synthesis.kinds.path.curve_candidates import Draw, cycle_of, draw
+from synthesis.kinds.path.curve_target import SHAPE_POINTS, equal_steps
 from synthesis.numerics.portions import THREADS
+from synthesis.outcome.ranking import distinct
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
-
-SHAPE_POINTS = 48
-"""Points of a shape: descriptors up to the 24th, far more than coupler curves have."""
 
 SWEEP_STEPS = 96
 """Crank positions a candidate is swept at, before it is resampled."""
@@ -94,17 +83,6 @@ class Starts(NamedTuple):
     theta: Real
     unlike: Real
     swept: int
-
-
-def equal_steps(points: Complex, closed: bool, count: int) -> tuple[Complex, Real]:
-    """Points at equal distances along a polyline, and the places of its corners along it as shares of its length.
-
-    A closed one does not repeat its first point, in ``points`` or in the answer. The length must not be zero.
-    """
-    whole = np.concatenate([points, points[:1]]) if closed else points
-    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))])
-    at = np.linspace(0.0, along[-1], count, endpoint=not closed)
-    return np.interp(at, along, whole.real) + 1j * np.interp(at, along, whole.imag), along[: len(points)] / along[-1]
 
 
 @njit(**OPTIONS)
@@ -222,103 +200,6 @@ def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Found:
     return _Found(np.minimum(rho, 1.0), where)
 
 
-class Draw(NamedTuple):
-    """Candidates of one family: unknowns at unit crank, signs, and the crank's range (begin, end), shape (n,)."""
-
-    x: Real
-    sign: Real
-    begin: Real
-    end: Real
-
-
-def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
-    """Linkages of a family with O2 at the origin and shapes spread evenly in the logarithms of their lengths."""
-    m = UNKNOWNS[family]
-    u = qmc.Sobol(m, seed=seed).random_base2(max(0, math.ceil(math.log2(count))))[:count]
-    x = np.zeros((count, m))
-    begin, end = np.zeros(count), np.full(count, 2.0 * math.pi)
-    sign = np.ones(count)
-    if family in (CRANK_ROCKER, DOUBLE_CRANK):
-        x[:, 4:7] = np.log(0.05) + u[:, 2:5] * np.log(12.0 / 0.05)
-        coupler = 1.0 + 0.5 * (np.exp(x[:, 4]) + np.exp(x[:, 5]))
-        _point(x, u, coupler)
-    elif family == FOURBAR:
-        x[:, 3:7] = np.log(0.2) + u[:, 2:6] * np.log(5.0 / 0.2)
-        lengths = np.exp(x[:, 3:7])
-        _point(x, u, lengths[:, 2])
-        begin, end = _fourbar_range(lengths)
-    elif family == SLIDER_CRANK:
-        x[:, 4] = np.log(0.05) + u[:, 2] * np.log(12.0 / 0.05)
-        x[:, 5] = 3.0 * (u[:, 3] - 0.5)
-        _point(x, u, 1.0 + np.exp(x[:, 4]))
-    elif family == SLIDER_ROCKER:
-        x[:, 4] = np.log(0.2) + u[:, 2] * np.log(5.0 / 0.2)
-        x[:, 5] = 4.0 * (u[:, 3] - 0.5)
-        _point(x, u, np.exp(x[:, 4]))
-        begin, end = _slider_range(np.exp(x[:, 4]), x[:, 5])
-    else:
-        x[:, 4:8] = np.log(0.3) + u[:, 2:6] * np.log(8.0 / 0.3)
-        x[:, 4] = 0.0
-        distance = np.exp(np.log(0.2) + u[:, 6] * np.log(8.0 / 0.2))
-        x[:, 2] = distance
-        x[:, 8] = 2.0 * math.pi * u[:, 7]
-        _point(x, u, np.exp(x[:, 5]))
-        end = np.full(count, cycle_of(ratio))
-    return Draw(x, sign, begin, end)
-
-
-def cycle_of(ratio: float) -> float:
-    """The crank's rotation after which a geared fivebar stands as at first, radians; one turn for other linkages."""
-    turns = 1
-    while turns < LONGEST_CYCLE and abs(ratio * turns - round(ratio * turns)) > WHOLE_TURN:
-        turns += 1
-    return 2.0 * math.pi * turns
-
-
-LONGEST_CYCLE = 60
-"""Turns of the crank that are followed for a geared fivebar; gear ratios of more teeth than this come round later."""
-
-WHOLE_TURN = 1e-9
-"""A ratio is taken for a fraction that it differs from by less than this."""
-
-
-def _point(x: Real, u: Real, coupler: Real) -> None:
-    """Coupler points about the coupler's middle, most within a few couplers of it."""
-    reach = coupler * np.exp(np.log(0.03) + u[:, 0] * np.log(4.0 / 0.03))
-    point = 0.5 * coupler + reach * np.exp(2j * math.pi * u[:, 1])
-    x[:, -2], x[:, -1] = point.real, point.imag
-
-
-INSIDE = 0.999
-"""Share of the range between two toggles that is swept: at the toggles themselves the slopes have no bound."""
-
-
-def _fourbar_range(lengths: Real) -> tuple[Real, Real]:
-    """The crank's range from the ground line (γ = 0): the whole turn, or from toggle to toggle on the upper side."""
-    d, a, b, c = lengths.T
-    most = (a * a + d * d - (b + c) ** 2) / (2.0 * a * d)
-    least = (a * a + d * d - (b - c) ** 2) / (2.0 * a * d)
-    # The crank turns where cos θ lies between: |A O4| between |b − c| and b + c.
-    low, high = np.arccos(np.clip(least, -1.0, 1.0)), np.arccos(np.clip(most, -1.0, 1.0))
-    turns = (most <= -1.0) & (least >= 1.0)
-    through_zero, through_pi = (least >= 1.0) & ~turns, (most <= -1.0) & ~turns
-    begin = np.where(turns, 0.0, np.where(through_zero, -high, low))
-    end = np.where(turns, 2.0 * np.pi, np.where(through_pi, 2.0 * np.pi - low, high))
-    middle, half = 0.5 * (begin + end), 0.5 * INSIDE * (end - begin)
-    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
-
-
-def _slider_range(coupler: Real, offset: Real) -> tuple[Real, Real]:
-    """The crank's range from the slide's direction (σ = 0, crank of length one)."""
-    low, high = offset - coupler, offset + coupler
-    turns = (low <= -1.0) & (high >= 1.0)
-    bottom, top = np.arcsin(np.clip(low, -1.0, 1.0)), np.arcsin(np.clip(high, -1.0, 1.0))
-    begin = np.where(high >= 1.0, bottom, np.where(low <= -1.0, np.pi - top, bottom))
-    end = np.where(high >= 1.0, np.pi - bottom, np.where(low <= -1.0, 2.0 * np.pi + top, top))
-    middle, half = 0.5 * (begin + end), 0.5 * INSIDE * (end - begin)
-    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
-
-
 def alike(
     family: int,
     target: Complex,
@@ -378,7 +259,7 @@ def alike(
     order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
     order = order[rho[order] > 0.0]
     x, theta, sign = _placed(family, drawn, order, where[order], target, closed, ratio)
-    chosen = _different(x, theta, sign, np.ptp(target.real) + np.ptp(target.imag), longest, family, keep)
+    chosen = _different(x, theta, np.ptp(target.real) + np.ptp(target.imag), longest, family, keep)
     unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[chosen]] ** 2))
     return Starts(family, x[chosen], sign[chosen], theta[chosen], unlike, swept)
 
@@ -482,13 +363,11 @@ def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> 
     x[-2:] *= size
 
 
-def _different(
-    x: Real, theta: Real, sign: Real, size: float, longest: float, family: int, keep: int
-) -> NDArray[np.int64]:
+def _different(x: Real, theta: Real, size: float, longest: float, family: int, keep: int) -> NDArray[np.int64]:
     """Rows that are not near one another, nor far too large, at most ``keep`` of them."""
     lengths, chart = np.empty(4), np.empty((4, 4))
-    kept: list[int] = []
-    marks = np.empty((keep, 8 if family == GEARED_FIVEBAR else 7))
+    rows: list[int] = []
+    marks: list[list[float]] = []
     for i in range(len(x)):
         lengths[:] = 0.0
         natural(family, x[i], lengths, chart)
@@ -496,10 +375,6 @@ def _different(
             continue
         pin = complex(x[i, 0], x[i, 1]) + lengths[0 if family > FOURBAR else 1] * cmath.exp(1j * theta[i, 0])
         far = lengths[:4] if family == GEARED_FIVEBAR else lengths[1:]
-        mark = np.array([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
-        if (np.abs(marks[: len(kept)] - mark).max(axis=1) > SAME_PLACE * size).all():
-            marks[len(kept)] = mark
-            kept.append(i)
-            if len(kept) == keep:
-                break
-    return np.array(kept, np.int64)
+        rows.append(i)
+        marks.append([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
+    return np.array(rows, np.int64)[distinct(marks, keep, SAME_PLACE * size)]

@@ -12,16 +12,12 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
-from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_descent import descend
 from synthesis.kinds.path.curve_families import families_of, joints_of
-from synthesis.kinds.path.curve_shapes import (
-    SHAPE_POINTS,
-    alike,
-    equal_steps,
-)
+from synthesis.kinds.path.curve_limits import pivot_limits
+from synthesis.kinds.path.curve_shapes import alike
+from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import (
     FamilySearch,
     PathDesign,
@@ -30,13 +26,9 @@ from synthesis.kinds.path.design import (
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_statement import Region
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import Sifting, reported
-
-Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 DRAWN = 6144
 """Linkages of a family that are drawn in each round, and compared by their parts with a curve through the points."""
@@ -50,14 +42,8 @@ SETTLED = 150
 MET = 1e-22
 """Sum of squared distances, in squares of the task's size, at which a member of the family is reached."""
 
-INSIDE = 1e-7
-"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
-
 LONGEST = 12.0
 """Links longer than this many task sizes are discouraged, where no limit is stated."""
-
-SMOOTH = 240
-"""Points of the curve through the given ones."""
 
 SAME_DESIGN = 1e-3
 """Members whose joints agree to this share of the task's size are offered once: the family is continuous."""
@@ -74,10 +60,10 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     given = np.array([point.point for point in problem.points])
     centre, size = complex(given.mean()), problem.task_size
     points = (given - centre) / size
-    within = _within(problem, centre, size)
+    within = pivot_limits(problem, centre, size)
     limit = problem.constraints.link_length
     longest = LONGEST if limit is None or limit.max is None else limit.max / size
-    smooth, places = _smooth(points)
+    smooth, places = smooth_steps(points, closed=False)
     families = families_of(problem)
     found: list[FourbarConfiguration] = []
     brought = 0
@@ -90,8 +76,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
             brought += len(starts.x)
             if not len(starts.x):
                 continue
-            along = np.linspace(0.0, 1.0, SHAPE_POINTS)
-            theta = np.array([np.interp(places, along, angles) for angles in starts.theta])
+            theta = np.array([angles_at(places, angles, False, 0.0) for angles in starts.theta])
             ends = descend(
                 family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=SETTLED
             )
@@ -99,43 +84,6 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
                 joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
                 found.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
     return _answer(problem, found, brought, progress)
-
-
-def _within(problem: PathProblem, centre: complex, size: float) -> Real:
-    """Least and greatest coordinates of O2 and O4 in the task's unit, shape (4, 2)."""
-    limits, within = problem.constraints, ANYWHERE.copy()
-
-    def narrow(rows: slice, region: Region | None) -> None:
-        if region is None:
-            return
-        for row, (low, high), middle in zip(
-            range(rows.start, rows.stop), (region.x, region.y), (centre.real, centre.imag), strict=True
-        ):
-            margin = min(INSIDE, 0.25 * (high - low) / size)
-            within[row] = (
-                max(within[row, 0], (low - middle) / size + margin),
-                min(within[row, 1], (high - middle) / size - margin),
-            )
-
-    narrow(slice(0, 2), limits.fixed_pivot_region)
-    narrow(slice(2, 4), limits.fixed_pivot_region)
-    narrow(slice(0, 2), limits.input_pivot_region)
-    for first, pivot in ((0, problem.fixed_pivots.input), (2, problem.fixed_pivots.output)):
-        for row, value, middle in zip(
-            (first, first + 1), pivot or (None, None), (centre.real, centre.imag), strict=True
-        ):
-            if value is not None:
-                within[row] = (value - middle) / size
-    return within
-
-
-def _smooth(points: Complex) -> tuple[Complex, Real]:
-    """Equal steps along a smooth curve through the points, and the points' places on it."""
-    chords = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
-    dense = np.union1d(np.linspace(0.0, chords[-1], SMOOTH), chords)
-    curve = np.asarray(CubicSpline(chords, points)(dense), np.complex128)
-    steps, shares = equal_steps(curve, False, SHAPE_POINTS)
-    return steps, np.interp(chords, dense, shares)
 
 
 def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:

@@ -19,22 +19,19 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, natural
 from synthesis.fit.coupler_curve import place
-from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_candidates import cycle_of
+from synthesis.kinds.path.curve_descent import descend
+from synthesis.kinds.path.curve_limits import pivot_limits
 from synthesis.kinds.path.curve_match import (
     ranked_by_nearness,
     solve_curve_match,
     with_cognates,
 )
-from synthesis.kinds.path.curve_shapes import (
-    SHAPE_POINTS,
-    alike,
-    cycle_of,
-    equal_steps,
-)
+from synthesis.kinds.path.curve_shapes import alike
+from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_traced import verify_traced
@@ -54,7 +51,7 @@ from synthesis.model.linkages import (
     to_complex,
     to_point,
 )
-from synthesis.outcome.ranking import ranked
+from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import Sifting, reported
 
 Real = NDArray[np.float64]
@@ -76,12 +73,6 @@ MET = 1e-22
 RATIOS = (1.0, -1.0, 2.0, -2.0)
 """Gear ratios that are tried where none is given."""
 
-FEW_POINTS = 12
-"""Through fewer points a smooth curve is laid; more are joined by straight lines."""
-
-SMOOTH = 240
-"""Points of that curve."""
-
 SAME_DESIGN = 1e-4
 """Designs whose joints agree to this share of the task's size are one."""
 
@@ -97,16 +88,16 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
     given = np.array([point.point for point in problem.points])
     centre, size = complex(given.mean()), problem.task_size
     points = (given - centre) / size
-    target, places = _target(points, problem.closed)
+    target, places = smooth_steps(points, problem.closed)
     turns = problem.closed or problem.constraints.full_rotation
     tasks: list[tuple[int, float]]
     if problem.mechanism == "slider_crank":
         tasks = [(SLIDER_CRANK, 0.0)] if turns else [(SLIDER_CRANK, 0.0), (SLIDER_ROCKER, 0.0)]
     else:
         tasks = [(GEARED_FIVEBAR, ratio) for ratio in (RATIOS if problem.gear_ratio is None else (problem.gear_ratio,))]
-    within = _within(problem, centre, size)
+    within = pivot_limits(problem, centre, size)
     longest = problem.longest_link / size
-    found: list[tuple[float, Mechanism]] = []
+    fits: list[tuple[float, Mechanism]] = []
     for n, (family, ratio) in enumerate(tasks):
 
         def told(share: float, n: int = n) -> None:
@@ -121,7 +112,7 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
             continue
         cycle = cycle_of(ratio) if family == GEARED_FIVEBAR else 0.0
         span = cycle or 2.0 * math.pi
-        theta = np.array([_angles(angles, places, problem.closed, span) for angles in starts.theta])
+        theta = np.array([angles_at(places, angles, problem.closed, span) for angles in starts.theta])
         settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
         rough = descend(family, starts.x, starts.sign, theta, points, iterations=40, **settings)
         best = np.argsort(rough.cost, kind="stable")[: REFINED if problem.fitted else None]
@@ -133,14 +124,14 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
         )
         for k in np.argsort(fine.cost, kind="stable"):
             if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= MET):
-                made = _mechanism(
+                mechanism = _mechanism(
                     family, fine.x[k], float(starts.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
                 )
-                if made is not None:
-                    found.append((float(fine.cost[k]), made))
-        progress(0.7 * (n + 1.0) / len(tasks), f"{len(found)} linkages fitted")
-    found.sort(key=lambda pair: pair[0])
-    mechanisms = [made for _, made in _different(found, size)]
+                if mechanism is not None:
+                    fits.append((float(fine.cost[k]), mechanism))
+        progress(0.7 * (n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
+    fits.sort(key=lambda fit: fit[0])
+    mechanisms = _different([mechanism for _, mechanism in fits], size)
     if problem.matched and (GEARED_FIVEBAR, 1.0) in tasks:
         mechanisms += _from_fourbars(problem, progress)
     return _answer(problem, mechanisms, progress)
@@ -150,11 +141,11 @@ def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
     """The geared fivebars that draw the curves of the best fourbars."""
     asked = problem.model_copy(update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": COGNATES})
     fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
-    found: list[Mechanism] = []
+    cognates: list[Mechanism] = []
     for design in fourbars.designs:
         joints = (to_complex(design.mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4", "P"))
-        found += cognate_fivebars(FourbarConfiguration(*joints))
-    return [made for _, made in _different([(0.0, made) for made in found], problem.task_size)]
+        cognates += cognate_fivebars(FourbarConfiguration(*joints))
+    return _different(cognates, problem.task_size)
 
 
 def cognate_fivebars(joints: FourbarConfiguration) -> list[GearedFivebarMechanism]:
@@ -205,47 +196,6 @@ def geared_fivebar_mechanism(
     )
 
 
-def _target(points: Complex, closed: bool) -> tuple[Complex, Real]:
-    """Equal steps along a curve through the points, and the points' places on it as shares of its length."""
-    if len(points) >= FEW_POINTS:
-        return equal_steps(points, closed, SHAPE_POINTS)
-    whole = np.append(points, points[0]) if closed else points
-    kept = np.append(True, np.abs(np.diff(whole)) > 0.0)
-    chords = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole[kept])))])
-    dense = np.union1d(np.linspace(0.0, chords[-1], SMOOTH), chords)
-    spline = CubicSpline(chords, whole[kept], bc_type="periodic" if closed else "not-a-knot")
-    curve = np.asarray(spline(dense), np.complex128)
-    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(curve)))]) / np.abs(np.diff(curve)).sum()
-    steps, _ = equal_steps(curve[:-1] if closed else curve, closed, SHAPE_POINTS)
-    at = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))])[: len(points)]
-    return steps, np.interp(at, dense, along)
-
-
-def _angles(theta: Real, places: Real, closed: bool, cycle: float) -> Real:
-    """Crank angles at the points, from those at equal steps along the target."""
-    share = np.linspace(0.0, 1.0, SHAPE_POINTS, endpoint=not closed)
-    if closed:
-        turn = math.copysign(cycle, theta[-1] - theta[0])
-        share, theta = np.append(share, 1.0), np.append(theta, theta[0] + turn)
-    return np.asarray(np.interp(places, share, theta))
-
-
-def _within(problem: PathProblem, centre: complex, size: float) -> Real:
-    """Least and greatest coordinates of the fixed pivots, in the task's unit."""
-    within, limits = ANYWHERE.copy(), problem.constraints
-    middles = (centre.real, centre.imag)
-    for row in range(4):
-        for region in (limits.fixed_pivot_region, limits.input_pivot_region if row < 2 else None):
-            if region is not None:
-                low, high = ((value - middles[row % 2]) / size for value in (region.x, region.y)[row % 2])
-                within[row] = max(within[row, 0], low), min(within[row, 1], high)
-        pivot = (problem.fixed_pivots.input, problem.fixed_pivots.output)[row // 2]
-        value = None if pivot is None else pivot[row % 2]
-        if value is not None:
-            within[row] = (value - middles[row % 2]) / size
-    return within
-
-
 def _mechanism(
     family: int, x: Real, sign: float, ratio: float, theta: float, centre: complex, size: float
 ) -> Mechanism | None:
@@ -272,18 +222,10 @@ def _mechanism(
     return slider_crank_mechanism(put(o2), put(a), put(a + lengths[1] * unit), float(x[2]), put(p))
 
 
-def _different(found: list[tuple[float, Mechanism]], size: float) -> list[tuple[float, Mechanism]]:
-    """Fits that differ in some joint, best first, no more than are driven."""
-    kept: list[tuple[float, Mechanism]] = []
-    marks: list[Complex] = []
-    for cost, made in found:
-        mark = np.array([to_complex(point) for point in made.skeleton.joints.values()])
-        if all(float(np.abs(mark - other).max()) > SAME_DESIGN * size for other in marks):
-            kept.append((cost, made))
-            marks.append(mark)
-            if len(kept) == DRIVEN:
-                break
-    return kept
+def _different(mechanisms: list[Mechanism], size: float) -> list[Mechanism]:
+    """Those that differ in some joint, in their order, no more than are driven."""
+    joints = [[to_complex(joint) for joint in mechanism.skeleton.joints.values()] for mechanism in mechanisms]
+    return [mechanisms[n] for n in distinct(joints, DRIVEN, SAME_DESIGN * size)]
 
 
 def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:

@@ -1,0 +1,113 @@
+"""Linkages drawn at random, whose curves are compared with a target: evenly spread shapes of one family.
+
+Shapes are drawn by the logarithms of lengths relative to the crank, from Sobol's sequence, with O2 at the origin and
+the ground line or slide along the real axis. Each comes with the range of crank angles over which it moves.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, FOURBAR, SLIDER_CRANK, SLIDER_ROCKER, UNKNOWNS
+
+Real = NDArray[np.float64]
+
+MAX_CYCLE = 60
+"""Turns of the crank that are followed for a geared fivebar; gear ratios of more teeth than this come round later."""
+
+RATIO_TOLERANCE = 1e-9
+"""A gear ratio is taken for a fraction that it differs from by less than this."""
+
+SWEPT_SHARE = 0.999
+"""Share of the range between two toggles that is swept: at the toggles themselves the derivatives have no bound."""
+
+
+class Draw(NamedTuple):
+    """Candidates of one family: unknowns at unit crank, signs, and the crank's range (begin, end), shape (n,)."""
+
+    x: Real
+    sign: Real
+    begin: Real
+    end: Real
+
+
+def draw(family: int, count: int, ratio: float, seed: int) -> Draw:
+    """Linkages of a family with O2 at the origin and shapes spread evenly in the logarithms of their lengths."""
+    m = UNKNOWNS[family]
+    u = qmc.Sobol(m, seed=seed).random_base2(max(0, math.ceil(math.log2(count))))[:count]
+    x = np.zeros((count, m))
+    begin, end = np.zeros(count), np.full(count, 2.0 * math.pi)
+    sign = np.ones(count)
+    if family in (CRANK_ROCKER, DOUBLE_CRANK):
+        x[:, 4:7] = np.log(0.05) + u[:, 2:5] * np.log(12.0 / 0.05)
+        coupler = 1.0 + 0.5 * (np.exp(x[:, 4]) + np.exp(x[:, 5]))
+        _point(x, u, coupler)
+    elif family == FOURBAR:
+        x[:, 3:7] = np.log(0.2) + u[:, 2:6] * np.log(5.0 / 0.2)
+        lengths = np.exp(x[:, 3:7])
+        _point(x, u, lengths[:, 2])
+        begin, end = _fourbar_range(lengths)
+    elif family == SLIDER_CRANK:
+        x[:, 4] = np.log(0.05) + u[:, 2] * np.log(12.0 / 0.05)
+        x[:, 5] = 3.0 * (u[:, 3] - 0.5)
+        _point(x, u, 1.0 + np.exp(x[:, 4]))
+    elif family == SLIDER_ROCKER:
+        x[:, 4] = np.log(0.2) + u[:, 2] * np.log(5.0 / 0.2)
+        x[:, 5] = 4.0 * (u[:, 3] - 0.5)
+        _point(x, u, np.exp(x[:, 4]))
+        begin, end = _slider_range(np.exp(x[:, 4]), x[:, 5])
+    else:
+        x[:, 4:8] = np.log(0.3) + u[:, 2:6] * np.log(8.0 / 0.3)
+        x[:, 4] = 0.0
+        distance = np.exp(np.log(0.2) + u[:, 6] * np.log(8.0 / 0.2))
+        x[:, 2] = distance
+        x[:, 8] = 2.0 * math.pi * u[:, 7]
+        _point(x, u, np.exp(x[:, 5]))
+        end = np.full(count, cycle_of(ratio))
+    return Draw(x, sign, begin, end)
+
+
+def cycle_of(ratio: float) -> float:
+    """The crank's rotation after which a geared fivebar stands as at first, radians; one turn for other linkages."""
+    turns = 1
+    while turns < MAX_CYCLE and abs(ratio * turns - round(ratio * turns)) > RATIO_TOLERANCE:
+        turns += 1
+    return 2.0 * math.pi * turns
+
+
+def _point(x: Real, u: Real, coupler: Real) -> None:
+    """Coupler points about the coupler's middle, most within a few couplers of it."""
+    reach = coupler * np.exp(np.log(0.03) + u[:, 0] * np.log(4.0 / 0.03))
+    point = 0.5 * coupler + reach * np.exp(2j * math.pi * u[:, 1])
+    x[:, -2], x[:, -1] = point.real, point.imag
+
+
+def _fourbar_range(lengths: Real) -> tuple[Real, Real]:
+    """The crank's range from the ground line (γ = 0): the whole turn, or from toggle to toggle on the upper side."""
+    d, a, b, c = lengths.T
+    most = (a * a + d * d - (b + c) ** 2) / (2.0 * a * d)
+    least = (a * a + d * d - (b - c) ** 2) / (2.0 * a * d)
+    # The crank turns where cos θ lies between: |A O4| between |b − c| and b + c.
+    low, high = np.arccos(np.clip(least, -1.0, 1.0)), np.arccos(np.clip(most, -1.0, 1.0))
+    turns = (most <= -1.0) & (least >= 1.0)
+    through_zero, through_pi = (least >= 1.0) & ~turns, (most <= -1.0) & ~turns
+    begin = np.where(turns, 0.0, np.where(through_zero, -high, low))
+    end = np.where(turns, 2.0 * np.pi, np.where(through_pi, 2.0 * np.pi - low, high))
+    middle, half = 0.5 * (begin + end), 0.5 * SWEPT_SHARE * (end - begin)
+    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
+
+
+def _slider_range(coupler: Real, offset: Real) -> tuple[Real, Real]:
+    """The crank's range from the slide's direction (σ = 0, crank of length one)."""
+    low, high = offset - coupler, offset + coupler
+    turns = (low <= -1.0) & (high >= 1.0)
+    bottom, top = np.arcsin(np.clip(low, -1.0, 1.0)), np.arcsin(np.clip(high, -1.0, 1.0))
+    begin = np.where(high >= 1.0, bottom, np.where(low <= -1.0, np.pi - top, bottom))
+    end = np.where(high >= 1.0, np.pi - bottom, np.where(low <= -1.0, 2.0 * np.pi + top, top))
+    middle, half = 0.5 * (begin + end), 0.5 * SWEPT_SHARE * (end - begin)
+    return np.where(turns, 0.0, middle - half), np.where(turns, 2.0 * np.pi, middle + half)
