@@ -80,8 +80,8 @@ def place(
 ) -> tuple[bool, complex, complex]:
     """Whether the linkage closes with the crank at θ, P, and the coupler's unit vector (from A)."""
     second = unit(second_angle(family, x, ratio, theta))
-    found: tuple[bool, complex, complex] = _coupler(family, x, lengths, sign, unit(theta), second)
-    return found
+    pose: tuple[bool, complex, complex] = _coupler(family, x, lengths, sign, unit(theta), second)
+    return pose
 
 
 @njit(**OPTIONS)

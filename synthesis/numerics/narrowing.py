@@ -101,13 +101,13 @@ def narrowest(
     Narrowest or None
         None where the start is no linkage.
     """
-    found: Narrowest | None = None
+    narrowest: Narrowest | None = None
     for penalty in PENALTIES:
-        found = _descent(values, start, low, high, half_limit, arrived, penalty)
-        if found is None or found.violation <= MET:
+        narrowest = _descent(values, start, low, high, half_limit, arrived, penalty)
+        if narrowest is None or narrowest.violation <= MET:
             break
-        start = found.shape
-    return found
+        start = narrowest.shape
+    return narrowest
 
 
 def _descent(
@@ -158,8 +158,8 @@ def merits(values: Values, half_limit: float = np.inf, penalty: float = PENALTIE
     violation = np.maximum(0.0, -values.positive.min(axis=1, initial=0.0))
     if values.limited.size and np.isfinite(half_limit):
         violation = np.maximum(violation, 0.5 * np.ptp(values.limited, axis=1) - half_limit)
-    found = np.stack([half_width, violation, half_width + penalty * violation])
-    return np.where(np.isfinite(found).all(axis=0), found, np.inf)
+    measures = np.stack([half_width, violation, half_width + penalty * violation])
+    return np.where(np.isfinite(measures).all(axis=0), measures, np.inf)
 
 
 def _merit(values: Values, half_limit: float, penalty: float) -> tuple[float, float, float]:
@@ -172,8 +172,8 @@ def _tangents(values: Callable[[Real], Values], x: Real) -> Values | None:
     h = STEP * (1.0 + np.abs(x))
     around = values(np.concatenate([x + np.diag(h), x - np.diag(h)]))
     n = len(x)
-    found = Values(*((part[:n] - part[n:]) / (2.0 * h[:, None]) for part in around))
-    return found if all(np.isfinite(part).all() for part in found) else None
+    derivatives = Values(*((part[:n] - part[n:]) / (2.0 * h[:, None]) for part in around))
+    return derivatives if all(np.isfinite(part).all() for part in derivatives) else None
 
 
 def _step(

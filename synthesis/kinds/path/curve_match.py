@@ -169,7 +169,7 @@ def _alike(
     for n, family in enumerate(families):
         count = DRAWN[family, problem.closed]
 
-        def told(share: float, n: int = n, count: int = count) -> None:
+        def compared(share: float, n: int = n, count: int = count) -> None:
             fraction = (n + 0.7 * share) / len(families)
             progress(0.8 * fraction, f"{round(count * share)} of {count} linkages compared")
 
@@ -181,7 +181,7 @@ def _alike(
             FOLLOWED,
             longest=float(setting[LINKS + 1]),
             seed=problem.seed % 2**32,
-            told=told,
+            progress=compared,
         )
         drawn, swept, followed = drawn + count, swept + starts.swept, followed + len(starts.x)
         refined, least = _refined(target, starts, setting, least, traded=problem.rank_by != "accuracy")
@@ -201,7 +201,7 @@ def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -
         update={"link_length": lengths.model_copy(update={"max": problem.longest_link})}
     )
     fits = [target.points, target.steps] if len(target.points) < SHAPE_POINTS else [target.points]
-    found = []
+    linkages = []
     for n, along in enumerate(fits):
         part = part_of(progress, 0.8 * n / len(fits), 0.8 * (n + 1) / len(fits))
         points = [PathPoint(x=float(z.real), y=float(z.imag)) for z in target.centre + target.size * along]
@@ -210,8 +210,8 @@ def _at_given_pivots(problem: PathProblem, target: Target, progress: Progress) -
         for candidate in fitted(fit, task, np.random.default_rng(problem.seed), part):
             joints = configuration_of(candidate, task)
             if joints is not None:
-                found.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
-    return found
+                linkages.append(FourbarConfiguration(*((joint - target.centre) / target.size for joint in joints)))
+    return linkages
 
 
 def warm_up() -> None:
@@ -265,19 +265,21 @@ def _refined(
         fine = _at_all_points(target, family, fine, signs, thin, longest, order)
     free = [(_candidate(target, family, fine.x[k], float(signs[k]), fine.theta[k]), k) for k in order]
     free.sort(key=lambda pair: pair[0].error)
-    found, offered = [], list[_Candidate]()
+    demanded, offered = [], list[_Candidate]()
     practical = usable(setting) if traded else None
     for candidate, k in free[:LIMITED]:
         descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
         kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, setting)
         if kept is None:
             continue
-        found.append(candidate if kept is descent else _candidate(target, family, kept.x, candidate.sign, kept.theta))
-        if practical is not None and len(found) <= ALSO_USABLE:
+        demanded.append(
+            candidate if kept is descent else _candidate(target, family, kept.x, candidate.sign, kept.theta)
+        )
+        if practical is not None and len(demanded) <= ALSO_USABLE:
             better = descend_within(family, kept, candidate.sign, target.fitted, target.weights, practical)
             if better is not None and better is not kept:
                 offered.append(_candidate(target, family, better.x, candidate.sign, better.theta))
-    return found + offered, least
+    return demanded + offered, least
 
 
 def _at_all_points(
@@ -347,19 +349,19 @@ def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
 
     With ζ = (P − A)/(B − A) the third pivot is O2 + ζ (O4 − O2), and O2 A P A′ is a parallelogram (Norton, Sec. 3.7).
     """
-    found = []
+    cognates = []
     o2, a, b, o4, p = joints
     for start, pin, other, far in ((o2, a, b, o4), (o4, b, a, o2)):
-        found.append(FourbarConfiguration(start, pin, other, far, p))
+        cognates.append(FourbarConfiguration(start, pin, other, far, p))
         if abs(p - pin) == 0.0 or abs(other - pin) == 0.0:
             continue
         zeta = (p - pin) / (other - pin)
         third = start + zeta * (far - start)
         new_pin = start + (p - pin)
         new_other = new_pin + zeta * (pin - start)
-        found.append(FourbarConfiguration(start, new_pin, new_other, third, p))
-        found.append(FourbarConfiguration(third, new_other, new_pin, start, p))
-    return found
+        cognates.append(FourbarConfiguration(start, new_pin, new_other, third, p))
+        cognates.append(FourbarConfiguration(third, new_other, new_pin, start, p))
+    return cognates
 
 
 def _verified(

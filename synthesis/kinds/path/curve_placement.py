@@ -100,11 +100,11 @@ def _one_pivot(problem: PathProblem) -> tuple[str, complex] | None:
 
 
 def _whole(problem: PathProblem) -> dict[str, tuple[float, float]]:
-    found = {}
+    pivots = {}
     for side, pivot in (("input", problem.fixed_pivots.input), ("output", problem.fixed_pivots.output)):
         if pivot is not None and pivot[0] is not None and pivot[1] is not None:
-            found[side] = (pivot[0], pivot[1])
-    return found
+            pivots[side] = (pivot[0], pivot[1])
+    return pivots
 
 
 def _scale(problem: PathProblem, joints: FourbarConfiguration) -> float:

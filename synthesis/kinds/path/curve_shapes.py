@@ -160,14 +160,14 @@ def _windows(
                         where[i, 0], where[i, 1], where[i, 2] = a, s, manner
 
 
-class _Found(NamedTuple):
+class _Likeness(NamedTuple):
     """Candidates of a chunk: how alike, and how the target lies on them (shift or window, and the manner)."""
 
     rho: Real
     where: NDArray[np.int64]
 
 
-def _alike_closed(curves: Complex, target: Complex) -> _Found:
+def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
     shapes = np.empty((len(curves), SHAPE_POINTS), np.complex128)
     _resample(curves, True, shapes)
     shapes -= shapes.mean(axis=1, keepdims=True)
@@ -183,21 +183,21 @@ def _alike_closed(curves: Complex, target: Complex) -> _Found:
         product = fft.ifft(fft.fft(asked).astype(np.complex64) * descriptors.conj(), axis=1)
         sizes = np.abs(product)
         shift = sizes.argmax(axis=1)
-        found = sizes[np.arange(len(curves)), shift]
-        better = found > rho
-        rho[better] = found[better]
+        greatest = sizes[np.arange(len(curves)), shift]
+        better = greatest > rho
+        rho[better] = greatest[better]
         where[better, 1], where[better, 2] = shift[better], manner
-    return _Found(np.minimum(rho, 1.0), where)
+    return _Likeness(np.minimum(rho, 1.0), where)
 
 
-def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Found:
+def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Likeness:
     shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
     _resample(curves, ring, shapes)
     rho, where = np.empty(len(curves)), np.zeros((len(curves), 3), np.int64)
     few, _ = equal_steps(target, False, WINDOW_POINTS)
     few -= few.mean()
     _windows(shapes, ring, np.array(WINDOW_LENGTHS), WINDOW_STARTS, few / np.linalg.norm(few), rho, where)
-    return _Found(np.minimum(rho, 1.0), where)
+    return _Likeness(np.minimum(rho, 1.0), where)
 
 
 def alike(
@@ -210,7 +210,7 @@ def alike(
     ratio: float = 0.0,
     longest: float = math.inf,
     seed: int = 0,
-    told: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Starts:
     """The candidates of a family whose curves are most like the target, placed on it.
 
@@ -228,7 +228,7 @@ def alike(
         Gear ratio; longest link, in the target's units, of what is kept.
     seed : int
         Of the draw.
-    told : callable, optional
+    progress : callable, optional
         Called with the share done.
     """
     centre = target.mean()
@@ -238,24 +238,26 @@ def alike(
     rho, where = np.full(count, -1.0), np.zeros((count, 3), np.int64)
     swept = 0
 
-    def compare(first: int) -> list[tuple[NDArray[np.int64], _Found]]:
+    def compare(first: int) -> list[tuple[NDArray[np.int64], _Likeness]]:
         curves, _, good, rings = _swept(drawn, family, slice(first, min(first + CHUNK, count)), ratio)
-        found = []
+        compared = []
         for ring in (True, False):
             chosen = np.flatnonzero(good & (rings == ring))
             if (ring or not closed) and len(chosen):
                 some = curves[chosen]
-                found.append((first + chosen, _alike_closed(some, shape) if closed else _alike_open(some, ring, shape)))
-        return found
+                compared.append(
+                    (first + chosen, _alike_closed(some, shape) if closed else _alike_open(some, ring, shape))
+                )
+        return compared
 
     with ThreadPoolExecutor(THREADS) as pool:
         chunks = range(0, count, CHUNK)
         for first, parts in zip(chunks, pool.map(compare, chunks), strict=True):
-            for chosen, found in parts:
-                rho[chosen], where[chosen] = found.rho, found.where
+            for chosen, likeness in parts:
+                rho[chosen], where[chosen] = likeness.rho, likeness.where
                 swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
-            if told is not None:
-                told(min(first + CHUNK, count) / count)
+            if progress is not None:
+                progress(min(first + CHUNK, count) / count)
     order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
     order = order[rho[order] > 0.0]
     x, theta, sign = _placed(family, drawn, order, where[order], target, closed, ratio)

@@ -40,7 +40,7 @@ def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | No
     """
     task = point_task(problem)
     rng = np.random.default_rng(problem.seed)
-    found: list[PathDesign | None] = []
+    designs: list[PathDesign | None] = []
     sound = 0
     for n, usable in enumerate(ROUNDS):
         part = part_of(progress, n / len(ROUNDS), (n + 1) / len(ROUNDS))
@@ -49,8 +49,8 @@ def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | No
                 continue
             mechanism = mechanism_of(candidate, task)
             design = None if mechanism is None else verify_path(problem, mechanism)
-            found.append(design)
+            designs.append(design)
             sound += design is not None and design.verification.passed
         if sound >= problem.max_designs:
             break
-    return found
+    return designs

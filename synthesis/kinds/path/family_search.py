@@ -65,12 +65,12 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     longest = LONGEST if limit is None or limit.max is None else limit.max / size
     smooth, places = smooth_steps(points, closed=False)
     families = families_of(problem)
-    found: list[FourbarConfiguration] = []
+    members: list[FourbarConfiguration] = []
     brought = 0
     for turn in range(problem.rounds):
         for n, family in enumerate(families):
             done = (turn + n / len(families)) / problem.rounds
-            progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(found)} linkages meet all points")
+            progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(members)} linkages meet all points")
             seed = int(np.random.default_rng([problem.seed, turn, n]).integers(2**31))
             starts = alike(family, smooth, False, DRAWN, FOLLOWED, longest=longest, seed=seed)
             brought += len(starts.x)
@@ -82,12 +82,12 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
             )
             for k in np.flatnonzero(ends.cost <= MET):
                 joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
-                found.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
-    return _answer(problem, found, brought, progress)
+                members.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
+    return _answer(problem, members, brought, progress)
 
 
-def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:
-    """Drive the members, and put those first that are asked for."""
+def _answer(problem: PathProblem, met: list[FourbarConfiguration], brought: int, progress: Progress) -> PathResult:
+    """Drive the members that differ, and put those first that are asked for."""
     size = problem.task_size
 
     def verified(member: FourbarConfiguration) -> PathDesign | str | None:
@@ -95,13 +95,13 @@ def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: in
             return "degenerate"
         return verify_path(problem, fourbar_mechanism(member))
 
-    members = [found[k] for k in distinct(found, DRIVEN, SAME_DESIGN * size)]
+    driven = [met[k] for k in distinct(met, DRIVEN, SAME_DESIGN * size)]
     sifting = Sifting[PathDesign](problem)
-    sifting.sift(reported(members, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
+    sifting.sift(reported(driven, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
     progress(1.0, "verified")
     text = (
-        f"{brought} linkages near a curve through the points were brought to them, {len(found)} of them exactly and "
-        f"with the pivots where they are asked for; {sifting.accepted} of {len(members)} that differ satisfy all "
+        f"{brought} linkages near a curve through the points were brought to them, {len(met)} of them exactly and "
+        f"with the pivots where they are asked for; {sifting.accepted} of {len(driven)} that differ satisfy all "
         "demands."
     )
     text += sifting.reasons()
@@ -111,5 +111,5 @@ def _answer(problem: PathProblem, found: list[FourbarConfiguration], brought: in
         designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
         search=sifting.search("family_search"),
         summary=text,
-        family=FamilySearch(followed=brought, met=len(found)),
+        family=FamilySearch(followed=brought, met=len(met)),
     )

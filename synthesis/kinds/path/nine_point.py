@@ -133,24 +133,24 @@ def all_triples(
     moved = np.asarray(points[1:] - points[0], np.complex128)
     size = float(np.sqrt(np.mean(np.abs(moved) ** 2)))
     p = np.asarray(np.concatenate([moved, moved.conj()]) / size, np.complex128)
-    found = _Orbits(p)
+    orbits = _Orbits(p)
     retried = 0
     for way in range(WAYS):
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
-        retried += _run(found, bend, threads, _part(progress, way))
-        if found.missing == 0 or found.missing > SPECIAL * ORBITS:
+        retried += _run(orbits, bend, threads, _part(progress, way))
+        if orbits.missing == 0 or orbits.missing > SPECIAL * ORBITS:
             break
     progress(1.0)
     return Triples(
-        found.y,
-        found.low,
+        orbits.y,
+        orbits.low,
         p,
-        _real_linkages(found) * size + points[0],
-        found.missing,
+        _real_linkages(orbits) * size + points[0],
+        orbits.missing,
         retried,
-        float(residuals(found.y, p, found.low).max(initial=0.0)),
-        found.holds(conjugate(found.y)),
-        int(np.count_nonzero(conditions(found.y, p) > NEARLY_SINGULAR)),
+        float(residuals(orbits.y, p, orbits.low).max(initial=0.0)),
+        orbits.holds(conjugate(orbits.y)),
+        int(np.count_nonzero(conditions(orbits.y, p) > NEARLY_SINGULAR)),
     )
 
 
@@ -222,54 +222,54 @@ def _same(keys: Complex) -> Mask:
     return np.asarray(gaps <= SAME_ORBIT * np.abs(keys).max(axis=-1, initial=0.0)[:, None])
 
 
-def _run(found: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
+def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float], None]) -> int:
     """Follow all orbits along one way and add what they reach; returns how many had to be followed again."""
     begun = nine_point_start()
     lost: list[int] = []
     for first in range(0, ORBITS, PORTION):
         some = np.arange(first, min(first + PORTION, ORBITS))
-        new = _follow(found, nine_point_system, begun.y[some], begun.p, bend, 5e-3, threads)
+        new = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, 5e-3, threads)
         lost += [int(n) for n in some[~new]]
         progress(0.8 * (first + len(some)) / ORBITS)
         if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
             return len(lost)
-    found.add_conjugates()
+    orbits.add_conjugates()
     for attempt in range(6):
-        if found.missing == 0:
+        if orbits.missing == 0:
             break
         members = cognates(begun.y[lost], begun.p)[:, attempt % 3]
         tolerance = 1e-3 if attempt < 3 else 1e-5
-        _follow(found, nine_point_system_extended, members, begun.p, bend, tolerance, threads)
-        found.add_conjugates()
+        _follow(orbits, nine_point_system_extended, members, begun.p, bend, tolerance, threads)
+        orbits.add_conjugates()
         progress(0.8 + 0.03 * attempt)
     return len(lost)
 
 
 def _follow(
-    found: _Orbits, system: Any, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int
+    orbits: _Orbits, system: Any, y: Complex, begun: Complex, bend: Complex, tolerance: float, threads: int
 ) -> Mask:
     """Follow solutions of the start to the problem; tells which of them came to an orbit that was not known."""
     ends = follow(
-        system, GROUPS, SCRATCH, y, begun, found.p, bend, tolerance=tolerance, most_steps=STEPS, threads=threads
+        system, GROUPS, SCRATCH, y, begun, orbits.p, bend, tolerance=tolerance, most_steps=STEPS, threads=threads
     )
     new = np.asarray((ends.status == REACHED) & np.isfinite(ends.y).all(axis=-1))
     # Refined, so that the keys of ill-conditioned solutions have digits to tell them by.
-    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[new], ends.low[new], found.p)
-    new[new] = found.add(y, low)
+    y, low, _ = refine(nine_point_system_extended, GROUPS, SCRATCH, ends.y[new], ends.low[new], orbits.p)
+    new[new] = orbits.add(y, low)
     return new
 
 
-def _real_linkages(found: _Orbits) -> Complex:
+def _real_linkages(orbits: _Orbits) -> Complex:
     """Pivots of the real orbits' three cognates, in scaled coordinates: shape (triples, 3, 4)."""
-    y = found.y
+    y = orbits.y
     if not len(y):
         return np.empty((0, 3, 4), np.complex128)
     apart = np.abs(y[:, :8:2] - y[:, 1:8:2].conj()).max(axis=-1)
     near = y[apart <= REAL * np.abs(y[:, :8]).max(axis=-1)].copy()
     near[:, :8:2] = 0.5 * (near[:, :8:2] + near[:, 1:8:2].conj())
     near[:, 1:8:2] = near[:, :8:2].conj()
-    near, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, near, np.zeros_like(near), found.p)
-    real = (moved < CONVERGED) & (residuals(near, found.p, low) <= RESIDUAL)
-    members = cognates(near[real], found.p)
+    near, low, moved = refine(nine_point_system_extended, GROUPS, SCRATCH, near, np.zeros_like(near), orbits.p)
+    real = (moved < CONVERGED) & (residuals(near, orbits.p, low) <= RESIDUAL)
+    members = cognates(near[real], orbits.p)
     x_1, r_1, x_2, r_2 = (members[..., k] for k in (0, 2, 4, 6))
     return np.stack([x_1 - r_1, x_1, x_2 - r_2, x_2], axis=-1)

@@ -100,13 +100,13 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
     fits: list[tuple[float, Mechanism]] = []
     for n, (family, ratio) in enumerate(tasks):
 
-        def told(share: float, n: int = n) -> None:
+        def compared(share: float, n: int = n) -> None:
             progress(0.7 * (n + 0.8 * share) / len(tasks), "shapes of linkages compared")
 
         drawn = (CLOSED_DRAWN if problem.closed else OPEN_DRAWN) // (1 if len(tasks) < 3 else 2)
         seed = int(np.random.default_rng([problem.seed, n]).integers(2**31))
         starts = alike(
-            family, target, problem.closed, drawn, FOLLOWED, ratio=ratio, longest=longest, seed=seed, told=told
+            family, target, problem.closed, drawn, FOLLOWED, ratio=ratio, longest=longest, seed=seed, progress=compared
         )
         if not len(starts.x):
             continue
@@ -150,12 +150,12 @@ def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
 
 def cognate_fivebars(joints: FourbarConfiguration) -> list[GearedFivebarMechanism]:
     """The geared fivebars of ratio +1 that draw a fourbar's coupler curve, in its configuration."""
-    found = []
+    fivebars = []
     for o2, a, b, o4, p in with_cognates(joints):
         mechanism = geared_fivebar_mechanism(o2, o2 + p - a, p, o4 + p - b, o4, p, 1.0, cmath.phase(p - a))
         if mechanism is not None:
-            found.append(mechanism)
-    return found
+            fivebars.append(mechanism)
+    return fivebars
 
 
 def geared_fivebar_mechanism(

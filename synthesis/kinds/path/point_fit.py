@@ -234,41 +234,41 @@ def fitted(
     ]
     pool.sort(key=lambda candidate: candidate.cost)
     most = finalists if len(task.rows) <= MANY else OF_MANY
-    found = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
+    minima = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
     for _ in range(RETURNS if thinned is task else 0):
         # What has come to its limits may lie next to something better beyond them.
         again: list[Candidate] = []
         for n, (way, family, sign) in enumerate(cases):
             progress(0.8 + 0.1 * n / len(cases), "changing the best fits")
-            held = _flock_of(found, (way, family, sign)), _flock_of(found, (way, family, -sign))
+            held = _flock_of(minima, (way, family, sign)), _flock_of(minima, (way, family, -sign))
             flock = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
             again += [
                 Candidate(x, state, float(cost), Status(status), settings[n], way)
                 for x, state, cost, status in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
             ]
         again.sort(key=lambda candidate: candidate.cost)
-        found += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
-    return sorted(found, key=lambda candidate: candidate.cost)
+        minima += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
+    return sorted(minima, key=lambda candidate: candidate.cost)
 
 
 def _all_held(
-    chosen: list[Candidate], task: PointTask, thinned: PointTask, told: Callable[[float], None]
+    chosen: list[Candidate], task: PointTask, thinned: PointTask, report: Callable[[float], None]
 ) -> list[Candidate]:
     """Candidates brought to minima within their limits, without those that cannot be."""
-    found: list[Candidate | None] = [None] * len(chosen)
+    minima: list[Candidate | None] = [None] * len(chosen)
 
     def work(some: slice) -> None:
-        found[some] = [_held(candidate, task, thinned) for candidate in chosen[some]]
+        minima[some] = [_held(candidate, task, thinned) for candidate in chosen[some]]
 
-    told(0.0)
+    report(0.0)
     in_portions(work, len(chosen), 1)
-    return [candidate for candidate in found if candidate is not None]
+    return [candidate for candidate in minima if candidate is not None]
 
 
-def _flock_of(found: list[Candidate], case: tuple[int, int, float]) -> _Flock:
+def _flock_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Flock:
     """The best distinct ones of a case: the crank's direction, the family and the assembly."""
     way, family, sign = case
-    own = [c for c in found if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
+    own = [c for c in minima if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
     own.sort(key=lambda candidate: candidate.cost)
     if not own:
         return _empty(0, UNKNOWNS[FOURBAR], 0)

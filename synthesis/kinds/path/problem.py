@@ -290,7 +290,7 @@ class PathProblem(LinkageProblem):
     def _timing(self) -> list[Contradiction]:
         given = [k for k, point in enumerate(self.points) if point.crank_angle is not None]
         if not self.prescribed:
-            found = [
+            faults = [
                 Contradiction(
                     f"/points/{k}/crank_angle", 'timing is free; state "timing": "prescribed", or leave it out'
                 )
@@ -301,8 +301,8 @@ class PathProblem(LinkageProblem):
                 ("crank_direction", self.crank_direction, "as_given"),
             ):
                 if value != default:
-                    found.append(Contradiction(f"/{name}", "speaks of prescribed timing; the timing is free"))
-            return found
+                    faults.append(Contradiction(f"/{name}", "speaks of prescribed timing; the timing is free"))
+            return faults
         missing = [k for k in range(len(self.points)) if k not in set(given)]
         if missing:
             return [Contradiction(f"/points/{k}/crank_angle", "timing is prescribed; give an angle") for k in missing]
@@ -369,7 +369,7 @@ class PathProblem(LinkageProblem):
         return []
 
     def _pivots(self) -> list[Contradiction]:
-        found = []
+        faults = []
         limits = self.constraints
         for side, pivot, regions in (
             ("input", self.fixed_pivots.input, (limits.fixed_pivot_region, limits.input_pivot_region)),
@@ -382,32 +382,34 @@ class PathProblem(LinkageProblem):
                     region.x[0] if pivot[0] is None else pivot[0], region.y[0] if pivot[1] is None else pivot[1]
                 )
                 if not region.contains(at):
-                    found.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
-        return found
+                    faults.append(Contradiction(f"/fixed_pivots/{side}", "outside the region that it must lie in"))
+        return faults
 
     def _mechanism(self) -> list[Contradiction]:
         """What only fourbars can be asked, and the gear ratio."""
-        found = []
+        faults = []
         if self.gear_ratio is not None:
             turns = self.gear_ratio * np.arange(1.0, GEAR_TURNS + 1.0)
             if self.mechanism != "geared_fivebar":
-                found.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
+                faults.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
             elif self.gear_ratio == 0.0:
-                found.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
+                faults.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
             elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
                 detail = f"the gears do not come round within {GEAR_TURNS} turns; state a ratio of whole teeth"
-                found.append(Contradiction("/gear_ratio", detail))
+                faults.append(Contradiction("/gear_ratio", detail))
         if self.mechanism == "fourbar":
-            return found
+            return faults
         if self.prescribed:
-            found.append(Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free"))
-        found += self.constraints.of_another_class((), f"classifies fourbars; a {self.mechanism} has no class")
+            faults.append(
+                Contradiction("/timing", f"prescribed timing is for fourbars; a {self.mechanism} has it free")
+            )
+        faults += self.constraints.of_another_class((), f"classifies fourbars; a {self.mechanism} has no class")
         if self.constraints.coupler_point is not None:
             detail = f"says where P lies on a fourbar's coupler; leave it out for a {self.mechanism}"
-            found.append(Contradiction("/constraints/coupler_point", detail))
+            faults.append(Contradiction("/constraints/coupler_point", detail))
         if self.mechanism == "slider_crank" and self.fixed_pivots.output is not None:
-            found.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
-        return found
+            faults.append(Contradiction("/fixed_pivots/output", "a slider-crank has one fixed pivot, the crank's"))
+        return faults
 
     def _closed(self) -> list[Contradiction]:
         if self.closed and self.constraints.grashof in ("double_rocker", "non_grashof"):

@@ -83,27 +83,27 @@ def _solve_nine(problem: PathProblem, progress: Progress) -> PathResult:
     given = np.array([point.point for point in problem.points])
     rounds = 1 if len(given) == NINE else problem.rounds
     harvest = Harvest(problem)
-    found: list[Triples] = []
+    computed: list[Triples] = []
     on_one_circuit = 0
     for n in range(rounds):
 
-        def told(share: float, n: int = n) -> None:
+        def tell(share: float, n: int = n) -> None:
             tracked = f"{round(share * ORBITS)} of {ORBITS} paths followed"
             message = tracked if rounds == 1 else f"round {n + 1} of {rounds}: {tracked}"
             progress(0.95 * (n + share) / rounds, message)
 
-        triples = all_triples(_nine(given, rng), rng, told, THREADS)
-        found.append(triples)
+        triples = all_triples(_nine(given, rng), rng, tell, THREADS)
+        computed.append(triples)
         on_one_circuit += _gathered(harvest, triples)
     progress(1.0, "verified")
-    complete = len(given) == NINE and found[0].complete and not harvest.unproven
+    complete = len(given) == NINE and computed[0].complete and not harvest.unproven
     counts = CognateTriples(
         rounds=rounds,
-        computed=sum(len(triples.y) for triples in found),
-        real=sum(len(triples.real) for triples in found),
+        computed=sum(len(triples.y) for triples in computed),
+        real=sum(len(triples.real) for triples in computed),
         on_one_circuit=on_one_circuit,
-        largest_residual=max(triples.largest_residual for triples in found),
-        closed_under_conjugation=all(triples.self_conjugate for triples in found),
+        largest_residual=max(triples.largest_residual for triples in computed),
+        closed_under_conjugation=all(triples.self_conjugate for triples in computed),
     )
     method = "nine_point_continuation" if len(given) == NINE else "nine_point_family"
     text = (

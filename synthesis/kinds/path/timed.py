@@ -69,7 +69,7 @@ def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
     inputs = section(exchanged, free)
     dyads = settled(exchanged, inputs.dyads) if len(inputs.dyads.fixed) else inputs.dyads
     proved, sliders = inputs.finite and inputs.proved, len(inputs.sliders)
-    found = []
+    linkages = []
     for o2, moving in zip(dyads.fixed, dyads.moving, strict=True):
         crank, arm = -moving, moving - o2
         if abs(crank) < SHORTEST_LINK or abs(arm) < SHORTEST_LINK:
@@ -88,8 +88,8 @@ def timed_fourbars(points: Complex, turns: Real) -> TimedFourbars:
         for o4, b in zip(links.fixed, links.moving, strict=True):
             reach = 1.0 + abs(o2) + abs(a)
             if max(abs(o4 - o2), abs(b - a)) > SAME_DYAD * reach:
-                found.append((o2, a, b, o4))
-    return TimedFourbars(np.array(found, np.complex128).reshape(-1, 4), len(dyads.fixed), sliders, proved)
+                linkages.append((o2, a, b, o4))
+    return TimedFourbars(np.array(linkages, np.complex128).reshape(-1, 4), len(dyads.fixed), sliders, proved)
 
 
 def solve_timed(problem: PathProblem, progress: Progress) -> PathResult:
@@ -113,10 +113,10 @@ def _all_of_five(problem: PathProblem, progress: Progress) -> PathResult:
     proved = True
     for n, way in enumerate(ways):
         progress(n / len(ways), "computing all dyads")
-        found = timed_fourbars(points, way)
-        inputs, sliders, proved = inputs + found.inputs, sliders + found.sliders, proved and found.proved
-        fourbars += len(found.joints)
-        for o2, a, b, o4 in given[0] + size * found.joints:
+        solved = timed_fourbars(points, way)
+        inputs, sliders, proved = inputs + solved.inputs, sliders + solved.sliders, proved and solved.proved
+        fourbars += len(solved.joints)
+        for o2, a, b, o4 in given[0] + size * solved.joints:
             harvest.drive(FourbarConfiguration(*map(complex, (o2, a, b, o4, given[0]))))
     progress(1.0, "verified")
     complete = proved and not harvest.unproven
