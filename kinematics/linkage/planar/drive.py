@@ -176,7 +176,7 @@ def margins_of_one(mechanism: Mechanism, input: Real, signs: Signs) -> Real:
     own = np.zeros(count, np.int64)
     none, no_points = np.empty((0, 0, 0, 0)), np.empty((0, 0, 0, 0), np.complex128)
     results = kernels.Sweep(no_points, none, none, sines, margins, np.empty((2, 0, 0), np.bool_))
-    kernels.drive(program.code, own, signs, moved, none, results)
+    kernels.drive(*program.code, own, signs, moved, none, *results)
     return margins[..., 0]
 
 
@@ -193,7 +193,8 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     sines = np.empty((len(program.closing), *flat))
     margins = np.empty((len(program.closing), min(length, 2), *flat))
     masks = np.empty((2, *flat), np.bool_)
-    kernels.drive(program.code, own, signs, moved, given, kernels.Sweep(points, angles, travels, sines, margins, masks))
+    results = kernels.Sweep(points, angles, travels, sines, margins, masks)
+    kernels.drive(*program.code, own, signs, moved, given, *results)
     valid, smooth = masks.reshape(2, *shape)
     joints = dict(zip(mechanism.joints, points.reshape(-1, length, *shape), strict=True))
     closing = dict(zip(program.closing, sines.reshape(-1, *shape), strict=True))
