@@ -36,8 +36,14 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
+from synthesis.kinds.quick_return.alternatives import (
+    LIMIT_TOLERANCE,
+    MAX_LINK_RATIO,
+    RANGE_END_TOLERANCE,
+    shorter_members,
+)
 from synthesis.kinds.quick_return.design import RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
 from synthesis.model.linkage_answer import (
     CouplerPoint,
     FixedPivots,
@@ -46,26 +52,11 @@ from synthesis.model.linkage_answer import (
 )
 from synthesis.model.linkages import skeleton, to_point
 
-LONG = 20.0
-"""Link ratio above which a linkage is given only as far as it is needed to come near to the best transmission angle."""
-
-NEAR = math.radians(0.005)
+NEAR_BEST = math.radians(0.005)
 """How near: half of the hundredth of a degree that anyone can see."""
 
-LONGEST = 1e6
+MAX_COUPLER = 1e6
 """Coupler over crank at most; what is longer differs from the bound by less than rounding."""
-
-RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
-"""Link ratios at which designs with shorter links than the best one's are offered too."""
-
-USABLE = math.radians(10.0)
-"""Such designs are left out where they transmit worse than this."""
-
-EDGE = 1e-9
-"""Radians from the end of the range within which all members are change points, to rounding."""
-
-SLACK = 1e-9
-"""Share by which a link ratio stays below its limit, so that rounding does not carry it beyond."""
 
 
 class Family(NamedTuple):
@@ -88,8 +79,8 @@ class Family(NamedTuple):
     def exists(self) -> bool:
         """Whether it has any member that turns through on one circuit."""
         mean = self.phi - 0.5 * self.psi
-        inside = 0.5 * math.pi + EDGE < mean < 1.5 * math.pi - EDGE
-        return 0.0 < self.psi < math.pi - EDGE and inside
+        inside = 0.5 * math.pi + RANGE_END_TOLERANCE < mean < 1.5 * math.pi - RANGE_END_TOLERANCE
+        return 0.0 < self.psi < math.pi - RANGE_END_TOLERANCE and inside
 
     def lengths(self, rho: float) -> tuple[float, float, float]:
         """Coupler, rocker and ground in lengths of the crank."""
@@ -144,10 +135,10 @@ class Family(NamedTuple):
 
         Near enough to have the ``demanded`` transmission angle (radians), where the best is above it.
         """
-        best = min(self.best(), LONGEST)
-        if self.link_ratio(best) <= LONG:
+        best = min(self.best(), MAX_COUPLER)
+        if self.link_ratio(best) <= MAX_LINK_RATIO:
             return best
-        wanted = self.supremum - NEAR
+        wanted = self.supremum - NEAR_BEST
         if wanted < demanded < self.supremum:
             wanted = min(demanded, self.transmission(best))
         return float(brentq(lambda rho: self.transmission(rho) - wanted, 1.0, best, xtol=1e-12, rtol=1e-12))
@@ -155,10 +146,11 @@ class Family(NamedTuple):
 
 def families(time_ratio: float, swing: float) -> list[Family]:
     """The families with a time ratio and a swing (radians) that have members, φ > π first."""
-    delta = math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
-    found = [Family(math.pi + delta, swing), Family(math.pi - delta, swing)]
-    # With a ratio of 1 the second is the first one's mirror image.
-    return [family for family in found[: 1 if delta == 0.0 else 2] if family.exists]
+    delta = stroke_imbalance(time_ratio)
+    # With a ratio of 1 the second family is the mirror image of the first.
+    signs = (1.0,) if delta == 0.0 else (1.0, -1.0)
+    both = [Family(math.pi + sign * delta, swing) for sign in signs]
+    return [family for family in both if family.exists]
 
 
 def reachable(problem: QuickReturnProblem) -> RatioRange:
@@ -180,18 +172,15 @@ def crank_rockers(problem: QuickReturnProblem) -> list[FourbarMechanism]:
     assert problem.swing_angle is not None
     limit = problem.link_ratio_limit
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
-    found = []
+    mechanisms: list[FourbarMechanism] = []
     for family in families(problem.time_ratio, math.radians(problem.swing_angle)):
         best = family.near_best(demanded)
-        chosen = [best if limit is None else min(best, family.longest(limit * (1.0 - SLACK)))]
-        if chosen[0] <= 1.0:
+        rho = best if limit is None else min(best, family.longest(limit * (1.0 - LIMIT_TOLERANCE)))
+        if rho <= 1.0:
             continue  # every member has a larger link ratio
-        for ratio in RATIOS:
-            rho = family.longest(ratio)
-            if 1.0 < rho < chosen[-1] and family.transmission(rho) >= USABLE:
-                chosen.append(rho)
-        found += [_mechanism(problem, family, rho) for rho in chosen]
-    return found
+        members = [rho, *shorter_members(rho, family.longest, family.transmission)]
+        mechanisms += [_mechanism(problem, family, member) for member in members]
+    return mechanisms
 
 
 def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> FourbarMechanism:

@@ -23,25 +23,16 @@ import math
 
 from scipy.optimize import brentq
 
+from synthesis.kinds.quick_return.alternatives import (
+    LIMIT_TOLERANCE,
+    MAX_LINK_RATIO,
+    RANGE_END_TOLERANCE,
+    shorter_members,
+)
 from synthesis.kinds.quick_return.design import RatioRange
-from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
 from synthesis.model.linkage_answer import SliderCrankMechanism
 from synthesis.model.linkages import slider_crank_mechanism, without_coupler_point
-
-LONG = 20.0
-"""Coupler over crank above which a design is given only where the demanded transmission angle needs it."""
-
-RATIOS = (20.0, 15.0, 10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0)
-"""Coupler over crank of designs that are offered beside the best."""
-
-USABLE = math.radians(10.0)
-"""Such designs are left out where they transmit worse than this."""
-
-EDGE = 1e-9
-"""Radians from the end of the range within which all members are change points, to rounding."""
-
-SLACK = 1e-9
-"""Share by which a link ratio stays below its limit, so that rounding does not carry it beyond."""
 
 
 def reachable(problem: QuickReturnProblem) -> RatioRange:
@@ -51,7 +42,7 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
         least=1.0,
         least_included=True,
         greatest=3.0,
-        reaches=_delta(problem) < 0.5 * math.pi - EDGE,
+        reaches=stroke_imbalance(problem.time_ratio) < 0.5 * math.pi - RANGE_END_TOLERANCE,
         reason="from 3 on the coupler would have to pass square to the slide",
     )
 
@@ -59,21 +50,19 @@ def reachable(problem: QuickReturnProblem) -> RatioRange:
 def offset_slider_cranks(problem: QuickReturnProblem) -> list[SliderCrankMechanism]:
     """The best within the limit of the link ratio, and some with shorter couplers."""
     assert problem.stroke is not None
-    n = math.sin(0.5 * _delta(problem)) ** 2
+    n = math.sin(0.5 * stroke_imbalance(problem.time_ratio)) ** 2
     best = best_ratio(n)
-    chosen = [max(best, 1.0 / LONG)]
+    x = max(best, 1.0 / MAX_LINK_RATIO)
     demanded = math.cos(math.radians(problem.constraints.min_transmission_angle or 0.0))
-    if cosine(best, n) < demanded < cosine(chosen[0], n):
-        chosen = [float(brentq(lambda x: cosine(x, n) - demanded, best, chosen[0], xtol=1e-300, rtol=1e-15))]
+    if cosine(best, n) < demanded < cosine(x, n):
+        x = float(brentq(lambda ratio: cosine(ratio, n) - demanded, best, x, xtol=1e-300, rtol=1e-15))
     limit = problem.constraints.max_link_ratio
     if limit is not None:
-        chosen = [max(chosen[0], (1.0 + SLACK) / limit)]
-    if chosen[0] >= 1.0:
+        x = max(x, (1.0 + LIMIT_TOLERANCE) / limit)
+    if x >= 1.0:
         return []
-    for ratio in RATIOS:
-        if 1.0 / ratio > chosen[-1] and math.acos(min(cosine(1.0 / ratio, n), 1.0)) >= USABLE:
-            chosen.append(1.0 / ratio)
-    return [_mechanism(problem, x, n) for x in chosen]
+    shorter = shorter_members(1.0 / x, float, lambda ratio: math.acos(min(cosine(1.0 / ratio, n), 1.0)))
+    return [_mechanism(problem, member, n) for member in (x, *(1.0 / ratio for ratio in shorter))]
 
 
 def best_ratio(n: float) -> float:
@@ -86,10 +75,6 @@ def cosine(x: float, n: float) -> float:
     """Cosine of the least transmission angle."""
     w = n + (1.0 - n) * x * x
     return x + ((1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w) if w > 0.0 else 0.0)
-
-
-def _delta(problem: QuickReturnProblem) -> float:
-    return math.pi * (problem.time_ratio - 1.0) / (problem.time_ratio + 1.0)
 
 
 def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMechanism:

@@ -45,6 +45,11 @@ SAME_POLE = 1e-6
 """Share of the body's distance from it by which a stated rotopole may miss the computed one: printed digits."""
 
 
+def stroke_imbalance(time_ratio: float) -> float:
+    """δ = π (T − 1)/(T + 1): what the crank turns beyond half a turn in the slow stroke, radians."""
+    return math.pi * (time_ratio - 1.0) / (time_ratio + 1.0)
+
+
 class RockerPosition(Statement):
     """Where a body on the rocker is at a limit: a point of it, and the angle of its line."""
 

@@ -19,12 +19,13 @@ import cmath
 import math
 
 from kinematics.linkage.planar.catalogue import quick_return
+from synthesis.kinds.quick_return.alternatives import LIMIT_TOLERANCE
 from synthesis.kinds.quick_return.design import (
     QuickReturnLinks,
     QuickReturnMechanism,
     RatioRange,
 )
-from synthesis.kinds.quick_return.problem import QuickReturnProblem
+from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
 from synthesis.model.linkage_answer import (
     FixedPivots,
     Line,
@@ -40,9 +41,6 @@ SHAPER_COUPLER = 1.0
 WHITWORTH_COUPLER = 4.0
 """Coupler of a Whitworth in arms, for a transmission angle of 75.5°, where none asks for a longer one."""
 
-SLACK = 1e-9
-"""Share by which a coupler is longer than the demanded transmission angle needs."""
-
 
 def crank_shaper_reachable(problem: QuickReturnProblem) -> RatioRange:
     """Time ratios of crank-shapers."""
@@ -57,7 +55,7 @@ def whitworth_reachable(problem: QuickReturnProblem) -> RatioRange:
 def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
     """The crank-shaper, at the beginning of its slow stroke."""
     assert problem.stroke is not None
-    half = 0.5 * _delta(problem)
+    half = 0.5 * stroke_imbalance(problem.time_ratio)
     sine = math.sin(half)
     rocker = 0.5 * problem.stroke / sine
     ground = REACH * rocker / (1.0 + sine)
@@ -69,7 +67,7 @@ def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
 def whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
     """The Whitworth mechanism, at the beginning of its slow stroke."""
     assert problem.stroke is not None
-    half = 0.5 * _delta(problem)
+    half = 0.5 * stroke_imbalance(problem.time_ratio)
     rocker = 0.5 * problem.stroke
     crank = REACH * rocker / (1.0 + math.sin(half))
     coupler = rocker * max(WHITWORTH_COUPLER, _stretch(problem))
@@ -82,14 +80,10 @@ def _above_one(problem: QuickReturnProblem, name: str, reason: str) -> RatioRang
     )
 
 
-def _delta(problem: QuickReturnProblem) -> float:
-    return math.pi * (problem.time_ratio - 1.0) / (problem.time_ratio + 1.0)
-
-
 def _stretch(problem: QuickReturnProblem) -> float:
     """Coupler over the height that it bridges, for the demanded transmission angle."""
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
-    return (1.0 + SLACK) / math.cos(demanded)
+    return (1.0 + LIMIT_TOLERANCE) / math.cos(demanded)
 
 
 def _mechanism(
