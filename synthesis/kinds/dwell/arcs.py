@@ -22,23 +22,35 @@ Complex = NDArray[np.complex128]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _centred(curve: Complex, start: int, piece: Complex) -> tuple[complex, float, float, float]:
+    """Writes the samples of a piece about their mean; returns the mean and the second moments Sxx, Syy, Sxy."""
+    length = len(piece)
+    mean = 0j
+    for k in range(length):
+        piece[k] = curve[(start + k) % len(curve)]
+        mean += piece[k]
+    mean /= length
+    sxx = syy = sxy = 0.0
+    for k in range(length):
+        piece[k] -= mean
+        z = piece[k]
+        sxx += z.real * z.real
+        syy += z.imag * z.imag
+        sxy += z.real * z.imag
+    return mean, sxx, syy, sxy
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real) -> None:
     """Circle of every piece of ``length`` samples: centre, radius and the largest distance from it, shape (m, N)."""
     count, n = curves.shape
+    piece = np.empty(length, np.complex128)
     for row in range(count):
-        curve = curves[row]
         for start in range(n):
-            mean = 0j
-            for k in range(length):
-                mean += curve[(start + k) % n]
-            mean /= length
-            sxx = syy = sxy = sxz = syz = 0.0
-            for k in range(length):
-                z = curve[(start + k) % n] - mean
+            mean, sxx, syy, sxy = _centred(curves[row], start, piece)
+            sxz = syz = 0.0
+            for z in piece:
                 square = z.real * z.real + z.imag * z.imag
-                sxx += z.real * z.real
-                syy += z.imag * z.imag
-                sxy += z.real * z.imag
                 sxz += z.real * square
                 syz += z.imag * square
             determinant = sxx * syy - sxy * sxy
@@ -47,9 +59,9 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
             centre = complex(x, y)
             radius = math.sqrt(x * x + y * y + (sxx + syy) / length)
             nearest, farthest = np.inf, 0.0
-            for k in range(length):
-                z = curve[(start + k) % n] - mean - centre
-                square = z.real * z.real + z.imag * z.imag
+            for z in piece:
+                arm = z - centre
+                square = arm.real * arm.real + arm.imag * arm.imag
                 nearest, farthest = min(nearest, square), max(farthest, square)
             centres[row, start] = mean + centre
             radii[row, start] = radius
@@ -60,23 +72,13 @@ def arcs(curves: Complex, length: int, centres: Complex, radii: Real, off: Real)
 def lines(curves: Complex, length: int, points: Complex, directions: Real, off: Real) -> None:
     """Line of every piece of ``length`` samples: a point, the angle, and the largest distance from it, shape (m, N)."""
     count, n = curves.shape
+    piece = np.empty(length, np.complex128)
     for row in range(count):
-        curve = curves[row]
         for start in range(n):
-            mean = 0j
-            for k in range(length):
-                mean += curve[(start + k) % n]
-            mean /= length
-            sxx = syy = sxy = 0.0
-            for k in range(length):
-                z = curve[(start + k) % n] - mean
-                sxx += z.real * z.real
-                syy += z.imag * z.imag
-                sxy += z.real * z.imag
+            mean, sxx, syy, sxy = _centred(curves[row], start, piece)
             angle = 0.5 * math.atan2(2.0 * sxy, sxx - syy)
             farthest = 0.0
-            for k in range(length):
-                z = curve[(start + k) % n] - mean
+            for z in piece:
                 farthest = max(farthest, abs(z.imag * math.cos(angle) - z.real * math.sin(angle)))
             points[row, start] = mean
             directions[row, start] = angle
