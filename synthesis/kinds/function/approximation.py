@@ -220,8 +220,7 @@ def _places(task: FunctionTask, count: int, rng: np.random.Generator) -> tuple[R
     moved = JITTER * rng.uniform(-1.0, 1.0, (SETS, count))
     moved[0] = 0.0
     shares = 0.5 - 0.5 * np.cos((2.0 * np.arange(count) + 1.0 + moved) * math.pi / (2.0 * count))
-    low, high = function.interval
-    return shares, function.share(low + (high - low) * shares)
+    return shares, function.share_along(shares)
 
 
 def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) -> Real:
@@ -263,8 +262,7 @@ class _Descent:
             self.dense = self.coarse
         else:
             shares = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, DENSE))
-            low, high = function.interval
-            self.dense = Generators(task.problem.slides, shares, function.share(low + (high - low) * shares))
+            self.dense = Generators(task.problem.slides, shares, function.share_along(shares))
         self.free = task.free
         # With the output's range open its errors are shares of it; else the least range would be the best.
         self.relative = bool(self.free[6])

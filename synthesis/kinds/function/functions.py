@@ -111,6 +111,11 @@ class FunctionStatement(Statement):
         first = float(self.values(np.array([self.interval[0]]))[0])
         return (self.values(x) - first) / (self.direction * (high - low))
 
+    def share_along(self, shares: Real) -> Real:
+        """The same at places that are stated as shares of the interval of x."""
+        low, high = self.interval
+        return self.share(low + (high - low) * shares)
+
     @property
     def direction(self) -> float:
         """1 where y first grows, −1 where it first falls."""

@@ -57,10 +57,9 @@ def levelled(task: FunctionTask, generators: Real, signs: Real) -> tuple[Real, R
     count = 3 + sum(zero is None for zero in task.zeros)
     if function is None or not len(generators):
         return generators[:0], signs[:0]
-    low, high = function.interval
     angles = np.linspace(0.0, math.pi, GRID)
     shares = 0.5 - 0.5 * np.cos(angles)
-    grid = Generators(task.problem.slides, shares, function.share(low + (high - low) * shares))
+    grid = Generators(task.problem.slides, shares, function.share_along(shares))
     places, begun = _zeros(grid.errors(generators, signs), angles, count)
     generators, signs = generators[begun], signs[begun]
     reached, theirs, places, least = _level(task, grid, angles, generators, signs, places)
@@ -94,7 +93,6 @@ def _level(
     """Generators and signs that were reached from places (k, count), with their places and greatest errors."""
     function = task.problem.function
     assert function is not None
-    low, high = function.interval
     count = places.shape[1]
     met = places.copy()
     best, least = generators.copy(), np.full(len(generators), np.inf)
@@ -104,7 +102,7 @@ def _level(
         moved = np.concatenate([places[:, None], places[:, None] + DIFFERENCE * np.eye(count)], axis=1)
         sets = moved.reshape(-1, count)
         u = 0.5 - 0.5 * np.cos(sets)
-        y = function.share(low + (high - low) * u)
+        y = function.share_along(u)
         around = np.repeat(generators, count + 1, axis=0)
         found = _nearest(task, around, around[:, 5:6] * u, around[:, 6:7] * y)
         errors = np.abs(grid.errors(found, np.repeat(signs, count + 1)))

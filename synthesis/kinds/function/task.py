@@ -100,11 +100,10 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
     else:
         function = problem.function
         assert function is not None
-        low, high = function.interval
         inputs = problem.precision_shares if problem.aim == "precision" else np.linspace(0.0, 1.0, 5)
         dense = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, SAMPLES))
-        outputs = function.share(low + (high - low) * inputs)
-        samples = dense, function.share(low + (high - low) * dense)
+        outputs = function.share_along(inputs)
+        samples = dense, function.share_along(dense)
         unit = abs(problem.span("output") or 1.0) if problem.slides else 1.0
         choices = (_ranges(problem, "input"), _ranges(problem, "output"))
         begins = problem.first_value("input"), problem.first_value("output")
