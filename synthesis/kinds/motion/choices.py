@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.motion import burmester
+from synthesis.kinds.motion.draws import distances, points_around
 from synthesis.kinds.motion.dyads import (
     FAR,
     DyadConditions,
@@ -43,12 +44,10 @@ from synthesis.kinds.motion.task import (
     Complex,
     MotionTask,
     Real,
+    stated_pivot,
 )
 from synthesis.model.linkage_statement import Constraints, Region
 from synthesis.model.statement import PartialPoint
-
-NEAR_REACH, FAR_REACH = 0.05, 6.0
-"""Free pivots are drawn between these distances, in task sizes; beyond them links get too short or too long."""
 
 CURVE_REACH = 50.0
 """Dyads of Burmester's curves with a pivot farther away than this many task sizes are no candidates."""
@@ -108,9 +107,8 @@ class Cloud(NamedTuple):
 def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadChoices) -> DyadConditions:
     """The client's choices of one side in task coordinates and radians."""
 
-    def pivot(point: PartialPoint | None) -> Complex | None:
-        whole = whole_point(point)
-        return None if whole is None else np.asarray(task.to_task(whole))
+    def array(pivot: complex | None) -> Complex | None:
+        return None if pivot is None else np.asarray(pivot)
 
     def line(point: PartialPoint | None) -> tuple[Line, ...]:
         if point is None or whole_point(point) is not None:
@@ -124,11 +122,10 @@ def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadCho
 
     vector = choices.coupler_vector
     length = None if vector is None or vector.length is None else np.asarray(vector.length / task.size)
-    moving = pivot(choices.moving_pivot)
     if vector is not None and vector.length is not None and vector.angle is not None:
-        moving = np.asarray(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
-        vector = length = None
-    fixed, fixed_lines = pivot(choices.fixed_pivot), line(choices.fixed_pivot)
+        vector = length = None  # together they state the moving pivot
+    moving = array(stated_pivot(task, choices, fixed=False))
+    fixed, fixed_lines = array(stated_pivot(task, choices, fixed=True)), line(choices.fixed_pivot)
     if problem.ground_line is not None and fixed is None:
         normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
         ground = Line(normal, -problem.ground_line.offset(task.origin) / task.size)
@@ -145,10 +142,12 @@ def stated_conditions(task: MotionTask, problem: MotionProblem, choices: DyadCho
     )
 
 
-def _crossing(one: Line, other: Line) -> Complex:
+def _crossing(first: Line, second: Line) -> Complex:
     """Where two lines meet that are not parallel."""
     return np.asarray(
-        1j * (other.offset * one.normal - one.offset * other.normal) / (one.normal.conjugate() * other.normal).imag
+        1j
+        * (second.offset * first.normal - first.offset * second.normal)
+        / (first.normal.conjugate() * second.normal).imag
     )
 
 
@@ -222,7 +221,7 @@ def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.ra
     """Dyads of a family, met by random lines on which a pivot is to lie."""
     fixed, moving = [], []
     for k in range(SECTIONS):
-        centre = complex(_around(task.points.mean(keepdims=True), rng, 1)[0])
+        centre = complex(points_around(task.points.mean(keepdims=True), rng, 1)[0])
         normal = cmath.rect(1.0, rng.uniform(-math.pi, math.pi))
         line = Line(normal, (normal.conjugate() * centre).real)
         lines = (
@@ -247,8 +246,7 @@ def _of_curve(
         return _of_random_sections(task, conditions, rng)
     dyads = burmester.cloud(curve, curve_window(task), count, float(rng.uniform()))
     dyads = settled(task, dyads)
-    good = _within(task, constraints.fixed_pivot_region, dyads.fixed)
-    good &= _within(task, constraints.moving_pivot_region, dyads.moving)
+    good = _in_regions(task, constraints, dyads)
     text = "No dyad of the side has its pivots within reach and in the regions that are given."
     return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
 
@@ -269,8 +267,7 @@ def _of_draws(
         start = _sampled_pivots(task, constraints, rng, count)
         for pinned, share in _pinned(task, conditions, start, constraints, rng):
             dyads, found = solve_dyads(task, pinned, share)
-            found &= _within(task, constraints.fixed_pivot_region, dyads.fixed)
-            found &= _within(task, constraints.moving_pivot_region, dyads.moving)
+            found &= _in_regions(task, constraints, dyads)
             fixed.append(dyads.fixed[found])
             moving.append(dyads.moving[found])
         if sum(map(len, fixed)) >= count // 2:
@@ -279,11 +276,10 @@ def _of_draws(
     return Cloud(cloud, True, False, "No dyad was met that satisfies the choices and regions of the side.")
 
 
-def _within(task: MotionTask, region: Region | None, points: Complex) -> NDArray[np.bool_]:
-    """Which points, in task coordinates, lie in a region of the problem's coordinates."""
-    if region is None:
-        return np.ones(points.shape, np.bool_)
-    return np.array([region.contains(z) for z in task.origin + points * task.size], np.bool_)
+def _in_regions(task: MotionTask, constraints: Constraints, dyads: Dyads) -> NDArray[np.bool_]:
+    """Which dyads have both pivots in the regions for them."""
+    fixed = task.within(constraints.fixed_pivot_region, dyads.fixed)
+    return fixed & task.within(constraints.moving_pivot_region, dyads.moving)
 
 
 def why_no_dyads(task: MotionTask) -> str:
@@ -342,12 +338,13 @@ def _of_family(
             text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; a slider stands for that."
             return Cloud(_NO_DYADS, False, False, text)
         return _forwards(task, conditions, family.dyad, sampled=False)
-    distance = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(FAR_REACH), (count, free)))
+    distance = distances(rng, count, free)
     moved = (distance * rng.choice([-1.0, 1.0], (count, free))) @ family.directions
-    fixed = family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1])
-    moving = family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
-    good = _within(task, constraints.fixed_pivot_region, fixed) & _within(task, constraints.moving_pivot_region, moving)
-    return _forwards(task, conditions, Dyads(fixed[good], moving[good]), sampled=True)
+    dyads = Dyads(
+        family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1]), family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
+    )
+    good = _in_regions(task, constraints, dyads)
+    return _forwards(task, conditions, Dyads(dyads.fixed[good], dyads.moving[good]), sampled=True)
 
 
 def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool) -> Cloud:
@@ -393,14 +390,9 @@ def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.G
     fixed = _filled(task, constraints.fixed_pivot_region, rng, count)
     moving = _filled(task, constraints.moving_pivot_region, rng, count)
     return Dyads(
-        _around(middle, rng, count) if fixed is None else fixed,
-        _around(task.points[:1], rng, count) if moving is None else moving,
+        points_around(middle, rng, count) if fixed is None else fixed,
+        points_around(task.points[:1], rng, count) if moving is None else moving,
     )
-
-
-def _around(centre: Complex, rng: np.random.Generator, count: int, reach: float = FAR_REACH) -> Complex:
-    radius = np.exp(rng.uniform(math.log(NEAR_REACH), math.log(reach), count))
-    return np.asarray(centre + radius * np.exp(1j * rng.uniform(-np.pi, np.pi, count)))
 
 
 def _filled(task: MotionTask, region: Region | None, rng: np.random.Generator, count: int) -> Complex | None:

@@ -21,8 +21,8 @@ from synthesis.kinds.motion.constraint_manifold import (
 )
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
 from synthesis.kinds.motion.pose_fit import Demands, Mask
-from synthesis.kinds.motion.problem import DyadChoices, whole_point
-from synthesis.kinds.motion.task import MotionTask
+from synthesis.kinds.motion.problem import DyadChoices
+from synthesis.kinds.motion.task import MotionTask, stated_pivot
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -77,16 +77,10 @@ def as_slider(start: Start) -> Start:
 
 def _stated(task: MotionTask, choices: DyadChoices) -> tuple[bool, complex] | None:
     """The pivot that is stated: whether it is the fixed one, and where it is in task coordinates."""
-    fixed, moving = whole_point(choices.fixed_pivot), whole_point(choices.moving_pivot)
+    fixed, moving = (stated_pivot(task, choices, fixed=side) for side in (True, False))
     if fixed is not None:
-        return True, task.to_task(fixed)
-    if moving is not None:
-        return False, task.to_task(moving)
-    vector = choices.coupler_vector
-    if vector is not None and vector.length is not None and vector.angle is not None:
-        angle = math.radians(vector.angle)
-        return False, -vector.length / task.size * complex(math.cos(angle), math.sin(angle))
-    return None
+        return True, fixed
+    return None if moving is None else (False, moving)
 
 
 def _images(demands: Demands, inverted: bool, point: complex) -> Complex:

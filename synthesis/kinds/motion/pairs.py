@@ -14,7 +14,7 @@ import numpy as np
 from synthesis.kinds.motion.choices import Cloud, side_dyads
 from synthesis.kinds.motion.demanded import Demanded
 from synthesis.kinds.motion.dyads import Dyads
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
 from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.task import MotionTask, motion_task
@@ -96,11 +96,8 @@ class Pairs:
 
     def _pivots(self, side: DyadChoices, dyads: Dyads, n: int) -> tuple[complex, complex]:
         """Fixed and moving pivot of a dyad in the problem's coordinates; those that the client stated, as stated."""
-        stated = side.fixed_pivot, side.moving_pivot
-        computed = self.task.to_problem(complex(dyads.fixed[n])), self.task.to_problem(complex(dyads.moving[n]))
-        wholes = map(whole_point, stated)
-        fixed, moving = (z if whole is None else whole for whole, z in zip(wholes, computed, strict=True))
-        return fixed, moving
+        fixed = self.task.pivot(side.fixed_pivot, complex(dyads.fixed[n]))
+        return fixed, self.task.pivot(side.moving_pivot, complex(dyads.moving[n]))
 
     def screened(self, constraints: Constraints, least_transmission_angle: float) -> Screening:
         """Verdicts on all pairs."""

@@ -27,7 +27,6 @@ from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.problem import (
     DyadChoices,
     MotionProblem,
-    whole_point,
 )
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.sliders import Sliders, sliders
@@ -99,7 +98,9 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
         return _none(problem, links.reason.replace("the side", "the side with pins"), complete=links.complete)
     if found.sampled and not links.sampled:
         found = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
-    within = _inside(problem, task, found, kind)
+    constraints = problem.constraints
+    region = constraints.moving_pivot_region if kind == "PR" else constraints.fixed_pivot_region
+    within = task.within(region, found.points)
     found = found._replace(points=found.points[within], angles=found.angles[within])
     return slider_linkages(problem, task, links.dyads, found, kind, progress)
 
@@ -164,15 +165,6 @@ def _asking_for_sliders(problem: MotionProblem) -> Iterator[tuple[Literal["PR", 
             asked = problem.model_copy(update={name: choices.model_copy(update={"dyad": kind})})
             if not asked.contradictions():
                 yield kind, asked
-
-
-def _inside(problem: MotionProblem, task: MotionTask, found: Sliders, kind: str) -> NDArray[np.bool_]:
-    """Which sliders have their pivot in the client's region for it."""
-    constraints = problem.constraints
-    region = constraints.moving_pivot_region if kind == "PR" else constraints.fixed_pivot_region
-    if region is None:
-        return np.ones(len(found.points), np.bool_)
-    return np.array([region.contains(z) for z in task.origin + found.points * task.size], np.bool_)
 
 
 def _none(problem: MotionProblem, reason: str, *, complete: bool) -> MotionResult:
@@ -365,14 +357,12 @@ def _mechanism(
     j: int,
 ) -> LinkageMechanism:
     """The linkage of a link and a slider in the problem's coordinates; what the client stated as it was stated."""
-    side, other = problem.input_side, problem.output_side
+    side, slider_side = problem.input_side, problem.output_side
     if driving:
-        side, other = other, side
-    fixed, moving = whole_point(side.fixed_pivot), whole_point(side.moving_pivot)
-    o2 = task.to_problem(complex(links.fixed[i])) if fixed is None else fixed
-    a = task.to_problem(complex(links.moving[i])) if moving is None else moving
-    point = whole_point(other.moving_pivot if kind == "PR" else other.fixed_pivot)
-    z = task.to_problem(complex(sliders.points[j])) if point is None else point
+        side, slider_side = slider_side, side
+    o2 = task.pivot(side.fixed_pivot, complex(links.fixed[i]))
+    a = task.pivot(side.moving_pivot, complex(links.moving[i]))
+    z = task.pivot(slider_side.moving_pivot if kind == "PR" else slider_side.fixed_pivot, complex(sliders.points[j]))
     angle = float(sliders.angles[j])
     if kind == "PR":
         return slider_crank_mechanism(o2, a, z, angle, task.origin, driven_by="slider" if driving else "crank")

@@ -19,13 +19,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from synthesis.kinds.motion.problem import DyadChoices, whole_point
+from synthesis.kinds.motion.draws import distances, points_around
+from synthesis.kinds.motion.problem import DyadChoices
 from synthesis.kinds.motion.task import (
     Complex,
     MotionTask,
     Real,
+    stated_pivot,
 )
 
 IN_LINE = 1e-9
@@ -33,9 +34,6 @@ IN_LINE = 1e-9
 
 TURNED = 1e-9
 """|b_k| below which two positions count as parallel."""
-
-NEAR, FAR = 0.05, 6.0
-"""Points are drawn between these distances from the body or from the middle of the positions, in task sizes."""
 
 STRAIGHT = 1e-9
 """Distance of the line of y from the origin below which the circle of points is a line through the pole."""
@@ -74,7 +72,7 @@ def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.r
         RP instead of PR.
     """
     images = _images(task, inverted)
-    stated = stated_point(task, choices, inverted=inverted)
+    stated = stated_pivot(task, choices, fixed=inverted)
     angle = None if choices.slide_angle is None else math.radians(choices.slide_angle)
     name = "fixed point" if inverted else "point of the body"
     if stated is not None:
@@ -97,17 +95,6 @@ def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.r
     return Sliders(points[good], angles[good], sampled, f"No {name} has its images in all positions on one line.")
 
 
-def stated_point(task: MotionTask, choices: DyadChoices, *, inverted: bool) -> complex | None:
-    """The point that the client states, in task coordinates."""
-    stated = whole_point(choices.fixed_pivot if inverted else choices.moving_pivot)
-    if stated is not None:
-        return task.to_task(stated)
-    vector = choices.coupler_vector
-    if inverted or vector is None or vector.length is None or vector.angle is None:
-        return None
-    return complex(task.points[0] - vector.length / task.size * np.exp(1j * math.radians(vector.angle)))
-
-
 def _images(task: MotionTask, inverted: bool) -> _Images:
     t = np.conj(task.turns) if inverted else task.turns
     s = task.points[0] - t * task.points if inverted else task.points - t * task.points[0]
@@ -120,14 +107,10 @@ def _with_angle(images: _Images, angle: float, rng: np.random.Generator, count: 
     # Im(turn (a + b z)) = 0 with z = x + iy
     matrix = np.stack([(turn * images.b).imag, (turn * images.b).real], axis=1)
     right = -(turn * images.a).imag
-    u, s, vh = np.linalg.svd(matrix, full_matrices=True)
-    rank = int(np.sum(s > TURNED))
-    x = (vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ right)
-    point = complex(x[0], x[1])
-    if rank == 2:
+    point, free = _solutions(matrix, right)
+    if not len(free):
         return np.array([point]), False
-    free = vh[rank:] @ np.array([1.0, 1j])
-    spread = _distances(rng, count, len(free)) * rng.choice([-1.0, 1.0], (count, len(free)))
+    spread = distances(rng, count, len(free)) * rng.choice([-1.0, 1.0], (count, len(free)))
     return np.asarray(point + spread @ free), True
 
 
@@ -137,36 +120,37 @@ def _any_angle(
     """Points whose images are in line, whatever the line's direction."""
     n = len(images.a) + 1
     centre = task.points.mean() if inverted else task.points[0]
-    around = centre + _distances(rng, count, 1)[:, 0] * np.exp(1j * rng.uniform(-np.pi, np.pi, count))
+    around = points_around(centre, rng, count)
     j = int(np.abs(images.b).argmax())
     if n == 2 or abs(images.b[j]) <= TURNED:
-        return np.asarray(around), True
+        return around, True
     others = [k for k in range(n - 1) if k != j]
     pole = -images.a[j] / images.b[j]
     e, b = images.a[others] + images.b[others] * pole, images.b[others]
     factor = np.conj(images.b[j]) * e
     matrix = np.stack([factor.imag, factor.real], axis=1)  # Im(factor y), y = y1 + i y2
     right = -(np.conj(images.b[j]) * b).imag
-    u, s, vh = np.linalg.svd(matrix, full_matrices=True)
-    rank = int(np.sum(s > TURNED))
-    if rank == 0:
-        return (np.asarray(around), True) if np.abs(right).max() <= TURNED else (np.empty(0, np.complex128), False)
-    found = (vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ right)
-    y = complex(found[0], found[1])
-    if rank == 2:
+    y, free = _solutions(matrix, right)
+    if len(free) == 2:
+        return (around, True) if np.abs(right).max() <= TURNED else (np.empty(0, np.complex128), False)
+    if not len(free):
         return (np.array([pole + 1.0 / y]) if abs(y) > STRAIGHT else np.empty(0, np.complex128)), False
-    direction = complex(vh[1] @ np.array([1.0, 1j]))
+    direction = complex(free[0])
     if abs(y) <= STRAIGHT:
-        spread = _distances(rng, count, 1)[:, 0] * rng.choice([-1.0, 1.0], count)
+        spread = distances(rng, count) * rng.choice([-1.0, 1.0], count)
         return np.asarray(pole + spread * direction.conjugate()), True
     # u runs on a circle through the pole with the diameter 1/|y|: evenly, and densely near the body.
     turned = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count - count // 2)
-    distance = _distances(rng, count // 2, 1)[:, 0]
+    distance = distances(rng, count // 2)
     distance = distance[distance * abs(y) < 1.0]
     close = np.arccos(distance * abs(y)) * rng.choice([-1.0, 1.0], len(distance))
     along = np.concatenate([turned, close])
     return np.asarray(pole + np.cos(along) * np.exp(-1j * along) / y), True
 
 
-def _distances(rng: np.random.Generator, count: int, columns: int) -> NDArray[np.float64]:
-    return np.exp(rng.uniform(math.log(NEAR), math.log(FAR), (count, columns)))
+def _solutions(matrix: Real, right: Real) -> tuple[complex, Complex]:
+    """Least solution of M (x, y) = r as x + iy, and unit directions, none to two, in which it may be moved."""
+    u, s, vh = np.linalg.svd(matrix, full_matrices=True)
+    rank = int(np.sum(s > TURNED))
+    x = (vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ right)
+    return complex(x[0], x[1]), vh[rank:] @ np.array([1.0, 1j])

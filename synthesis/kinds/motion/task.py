@@ -6,12 +6,16 @@ tolerances are relative to the problem.
 
 from __future__ import annotations
 
+import cmath
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.model.linkage_statement import Region
+from synthesis.model.statement import PartialPoint
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -47,6 +51,29 @@ class MotionTask(NamedTuple):
     def to_problem(self, z: complex) -> complex:
         """A point in task coordinates in the problem's."""
         return self.origin + z * self.size
+
+    def within(self, region: Region | None, points: Complex) -> NDArray[np.bool_]:
+        """Which points, in task coordinates, lie in a region of the problem's coordinates; all where there is none."""
+        if region is None:
+            return np.ones(points.shape, np.bool_)
+        return np.array([region.contains(z) for z in self.origin + points * self.size], np.bool_)
+
+    def pivot(self, stated: PartialPoint | None, computed: complex) -> complex:
+        """A pivot in the problem's coordinates: where the client stated it, to the last digit, or as computed."""
+        whole = whole_point(stated)
+        return self.to_problem(computed) if whole is None else whole
+
+
+def stated_pivot(task: MotionTask, choices: DyadChoices, *, fixed: bool) -> complex | None:
+    """The fixed or the moving pivot that the client states, in task coordinates.
+
+    A coupler vector of stated length and angle states the moving pivot too.
+    """
+    whole = whole_point(choices.fixed_pivot if fixed else choices.moving_pivot)
+    vector = choices.coupler_vector
+    if not fixed and vector is not None and vector.length is not None and vector.angle is not None:
+        return complex(task.points[0] - cmath.rect(vector.length / task.size, math.radians(vector.angle)))
+    return None if whole is None else task.to_task(whole)
 
 
 def motion_task(problem: MotionProblem) -> MotionTask:
