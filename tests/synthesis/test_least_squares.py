@@ -17,7 +17,7 @@ from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.fit_starts import starts
 from synthesis.kinds.motion.least_squares import fit_demands
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
-from synthesis.kinds.motion.pose_fit import Demands, PoseFit
+from synthesis.kinds.motion.pose_fit import PoseDemands, PoseFit
 from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
@@ -272,7 +272,7 @@ def test_the_gradient_agrees_with_differences() -> None:
     tolerances[6] = [1.0, 0.0, 1.0]
     found = [of_pivots(task.to_task(s.fixed_pivot), task.to_task(s.moving_pivot))
              for s in (planted.input_side, planted.output_side)]  # fmt: skip
-    fitting = PoseFit(Demands(demands.poses, tolerances), (found[0][0], found[1][0]))
+    fitting = PoseFit(PoseDemands(demands.poses, tolerances), (found[0][0], found[1][0]))
     x = fitting.start(found[0][1], found[1][1])
     gradient = fitting.gradient(x)
     step = 1e-6

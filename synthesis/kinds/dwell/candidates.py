@@ -1,8 +1,8 @@
 """Starts for dwell sixbars: many coupler curves, their arcs and lines, and outputs that rest on them.
 
-Fourbars are drawn at random among the crank-rockers, half of them symmetric (coupler = rocker = B P), whose curves have
-arcs of equal radius in pairs. The pieces that are closest to arcs or lines get outputs in all directions; each of these
-is driven through the turn on a grid, and the most promising are refined.
+Crank-rockers are drawn at random, half of them symmetric (coupler = rocker = B P): their coupler curves have pairs of
+arcs of equal radius. The pieces that are nearest to arcs or lines get outputs in all directions. Each sixbar is driven
+through the turn on a grid of crank angles, and those with the best scores are refined.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ DIRECTIONS, REACHES = 24, 10
 """Directions of an output from where its pin rests, and its distances."""
 
 LONG = math.radians(60.0)
-"""Pieces for two dwells are at least this long: shorter ones lie near arcs everywhere, and tell nothing."""
+"""Length of the pieces for two dwells, at least: any shorter piece is near to some arc, so that all would pass."""
 
 FEWEST = 4
 """Samples of a piece at least: three always lie on a circle."""

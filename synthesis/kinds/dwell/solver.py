@@ -65,6 +65,9 @@ SLACK = 1e-4
 WAY_STEPS = 30
 """Secant steps to the demanded way at most; five are usual."""
 
+WAY_TOLERANCE, MAX_WAY_ERROR = 1e-11, 1e-8
+"""Relative errors of the way at which the secant method has converged, and with which its last step is still used."""
+
 KINDS: dict[tuple[str, str], Kind] = {
     ("pseudo_arc", "rocker"): "rocker",
     ("pseudo_arc", "slider"): "slider",
@@ -167,14 +170,14 @@ def _with_way(sixbar: _Sixbar, way: float) -> _Sixbar | None:
         off = _way(made) / way - 1.0
         if not math.isfinite(off):
             return None
-        if abs(off) < 1e-11:
+        if abs(off) < WAY_TOLERANCE:
             return made
         slope = (off - before[1]) / (factor - before[0]) if before[0] else -1.0
         if slope == 0.0:
             return None
         before, factor = (factor, off), factor - off / slope
         made = _moved(sixbar, factor)
-    return made if abs(off) < 1e-8 else None
+    return made if abs(off) < MAX_WAY_ERROR else None
 
 
 def _moved(sixbar: _Sixbar, factor: float) -> _Sixbar:

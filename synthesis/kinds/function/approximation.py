@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from synthesis.kinds.function.levelling import levelled
-from synthesis.kinds.function.limits import Limits
+from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.precision import family, many_exact
 from synthesis.kinds.function.structural_error import (
     ERROR,
@@ -72,7 +72,19 @@ TRUST = 0.3
 """First bound on a step: a third in length, 17 degrees."""
 
 SETTLED = 1e-8
-"""Relative improvement at which a descent has arrived."""
+"""Relative improvement of the merit below which a descent has converged."""
+
+MIN_TRUST = 1e-11
+"""Bound on a step below which rounding decides whether it is an improvement: the descent has converged."""
+
+UNREACHABLE_COST = 1e6
+"""Relative cost of a generator that does not reach all of the range; the start's is 1."""
+
+COST_TOLERANCE = 1e-13
+"""Relative change of the cost at which sequential quadratic programming has converged: nearly rounding."""
+
+LIMIT_TOLERANCE = 1e-9
+"""Violation of a limit with which a generator still counts as within all."""
 
 PENALTY = 10.0
 """What breaking a limit costs, radians of error for a unit of it."""
@@ -93,7 +105,7 @@ class Approximation(NamedTuple):
     arrived: bool
 
 
-class Found(NamedTuple):
+class Approximations(NamedTuple):
     """Local optima, best first, and how many starts were judged and improved."""
 
     optima: list[Approximation]
@@ -101,14 +113,14 @@ class Found(NamedTuple):
     improved: int
 
 
-def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progress) -> Found:
+def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progress) -> Approximations:
     """The best approximations that are reached from many starts."""
-    limits = Limits(task)
+    limits = GeneratorLimits(task)
     descent = _Descent(task, limits)
     pool, signs = _starts(task, limits, rng)
     progress(0.2, f"{len(pool)} starts")
     if not len(pool):
-        return Found([], 0, 0)
+        return Approximations([], 0, 0)
     nearest = np.argsort(descent.sizes(pool, signs))[:LEVELLED]
     level, theirs = levelled(task, pool[nearest], signs[nearest])
     judged = len(pool)
@@ -120,18 +132,18 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
     effort = FEW if inside else MANY
     chosen = _best_distinct(descent, pool, signs, effort.starts)
     improve = descent.minimax if task.problem.aim == "minimax" else descent.least_squares
-    first = []
+    rough = []
     for n, j in enumerate(chosen):
         progress(0.2 + 0.3 * n / len(chosen), f"start {n + 1} of {len(chosen)}")
-        first.append(improve(pool[j], float(signs[j]), effort.first_rounds))
-    first.sort(key=lambda one: one.error)
+        rough.append(improve(pool[j], float(signs[j]), effort.first_rounds))
+    rough.sort(key=lambda optimum: optimum.error)
     optima: list[Approximation] = []
-    for n, one in enumerate(first[: effort.kept]):
+    for n, start in enumerate(rough[: effort.kept]):
         progress(0.5 + 0.4 * n / effort.kept, f"candidate {n + 1}")
-        refined = improve(one.generator, one.sign, effort.rounds)
+        refined = improve(start.generator, start.sign, effort.rounds)
         if not any(_same(refined, other) for other in optima):
             optima.append(refined)
-    optima.sort(key=lambda one: one.error)
+    optima.sort(key=lambda optimum: optimum.error)
     if optima and not optima[0].arrived:
         # The best is on its way still: on to the end, and from where its errors are level if that is better.
         best = optima[0]
@@ -140,8 +152,8 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
         nearest = np.argsort(descent.sizes(level, theirs))[:ONWARD]
         onward = [(best.generator, best.sign), *zip(level[nearest], theirs[nearest], strict=True)]
         again = [improve(generator, float(sign), MANY.rounds) for generator, sign in onward]
-        optima[0] = min([best, *again], key=lambda one: one.error)
-    return Found([one for one in optima if math.isfinite(one.error)], judged, len(chosen))
+        optima[0] = min([best, *again], key=lambda optimum: optimum.error)
+    return Approximations([optimum for optimum in optima if math.isfinite(optimum.error)], judged, len(chosen))
 
 
 def _same(one: Approximation, other: Approximation) -> bool:
@@ -151,7 +163,7 @@ def _same(one: Approximation, other: Approximation) -> bool:
     return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator))))
 
 
-def _starts(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> tuple[Real, Real]:
+def _starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> tuple[Real, Real]:
     """Generators that meet some places exactly, with their assemblies."""
     most = 3 + sum(zero is None for zero in task.zeros)
     found = []
@@ -185,7 +197,7 @@ def _starts(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> tup
     return np.concatenate([pool, *more]), np.concatenate([signs, np.ones(len(turning)), -np.ones(len(turning))])
 
 
-def _turning(task: FunctionTask, limits: Limits, rng: np.random.Generator) -> Real:
+def _turning(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> Real:
     """Random generators whose link turns through that is to."""
     reach = 0.5 * math.log(min(limits.ratio, WIDEST))
     drawn = np.ones((DRAWN, STEPS))
@@ -254,7 +266,7 @@ def _best_distinct(descent: _Descent, pool: Real, signs: Real, count: int) -> li
 class _Descent:
     """Improves one generator at a time."""
 
-    def __init__(self, task: FunctionTask, limits: Limits) -> None:
+    def __init__(self, task: FunctionTask, limits: GeneratorLimits) -> None:
         self.task, self.limits = task, limits
         self.coarse = task.samples()
         function = task.problem.function
@@ -333,7 +345,7 @@ class _Descent:
                 trust *= 2.0
             elif share < 0.25:
                 trust *= 0.25
-            if trust < 1e-11:
+            if trust < MIN_TRUST:
                 arrived = True
                 break
         return Approximation(at, sign, merit, arrived)
@@ -393,7 +405,7 @@ class _Descent:
             errors = self._errors(self.dense, here, sign)
             known = np.isfinite(errors)
             if not known.all():
-                return 1e6, np.zeros(len(free))
+                return UNREACHABLE_COST, np.zeros(len(free))
             slopes = self._slopes(self.dense, here, errors)[:, free]
             return float(weights @ errors**2) / unit, 2.0 * (weights * errors) @ slopes / unit
 
@@ -411,12 +423,12 @@ class _Descent:
             method="SLSQP",
             bounds=bounds,
             constraints=[limits],
-            options={"maxiter": 3 * rounds, "ftol": 1e-13},
+            options={"maxiter": 3 * rounds, "ftol": COST_TOLERANCE},
         )
         found = whole(done.x)
         errors = self._errors(self.dense, found, sign)
         broken = float(self.limits.values(found)[0].max(initial=0.0))
-        if not np.isfinite(errors).all() or (done.fun > 1.0 and broken > 1e-9):
+        if not np.isfinite(errors).all() or (done.fun > 1.0 and broken > LIMIT_TOLERANCE):
             found, errors, broken = at, begun, float(self.limits.values(at)[0].max(initial=0.0))
         error = math.sqrt(float(weights @ errors**2)) + PENALTY * max(broken, 0.0)
         return Approximation(found, sign, error, bool(done.success))

@@ -17,21 +17,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.function.limits import Limits
+from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.task import FunctionTask
 from synthesis.numerics.convex import minimized, modeling
 
 Real = NDArray[np.float64]
 
 
-def least_design_error(task: FunctionTask, limits: Limits, k: float, scale: float) -> Real | None:
+def least_design_error(task: FunctionTask, limits: GeneratorLimits, k: float, scale: float) -> Real | None:
     """The generator of least mean square design error, shape (7,), for given zeros; None where there is none.
 
     Parameters
     ----------
     task : FunctionTask
         With both zeros given.
-    limits : Limits
+    limits : GeneratorLimits
         Of lengths and ratios.
     k, scale : float
         Scales of input and output.

@@ -1,11 +1,12 @@
 """Precision points moved until the extremes of the error between them are level.
 
-The linkages that follow a function well lie in narrow curved valleys of their dimensions, along which a descent creeps.
-The places where the error vanishes are better coordinates: through n of them there are few linkages, all known in
-closed form (:mod:`synthesis.kinds.function.precision`), and each extreme hangs mostly on its own two neighbours. With
+In terms of their dimensions the linkages that follow a function well lie in narrow curved valleys, where descents
+converge slowly. The precision points, where the error vanishes, are better unknowns: through n of them there are few
+linkages, all known in closed form (:mod:`synthesis.kinds.function.precision`), and each extreme of the error depends
+mostly on the two precision points beside it. With
 h_i the greatest errors in the n + 1 parts of the range, the n equations ln h_i = ln h_{i+1} are solved by Newton's
-method in the places, many linkages at once. Where the error of the best linkage alternates, as it does where no limit
-is reached, it is level.
+method in the precision points, for many linkages at once. The error of the best linkage alternates,
+and so is level, where no limit is active.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from synthesis.kinds.function.task import FunctionTask
 Real = NDArray[np.float64]
 
 ROUNDS = 10
+"""Number of Newton steps, at most."""
 
 DIFFERENCE = 1e-3
 """Of a place's angle t, u = (1 − cos t)/2, for a derivative."""
@@ -33,6 +35,7 @@ LEVEL = 1e-4
 """Extremes that agree to this are level."""
 
 GRID = 241
+"""Places of the range at which errors are evaluated."""
 
 SPREADS, COPIES, FAMILIES = (0.3, 0.1, 0.03, 0.01), 15, 4
 """Where scales are open: how far they are moved at a time (in logarithms), to how many values, and of how many."""

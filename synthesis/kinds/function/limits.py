@@ -21,16 +21,16 @@ WITHOUT_END = 1e5
 errors then change in digits that nobody makes."""
 
 LOOKED_AT = 25
-"""Places of the range at which the transmission angle is kept."""
+"""Number of inputs over the range at which the transmission angle is limited."""
 
 INSIDE = 1e-7
-"""Relative distance that is kept from every limit, so that rounding does not break it."""
+"""Relative distance that is kept from every limit, so that rounding does not violate it."""
 
 TURNING = 1e-4
-"""What a crank turns through with, in lengths of the shortest link: less would be a change point."""
+"""Margin in Grashof's condition, in lengths of the shortest link: with none the linkage has a change point."""
 
 
-class Limits:
+class GeneratorLimits:
     """Inequalities g(generator) ≤ 0 of a task."""
 
     def __init__(self, task: FunctionTask) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.function.approximation import approximations
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
-from synthesis.kinds.function.limits import Limits
+from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.precision import (
     exact,
     family,
@@ -152,7 +152,7 @@ def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progre
 def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress) -> None:
     """The best members of a family that differ from one another."""
     generators = _members(task, rng)
-    limits = Limits(task)
+    limits = GeneratorLimits(task)
     progress(0.3, f"{len(generators)} members of the family")
     signs = task.points().signs(generators)
     one_assembly = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
@@ -203,7 +203,7 @@ def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) ->
     return np.asarray(low * (high / low) ** rng.random(count))
 
 
-def _worth(task: FunctionTask, limits: Limits, generators: Real, signs: Real, sine: Real) -> Real:
+def _worth(task: FunctionTask, limits: GeneratorLimits, generators: Real, signs: Real, sine: Real) -> Real:
     """What members are ordered by, least first: the structural error of a function, else quality; infinite unfit."""
     problem, demanded = task.problem, task.problem.constraints
     lengths = generators[:, :2] if problem.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])

@@ -26,7 +26,7 @@ from synthesis.model.linkages import (
 )
 
 Real = NDArray[np.float64]
-Limits = tuple[float, float]
+ScaleRange = tuple[float, float]
 
 USUAL_GROUND = 100.0
 """Length of the ground link where nothing tells it, length units."""
@@ -62,7 +62,7 @@ class FunctionTask(NamedTuple):
     sample_inputs: Real
     sample_outputs: Real
     zeros: tuple[float | None, float | None]
-    scales: tuple[list[Limits], list[Limits]]
+    scales: tuple[list[ScaleRange], list[ScaleRange]]
     unit: float
 
     @property
@@ -114,7 +114,7 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
     )
 
 
-def _ranges(problem: FunctionProblem, side: str) -> list[Limits]:
+def _ranges(problem: FunctionProblem, side: str) -> list[ScaleRange]:
     """Ranges of a side in radians or units: given, the other direction too, or between limits."""
     span = problem.span("input" if side == "input" else "output")
     both = side == "output" and (span is None or problem.either_direction)

@@ -10,15 +10,15 @@ the place of a fixed point O as the body sees it,
     f = κ|w|²/2 + n·w − d,    n = e^{iν},    ν, d, κ and the point (α or O) the five numbers of the dyad.
 
 The circle passes near w₀ with the normal n and has the curvature κ. κ = 0 is a line: a PR dyad (the pin A slides on a
-line of the ground) or, inverted, an RP dyad (a line of the body slides through a block pinned at O). With κ ≠ 0 both
-forms are an RR dyad, and that form is chosen whose point (α or O) is the nearer, so that no number gets large as the
-other pivot runs off to infinity: it arrives at the slider.
+line of the ground) or, inverted, an RP dyad (a line of the body slides through a block pinned at O). With κ ≠ 0 either
+form describes an RR dyad; the form is used whose point (α or O) lies nearer to the origin. When the other pivot goes to
+infinity, all five numbers then stay bounded, and the dyad becomes the slider with κ = 0.
 
-Poses are weighed by variances D = diag(τ²), one tolerance a coordinate, 0 where the coordinate is held. The pose
+Poses are weighted by variances D = diag(τ²), one tolerance a coordinate, 0 where the coordinate is held. The pose
 nearest to a demanded pose t that two dyads allow is t + D Jᵀλ, by repeated linearization; with S = J D Jᵀ = L Lᵀ the
-weighed distance is |Lᵀλ|. By the envelope theorem its derivative by a number of a dyad is that of L⁻¹f at the nearest
-pose as far as first order goes, so that a Gauss–Newton step in the ten numbers needs no poses among its unknowns
-(orthogonal distance regression; Ahn, *Least Squares Orthogonal Distance Fitting of Curves and Surfaces*, 2004).
+weighted distance is |Lᵀλ|. By the envelope theorem its derivative by a number of a dyad is, to first order, that of
+L⁻¹f at the fixed nearest pose, so that the poses are no unknowns of a Gauss–Newton step, only the ten numbers (
+orthogonal distance regression; Ahn, *Least Squares Orthogonal Distance Fitting of Curves and Surfaces*, 2004).
 """
 
 from __future__ import annotations
@@ -36,17 +36,21 @@ Complex = NDArray[np.complex128]
 NUMBERS = 5
 """Numbers of a dyad: two coordinates of its point, ν, d, κ."""
 
-LINEARIZATIONS = 30
-"""Linearizations at most on the way to the nearest pose; a few are usual."""
+MAX_LINEARIZATIONS = 30
+"""Number of linearizations for a nearest pose, at most; a few are usual."""
 
-ARRIVED = 1e-14
-"""Change of the nearest pose (task sizes, radians) at which it has been found."""
+POSE_TOLERANCE = 1e-14
+"""Step of the nearest pose (task sizes, radians) below which the iteration has converged."""
 
-LOST = 1e6
+LOST_RESIDUAL = 1e6
 """Residual of a pose whose nearest neighbour was not found: worse than any that can be."""
 
-FOLDED = 1e-12
-"""Share of s₁₁s₂₂ that s₁₁s₂₂ − s₁₂² keeps at least: below it both dyads allow the same motions."""
+MAX_STEP = 1e6
+"""Step of the nearest pose (task sizes, radians) at which the iteration is given up as divergent."""
+
+MIN_DETERMINANT = 1e-12
+"""Share of s₁₁s₂₂ that s₁₁s₂₂ − s₁₂² keeps at least: below it the two surfaces are tangent,
+and both dyads allow the same motions."""
 
 
 class Surface(NamedTuple):
@@ -114,7 +118,7 @@ def nearest_poses(
     jacobian: NDArray[np.float64],
     poses: NDArray[np.float64],
 ) -> None:
-    """Nearest poses that two dyads allow, and weighed residuals with their Jacobian.
+    """Nearest poses that two dyads allow, and weighted residuals with their Jacobian.
 
     Parameters
     ----------
@@ -125,14 +129,14 @@ def nearest_poses(
     linearizations : int
         1 for the first-order distance (Sampson's), more for the distance itself.
     residuals, jacobian, poses : float, shapes (n, 2), (n, 2, 10) and (n, 3)
-        Written: residuals whose squares add up to the weighed distance, and the nearest poses.
+        Written: residuals whose squares add up to the weighted distance, and the nearest poses.
     """
     by_pose, by_number = np.empty((2, 3)), np.empty((2, NUMBERS))
-    value, weighed, x, ahead = np.empty(2), np.empty((2, 3)), np.empty(3), np.empty(2)
+    value, weighted, x, ahead = np.empty(2), np.empty((2, 3)), np.empty(3), np.empty(2)
     for k in range(len(targets)):
         target, variance = targets[k], variances[k]
         x[:] = target
-        found = linearizations == 1
+        converged = linearizations == 1
         l11 = l21 = l22 = first = second = 0.0
         for _ in range(linearizations):
             for side in range(2):
@@ -140,39 +144,39 @@ def nearest_poses(
                     inverted[side], origins[side], numbers[side], x, by_pose[side], by_number[side]
                 )
                 for c in range(3):
-                    weighed[side, c] = by_pose[side, c] * variance[c]
+                    weighted[side, c] = by_pose[side, c] * variance[c]
                 ahead[side] = value[side]
                 for c in range(3):
                     ahead[side] += by_pose[side, c] * (target[c] - x[c])
             s11 = s12 = s22 = 0.0
             for c in range(3):
-                s11 += by_pose[0, c] * weighed[0, c]
-                s12 += by_pose[0, c] * weighed[1, c]
-                s22 += by_pose[1, c] * weighed[1, c]
-            rest = s11 * s22 - s12 * s12
-            if not rest > FOLDED * s11 * s22:
-                found = False
+                s11 += by_pose[0, c] * weighted[0, c]
+                s12 += by_pose[0, c] * weighted[1, c]
+                s22 += by_pose[1, c] * weighted[1, c]
+            determinant = s11 * s22 - s12 * s12
+            if not determinant > MIN_DETERMINANT * s11 * s22:
+                converged = False
                 break
-            first = -(s22 * ahead[0] - s12 * ahead[1]) / rest
-            second = -(s11 * ahead[1] - s12 * ahead[0]) / rest
+            first = -(s22 * ahead[0] - s12 * ahead[1]) / determinant
+            second = -(s11 * ahead[1] - s12 * ahead[0]) / determinant
             l11 = math.sqrt(s11)
             l21 = s12 / l11
-            l22 = math.sqrt(rest / s11)
+            l22 = math.sqrt(determinant / s11)
             if linearizations == 1:
                 break
             moved = 0.0
             for c in range(3):
-                step = target[c] + weighed[0, c] * first + weighed[1, c] * second - x[c]
+                step = target[c] + weighted[0, c] * first + weighted[1, c] * second - x[c]
                 x[c] += step
                 moved = max(moved, abs(step))
-            if not moved < 1e6:
+            if not moved < MAX_STEP:
                 break
-            if moved < ARRIVED * (1.0 + abs(x[0]) + abs(x[1])):
-                found = True
+            if moved < POSE_TOLERANCE * (1.0 + abs(x[0]) + abs(x[1])):
+                converged = True
                 break
         poses[k] = x
-        if not found:
-            residuals[k] = LOST
+        if not converged:
+            residuals[k] = LOST_RESIDUAL
             jacobian[k] = 0.0
             continue
         # r = −Lᵀλ, and its derivative L⁻¹ ∂f/∂p.
@@ -195,7 +199,7 @@ def surface_distances(
     residuals: NDArray[np.float64],
     jacobian: NDArray[np.float64],
 ) -> None:
-    """First-order weighed distances of poses from one dyad's surface, f/√(J D Jᵀ), with their Jacobian.
+    """First-order weighted distances of poses from one dyad's surface, f/√(J D Jᵀ), with their Jacobian.
 
     ``residuals`` (n,) and ``jacobian`` (n, 5) are written. Where all coordinates are held the residual is f itself.
     """

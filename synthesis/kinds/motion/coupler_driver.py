@@ -6,9 +6,9 @@ and r the distance of C from the crank's pivot O6, crank a and link b are those 
 
     a = |rₙ − r₁|/2,    b = (rₙ + r₁)/2,
 
-and the crank turns through, with the body's end positions at its two dead centres, if r rises or falls all the way from
-C₁ to Cₙ. The link pushes along D C; the transmission angle is that between it and the normal of C's path, for both
-places of D at each place of C. So C and O6 are free, and all of a grid of both are looked at.
+and the crank turns through, with the body's end positions at its two dead centres, if r is monotonic from C₁ to Cₙ. The
+link pushes along D C; the transmission angle is that between it and the normal of C's path, for both assemblies of the
+dyad at each position of C. C and O6 are free; all pairs of a grid of both are evaluated.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STEPS = 49
-"""Places of C on its path that are looked at; what lies between is measured by the verification."""
+"""Number of points of C's path that are evaluated; the verification measures what lies between."""
 
 REACHES = np.array([0.0, 0.35, 0.7, 1.1, 1.6])
 """Distances of C from the coupler's middle, in lengths of the coupler."""
@@ -51,7 +51,7 @@ DIRECTIONS = np.linspace(-np.pi, np.pi, 49)[:-1]
 """Places of O6: distance from the middle of the chord C₁ Cₙ in its lengths, and direction from it."""
 
 LEAST_SINE = 0.1
-"""Drivers that push at a worse angle than 6° are not looked at."""
+"""Sine of the transmission angle, at least: drivers below 6° are not evaluated."""
 
 LEAST_PATH = 1e-3
 """A chord shorter than this share of the linkage's size is no way for a crank."""

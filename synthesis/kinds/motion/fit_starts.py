@@ -1,8 +1,9 @@
 """Dyads from which a fit to many positions starts.
 
-An open RR dyad is started by every dyad through sets of five positions, and by the linear fit to larger sets
-(:mod:`synthesis.kinds.motion.linear_fit`). Where positions have tolerances the sets are also moved about within them. A
-pivot that the client states leaves a circle to be fitted to its images, a slider a line: both are linear.
+Where the client leaves an RR dyad open, the starts are all dyads through sets of five positions, and the linear fits to
+larger sets (:mod:`synthesis.kinds.motion.linear_fit`). Where positions have tolerances, sets with random perturbations
+within the tolerances are added. For a stated pivot a circle is fitted to its images, for a slider a line: both fits are
+linear.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from synthesis.kinds.motion.constraint_manifold import (
     of_pivots,
 )
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
-from synthesis.kinds.motion.pose_fit import Demands, Mask
+from synthesis.kinds.motion.pose_fit import Mask, PoseDemands
 from synthesis.kinds.motion.problem import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, stated_pivot
 
@@ -28,10 +29,10 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SETS = 160
-"""Sets of five positions at most."""
+"""Number of sets of five positions, at most."""
 
 LARGER_SETS = 40
-"""Sets of more positions, of random size."""
+"""Number of sets of more positions, each of random size."""
 
 REACH = 300.0
 """Pivots farther than this many task sizes are not started from; what tends there is a slider."""
@@ -49,7 +50,7 @@ class Start(NamedTuple):
     fixed: Mask
 
 
-def starts(task: MotionTask, demands: Demands, choices: DyadChoices, rng: np.random.Generator) -> list[Start]:
+def starts(task: MotionTask, demands: PoseDemands, choices: DyadChoices, rng: np.random.Generator) -> list[Start]:
     """Dyads of one side that a fit may start from."""
     if choices.dyad == "PR":
         return _slider(task, demands, choices, inverted=False)
@@ -83,13 +84,13 @@ def _stated(task: MotionTask, choices: DyadChoices) -> tuple[bool, complex] | No
     return None if moving is None else (False, moving)
 
 
-def _images(demands: Demands, inverted: bool, point: complex) -> Complex:
+def _images(demands: PoseDemands, inverted: bool, point: complex) -> Complex:
     """Places of a point of the body (or of a fixed point as the body sees it) in the demanded poses."""
     p, spin = demands.poses[:, 0] + 1j * demands.poses[:, 1], np.exp(1j * demands.poses[:, 2])
     return np.asarray(np.conj(spin) * (point - p) if inverted else p + spin * point)
 
 
-def _circle(demands: Demands, inverted: bool, point: complex) -> list[Start]:
+def _circle(demands: PoseDemands, inverted: bool, point: complex) -> list[Start]:
     """The circle nearest to the images of a stated pivot, by linear least squares of |z|² − 2Re(conj(m)z) + k."""
     images = _images(demands, inverted, point)
     rows = np.stack([2.0 * images.real, 2.0 * images.imag, np.ones(len(images))], axis=1)
@@ -105,7 +106,7 @@ def _circle(demands: Demands, inverted: bool, point: complex) -> list[Start]:
     return [Start("RR", Surface(inverted, complex(foot), True), numbers, fixed)]
 
 
-def _slider(task: MotionTask, demands: Demands, choices: DyadChoices, *, inverted: bool) -> list[Start]:
+def _slider(task: MotionTask, demands: PoseDemands, choices: DyadChoices, *, inverted: bool) -> list[Start]:
     """The line nearest to the images of the best, or of the stated, point."""
     fixed = np.zeros(NUMBERS, np.bool_)
     normal = None
@@ -129,7 +130,7 @@ def _slider(task: MotionTask, demands: Demands, choices: DyadChoices, *, inverte
     return [Start("RP" if inverted else "PR", surface, numbers, fixed)]
 
 
-def _best_slider(demands: Demands, inverted: bool, normal: float | None) -> tuple[complex, float]:
+def _best_slider(demands: PoseDemands, inverted: bool, normal: float | None) -> tuple[complex, float]:
     """The point whose images lie nearest to a line, and the line's normal: linear, with n on the unit circle.
 
     PR: Re(conj(n) p) + Re(c e^{iφ}) = d with c = conj(n) α. RP: Re(conj(n) p e^{−iφ}) + Re(c e^{iφ}) = −d with
@@ -151,7 +152,7 @@ def _best_slider(demands: Demands, inverted: bool, normal: float | None) -> tupl
     return (-unit * found.conjugate() if inverted else unit * found), normal
 
 
-def _all_dyads(demands: Demands, rng: np.random.Generator) -> tuple[Complex, Complex]:
+def _all_dyads(demands: PoseDemands, rng: np.random.Generator) -> tuple[Complex, Complex]:
     """RR dyads through sets of five poses and near larger sets, those of sensible size."""
     poses = demands.poses
     n, held = len(poses), demands.held

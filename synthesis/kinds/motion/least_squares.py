@@ -1,9 +1,9 @@
 """Motion generation by least squares: more positions than can be met, or positions with tolerances.
 
-Many dyads are started from (:mod:`synthesis.kinds.motion.fit_starts`), each is fitted to all positions by itself, the
-best pairs are fitted together to the true error of the pose (:mod:`synthesis.kinds.motion.pose_fit`), and what comes
-out is driven and verified like any other linkage. Positions that are held stay held to rounding throughout. Lengths are
-weighed by the task's size and angles by the radian, or both by the client's tolerances.
+Each of many starting dyads (:mod:`synthesis.kinds.motion.fit_starts`) is first fitted to all positions by itself. The
+best pairs are then fitted together to the true error of the pose (:mod:`synthesis.kinds.motion.pose_fit`), and the
+linkages are driven and verified like any other. Held positions are met to rounding throughout. Lengths are
+weighted by the task's size and angles by the radian, or both by the client's tolerances.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from synthesis.kinds.motion.fit_starts import (
     starts,
 )
 from synthesis.kinds.motion.pose_fit import (
-    Demands,
+    PoseDemands,
     PoseFit,
     surface_fit,
 )
@@ -49,14 +49,14 @@ from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting
 Real = NDArray[np.float64]
 
 SINGLES = 40
-"""Dyads of a side that are fitted by themselves."""
+"""Number of dyads of a side that are fitted by themselves."""
 
 DYADS = 36
 """Dyads of a side of which pairs are made: the best of those, and of those that they came from."""
 
 HANDY = 3.0
-"""A dyad counts four times worse where a pivot lies this many task sizes away: it holds the body's angle to great
-precision there, whatever its place, and would keep dyads out that make a whole linkage."""
+"""Distance of a pivot, in task sizes, at which the cost of a dyad is weighted by four. A dyad with a distant pivot fits
+the poses well whatever its partner is, and would displace dyads of which linkages can be made."""
 
 PAIRS_HELD = 16
 """Pairs that are fitted where positions or coordinates are held, which takes several times as long."""
@@ -132,16 +132,16 @@ def solve_least_squares(problem: MotionProblem, progress: Progress) -> MotionRes
     return run.result()
 
 
-def fit_demands(problem: MotionProblem, task: MotionTask) -> Demands:
+def fit_demands(problem: MotionProblem, task: MotionTask) -> PoseDemands:
     """Positions and tolerances in task units; without a limit the task's size and the radian stand for it."""
     poses = np.stack([task.points.real, task.points.imag, np.array(problem.turns)], axis=1)
     limits = np.array(problem.limits)
     tolerances = np.stack([limits[:, 0] / task.size, limits[:, 1] / task.size, np.radians(limits[:, 2])], axis=1)
-    return Demands(poses, np.where(np.isfinite(tolerances), tolerances, 1.0))
+    return PoseDemands(poses, np.where(np.isfinite(tolerances), tolerances, 1.0))
 
 
 def _dyads(
-    task: MotionTask, demands: Demands, problem: MotionProblem, side: int, rng: np.random.Generator
+    task: MotionTask, demands: PoseDemands, problem: MotionProblem, side: int, rng: np.random.Generator
 ) -> list[Start]:
     """The best dyads of one side: as they were started from, and as they fit all positions."""
     choices = (problem.input_side, problem.output_side)[side]
@@ -157,7 +157,7 @@ def _dyads(
     return _least(demands, [*fits, *rough], DYADS)
 
 
-def _least(demands: Demands, listed: list[Start], count: int) -> list[Start]:
+def _least(demands: PoseDemands, listed: list[Start], count: int) -> list[Start]:
     """The dyads with the least distances from the poses, each once."""
     cost = [_single_cost(demands, start) * (1.0 + 3.0 * _reach(start) ** 2 / HANDY**2) for start in listed]
     kept: list[Start] = []
@@ -173,7 +173,7 @@ def _least(demands: Demands, listed: list[Start], count: int) -> list[Start]:
     return kept
 
 
-def _single_cost(demands: Demands, start: Start) -> float:
+def _single_cost(demands: PoseDemands, start: Start) -> float:
     fitted = surface_fit(demands, start.surface, start.numbers, np.ones(5, np.bool_))
     return fitted.cost
 
@@ -198,7 +198,7 @@ def _place(start: Start) -> Real:
 
 
 def _pairs(
-    problem: MotionProblem, task: MotionTask, demands: Demands, inputs: list[Start], outputs: list[Start]
+    problem: MotionProblem, task: MotionTask, demands: PoseDemands, inputs: list[Start], outputs: list[Start]
 ) -> list[_Pair]:
     """The pairs to fit together: half of them those with the least cost, half those among them that look sound.
 
@@ -251,7 +251,7 @@ def _sound(problem: MotionProblem, task: MotionTask, inputs: list[Start], output
 class _Run(Sifting[LinkageDesign]):
     """What becomes of the pairs."""
 
-    def __init__(self, problem: MotionProblem, task: MotionTask, demands: Demands, *, alike: bool) -> None:
+    def __init__(self, problem: MotionProblem, task: MotionTask, demands: PoseDemands, *, alike: bool) -> None:
         super().__init__(problem, REASONS)
         self.problem, self.task, self.demands, self.alike = problem, task, demands, alike
         self.seen: list[Real] = []

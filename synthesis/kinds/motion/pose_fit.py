@@ -1,7 +1,7 @@
 """Two dyads fitted to demanded poses: some held exactly, others met as nearly as their tolerances ask.
 
 A demanded pose may be held in all three coordinates, in some of them, or in none (a tolerance τ stands for each
-coordinate that is not held). Poses with at most one held coordinate contribute two residuals, their weighed distance
+coordinate that is not held). Poses with at most one held coordinate contribute two residuals, their weighted distance
 from the nearest pose that both dyads allow (:mod:`synthesis.kinds.motion.constraint_manifold`). A pose with a single
 tolerated coordinate has that coordinate among the unknowns, and it is held on both surfaces; so is a pose that is held
 wholly.
@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.motion.constraint_manifold import (
-    LINEARIZATIONS,
-    LOST,
+    LOST_RESIDUAL,
+    MAX_LINEARIZATIONS,
     NUMBERS,
     Surface,
     constraint,
@@ -60,7 +60,7 @@ NOTHING = 1e-28
 """A cost that is rounding alone: residuals of 1e-14."""
 
 
-class Demands(NamedTuple):
+class PoseDemands(NamedTuple):
     """Demanded poses x, y, φ and their tolerances τ, shape (n, 3), task units; τ = 0 where a coordinate is held."""
 
     poses: Real
@@ -77,7 +77,7 @@ class PoseFit:
 
     Parameters
     ----------
-    demands : Demands
+    demands : PoseDemands
         At least one pose is not held wholly.
     surfaces : pair of Surface
         Input and output dyad.
@@ -86,7 +86,7 @@ class PoseFit:
     """
 
     def __init__(
-        self, demands: Demands, surfaces: tuple[Surface, Surface], fixed: tuple[Mask, Mask] = (_NONE, _NONE)
+        self, demands: PoseDemands, surfaces: tuple[Surface, Surface], fixed: tuple[Mask, Mask] = (_NONE, _NONE)
     ) -> None:
         held = demands.held
         self.demands, self.surfaces = demands, surfaces
@@ -115,13 +115,13 @@ class PoseFit:
         return np.concatenate([one, other, np.zeros(len(self._loose))])
 
     def cost(self, x: Real, *, first_order: bool = False) -> float:
-        """Half the sum of squared weighed distances; held equations are not counted."""
-        found = self._residuals(x, 1 if first_order else LINEARIZATIONS)
+        """Half the sum of squared weighted distances; held equations are not counted."""
+        found = self._residuals(x, 1 if first_order else MAX_LINEARIZATIONS)
         return 0.5 * float(found @ found)
 
     def gradient(self, x: Real) -> Real:
         """Derivatives of the cost by all unknowns, held equations apart."""
-        return np.asarray(self._jacobian(x).T @ self._residuals(x, LINEARIZATIONS))
+        return np.asarray(self._jacobian(x).T @ self._residuals(x, MAX_LINEARIZATIONS))
 
     def minimum(self, x: Real, *, tolerance: float = TIGHT, evaluations: int = EVALUATIONS) -> Fit | None:
         """The minimum in the basin of a point; None where what is held cannot be held there."""
@@ -144,13 +144,13 @@ class PoseFit:
     def poses(self, x: Real) -> Real:
         """The pose that the dyads allow nearest to each demanded one, shape (n, 3)."""
         out = self.demands.poses.copy()
-        out[self._near] = self._nearest(x, LINEARIZATIONS)[2]
+        out[self._near] = self._nearest(x, MAX_LINEARIZATIONS)[2]
         out[self._loose, self._axis] += x[2 * NUMBERS :] * self.demands.tolerances[self._loose, self._axis]
         return out
 
     def has_lost_poses(self, x: Real) -> bool:
-        """Whether a demanded pose has no nearest pose that the dyads allow: its residuals are :data:`LOST`."""
-        return bool(np.any(np.all(self._nearest(x, LINEARIZATIONS)[0] == LOST, axis=1)))
+        """Whether a demanded pose has no nearest pose that the dyads allow: its residuals are :data:`LOST_RESIDUAL`."""
+        return bool(np.any(np.all(self._nearest(x, MAX_LINEARIZATIONS)[0] == LOST_RESIDUAL, axis=1)))
 
     def _nearest(self, x: Real, linearizations: int) -> tuple[Real, Real, Real]:
         """Residuals, their Jacobian and the nearest poses; those of the last point are kept, as both are asked for."""
@@ -180,7 +180,7 @@ class PoseFit:
         return np.concatenate([self._nearest(x, linearizations)[0].ravel(), x[2 * NUMBERS :]])
 
     def _jacobian(self, x: Real) -> Real:
-        jacobian = self._nearest(x, LINEARIZATIONS)[1].reshape(-1, 2 * NUMBERS)
+        jacobian = self._nearest(x, MAX_LINEARIZATIONS)[1].reshape(-1, 2 * NUMBERS)
         rows, extra = len(jacobian), len(self._loose)
         out = np.zeros((rows + extra, 2 * NUMBERS + extra))
         out[:rows, : 2 * NUMBERS] = jacobian
@@ -265,7 +265,7 @@ class _Chart:
                 x[free] -= np.linalg.solve(matrix, np.concatenate([values, np.zeros(len(y))]))
             except np.linalg.LinAlgError:
                 return None, None
-            if not np.abs(x).max() < LOST:
+            if not np.abs(x).max() < LOST_RESIDUAL:
                 return None, None
             values, jacobian = self.problem._held(x)
         return None, None
@@ -273,8 +273,8 @@ class _Chart:
     def _residuals(self, y: Real) -> Real:
         x, _ = self._at(y)
         if x is None:
-            return np.full(2 * len(self.problem._near) + len(self.problem._loose), LOST)
-        return self.problem._residuals(x, LINEARIZATIONS)
+            return np.full(2 * len(self.problem._near) + len(self.problem._loose), LOST_RESIDUAL)
+        return self.problem._residuals(x, MAX_LINEARIZATIONS)
 
     def _jacobian(self, y: Real) -> Real:
         x, by_y = self._at(y)
@@ -283,7 +283,7 @@ class _Chart:
         return np.asarray(self.problem._jacobian(x)[:, self.problem._free] @ by_y)
 
 
-def surface_fit(demands: Demands, surface: Surface, numbers: Real, fixed: Mask = _NONE) -> Fit:
+def surface_fit(demands: PoseDemands, surface: Surface, numbers: Real, fixed: Mask = _NONE) -> Fit:
     """One dyad fitted to all poses by itself, to first order; held coordinates count ten times.
 
     A start for pairs: most good pairs are made of such dyads.

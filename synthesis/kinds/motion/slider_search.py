@@ -50,6 +50,12 @@ USABLE_TRANSMISSION_ANGLE = 30.0
 SHORTEST_LINK = 1e-3
 """A link shorter than this share of the longest is none."""
 
+NO_LENGTH = 1e-12
+"""Task sizes; lengths below this are none, and their ratio to others says nothing."""
+
+ROUNDING = 1e-9
+"""Share by which a sine may miss its limit in the screening; the verification decides."""
+
 LEAST_ATTEMPTS = 40
 """Pairs driven at least before the search gives up; at most three for each design wanted."""
 
@@ -272,10 +278,13 @@ def _judged(
     sliders: Sliders,
 ) -> _Screened:
     shape = lengths.shape[1:]
-    limits, ratio = problem.constraints.link_length, lengths.max(axis=0) / np.maximum(lengths.min(axis=0), 1e-12)
+    limits, ratio = (
+        problem.constraints.link_length,
+        lengths.max(axis=0) / np.maximum(lengths.min(axis=0), NO_LENGTH),
+    )
     one_side = np.all(ahead > 0.0, axis=-1) | np.all(ahead < 0.0, axis=-1)
     verdict = np.zeros(shape, np.int64)
-    verdict[sines < math.sin(math.radians(least)) * (1.0 - 1e-9)] = REJECTED.index("transmission_angle")
+    verdict[sines < math.sin(math.radians(least)) * (1.0 - ROUNDING)] = REJECTED.index("transmission_angle")
     verdict[~np.broadcast_to(clear, shape)] = REJECTED.index("branch_defect")
     verdict[~np.broadcast_to(moved, shape)] = REJECTED.index("order_defect")
     verdict[~one_side] = REJECTED.index("circuit_defect")

@@ -35,6 +35,9 @@ IN_LINE = 1e-9
 TURNED = 1e-9
 """|b_k| below which two positions count as parallel."""
 
+MAX_DISTANCE = 1e3
+"""Points farther away than this many task sizes are no sliders that anybody builds."""
+
 STRAIGHT = 1e-9
 """Distance of the line of y from the origin below which the circle of points is a line through the pole."""
 
@@ -81,7 +84,7 @@ def sliders(task: MotionTask, choices: DyadChoices, *, inverted: bool, rng: np.r
         points, sampled = _with_angle(images, angle, rng, count)
     else:
         points, sampled = _any_angle(task, images, rng, count, inverted)
-    points = points[np.isfinite(points) & (np.abs(points) < 1e3)]
+    points = points[np.isfinite(points) & (np.abs(points) < MAX_DISTANCE)]
     d = images.a[:, None] + images.b[:, None] * points
     along = d[np.abs(d).argmax(axis=0), np.arange(len(points))] if len(points) else np.empty(0, np.complex128)
     with np.errstate(divide="ignore", invalid="ignore"):

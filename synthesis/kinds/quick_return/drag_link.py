@@ -42,6 +42,12 @@ GOLDEN, SECTIONS = 0.6180339887498949, 40
 LENGTHS = 25
 """Lengths of the input that are looked at first."""
 
+SAME_LENGTH = 1e-3
+"""Drag links whose inputs differ by less, in grounds, are one."""
+
+LENGTH_TOLERANCE = 1e-9
+"""How nearly the best length of the input is found, in grounds; the transmission angle is greatest there, and flat."""
+
 BEYOND = 1e-8
 """Share by which the drag link's greatest time ratio is above the demanded one, so that a ψ0 has that exactly."""
 
@@ -132,12 +138,12 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
 def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
     limit = problem.constraints.max_link_ratio
     ratios = [ratio for ratio in RATIOS if limit is None or ratio < limit] + ([] if limit is None else [limit])
-    found: list[DragLink] = []
+    drag_links: list[DragLink] = []
     for ratio in sorted(ratios, reverse=True):
         best = drag_link(problem.time_ratio, ratio)
-        if best is not None and all(abs(best.input - other.input) > 1e-3 for other in found):
-            found.append(best)
-    return found
+        if best is not None and all(abs(best.input - kept.input) > SAME_LENGTH for kept in drag_links):
+            drag_links.append(best)
+    return drag_links
 
 
 def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
@@ -164,7 +170,9 @@ def drag_link(time_ratio: float, link_ratio: float) -> DragLink | None:
         return None
     a = float(lengths[k])
     low, high = float(lengths[max(k - 1, 0)]), float(lengths[min(k + 1, LENGTHS - 1)])
-    closer = minimize_scalar(_cosine, bounds=(low, high), args=(time_ratio,), method="bounded", options={"xatol": 1e-9})
+    closer = minimize_scalar(
+        _cosine, bounds=(low, high), args=(time_ratio,), method="bounded", options={"xatol": LENGTH_TOLERANCE}
+    )
     if closer.fun < cosines[k]:
         a = float(closer.x)
     c = _output(a, time_ratio)

@@ -87,7 +87,7 @@ class Family:
         return np.concatenate([repeated, offsets], axis=1)
 
 
-class Demands(NamedTuple):
+class LineLimits(NamedTuple):
     """What a motion is judged by: the input's range (radians), the measure, and what the linkage must keep."""
 
     span: float
@@ -126,7 +126,7 @@ def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, S
     return Line(found.p, found.velocity, along, length, theta), made
 
 
-def values_of(family: Family, demands: Demands, nodes: Real) -> Callable[[Real], Values]:
+def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Real], Values]:
     """What is minimised and what is kept, by shape."""
 
     def values(shapes: Real) -> Values:

@@ -26,8 +26,8 @@ from synthesis.kinds.straight_line.families import (
     FOURBARS,
     NORTON,
     SAMPLES,
-    Demands,
     Family,
+    LineLimits,
     chebyshev_nodes,
     configuration,
     values_of,
@@ -86,7 +86,7 @@ EXACT = {"peaucellier": peaucellier, "hart": hart, "scott_russell": scott_russel
 Proportions = Literal["optimal", "classical", "exact"]
 
 
-class _Candidate(NamedTuple):
+class _PlacedMechanism(NamedTuple):
     """Joints of a mechanism at the start of its range: P begins at 0 and runs to ``length`` along +x, input ccw.
 
     ``exact`` is the mechanism of an exact line in its own frame, None for a fourbar.
@@ -136,11 +136,11 @@ def _ranked(problem: StraightLineProblem, designs: list[StraightLineDesign]) -> 
     return ranked(designs, problem.rank_by, {"quality": optimized, "accuracy": straightness})
 
 
-def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_Candidate]:
+def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMechanism]:
     """The best of a family of fourbars, and the one of classical proportions."""
     family = FOURBARS[name]
     constraints = problem.constraints
-    demands = Demands(
+    demands = LineLimits(
         math.radians(problem.range_of(name)),
         problem.optimize == "velocity",
         math.radians(
@@ -162,7 +162,7 @@ def _fourbars(problem: StraightLineProblem, name: LineMechanism) -> list[_Candid
     return made
 
 
-def _hoeken(problem: StraightLineProblem, demands: Demands, nodes: Real) -> dict[Proportions, Real]:
+def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> dict[Proportions, Real]:
     """The best of both free proportions, and the best of Norton's family, which sets how straight it must be."""
     family = FOURBARS["hoeken"]
     norton = narrowest(values_of(NORTON, demands, nodes), np.array(NORTON.classical), *NORTON.bounds())
@@ -190,7 +190,7 @@ def _hoeken(problem: StraightLineProblem, demands: Demands, nodes: Real) -> dict
 
 
 def _shapes(
-    problem: StraightLineProblem, family: Family, demands: Demands, nodes: Real, limit: float
+    problem: StraightLineProblem, family: Family, demands: LineLimits, nodes: Real, limit: float
 ) -> dict[Proportions, Real]:
     """The best of classical proportions, in its range and direction alone, and the best of all."""
     values, coarse = values_of(family, demands, nodes), values_of(family, demands, nodes[::COARSER])
@@ -226,7 +226,7 @@ def _shapes(
 
 def _placed(
     problem: StraightLineProblem, family: Family, shape: Real, span: float, proportions: Proportions
-) -> _Candidate:
+) -> _PlacedMechanism:
     """A shape, scaled and moved so that P runs from 0 to the length along +x, in the middle of its strip."""
     joints, line = configuration(family, shape, span)
     turned = line.direction.conjugate()
@@ -234,19 +234,19 @@ def _placed(
     origin = (line.p[0] * turned).real + 0.5j * (across.min() + across.max())
     places = (joints * turned - origin) * (problem.length / float(line.length))
     named = dict(zip(("O2", "A", "B", "O4", "P"), places.tolist(), strict=True))
-    return _Candidate(family.name, proportions, named)
+    return _PlacedMechanism(family.name, proportions, named)
 
 
-def _exact(problem: StraightLineProblem, name: LineMechanism) -> list[_Candidate]:
+def _exact(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMechanism]:
     made = EXACT[name](problem.length, math.radians(problem.range_of(name)))
     if made is None:
         return []
     begin = complex(made.mechanism.joints["P"])
     joints = {joint: -1j * (complex(z) - begin) for joint, z in made.mechanism.joints.items()}
-    return [_Candidate(name, "exact", joints, made)]
+    return [_PlacedMechanism(name, "exact", joints, made)]
 
 
-def _best_side(problem: StraightLineProblem, candidate: _Candidate) -> StraightLineDesign | None:
+def _best_side(problem: StraightLineProblem, candidate: _PlacedMechanism) -> StraightLineDesign | None:
     """The design with the input turning the demanded way, or the way that meets the constraints."""
     designs = []
     for rotation in ("ccw", "cw"):
@@ -260,7 +260,7 @@ def _best_side(problem: StraightLineProblem, candidate: _Candidate) -> StraightL
 
 
 def _mechanism(
-    problem: StraightLineProblem, candidate: _Candidate, *, mirrored: bool
+    problem: StraightLineProblem, candidate: _PlacedMechanism, *, mirrored: bool
 ) -> FourbarMechanism | ExactLineMechanism:
     start, along = complex(*problem.start), cmath.exp(1j * math.radians(problem.direction))
     joints = {name: start + along * (z.conjugate() if mirrored else z) for name, z in candidate.joints.items()}
