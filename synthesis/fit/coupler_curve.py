@@ -23,7 +23,7 @@ from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, OPTIONS, natural
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FLAT = 1e-9
+TOGGLE_TOLERANCE = 1e-9
 """|sin(θ₃ − θ₄)| below which a configuration is a toggle, where derivatives do not exist."""
 
 
@@ -46,7 +46,7 @@ def two_bars(base: complex, b: float, c: float, sign: float) -> tuple[bool, comp
     square = base.real * base.real + base.imag * base.imag
     half = 0.5 * (square + (b - c) * (b + c))
     under = b * b * square - half * half
-    if not under > FLAT * FLAT * b * b * c * c:
+    if not under > TOGGLE_TOLERANCE * TOGGLE_TOLERANCE * b * b * c * c:
         return False, 1.0 + 0j
     return True, base * complex(half, sign * math.sqrt(under)) * (1.0 / (square * b))
 

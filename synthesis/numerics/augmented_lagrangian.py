@@ -6,11 +6,11 @@ limit is one more residual of :mod:`synthesis.numerics.levenberg`,
 
     √w (λ/w − g)   where it is positive,        √w (λ/w − h),
 
-and between descents λ becomes the part of λ − w g that is positive, or λ − w h. The residuals stay a sum of squares,
-and limits are met in the end to rounding, as the multipliers λ bear their load and not the weight w.
+and between descents λ becomes max(0, λ − w g), or λ − w h. The cost stays a sum of squares, and limits hold to rounding
+in the end although w stays moderate, since the multipliers converge to the limits' forces.
 
-The values g and h are *margins*. A problem keeps them at the end of its ``state``, as many as there are multipliers,
-and appends their rows by :func:`limit_rows`. A margin that is infinite belongs to no limit.
+The values g and h are *margins*. A problem keeps them at the end of its ``state``, one for each multiplier, and appends
+their rows by :func:`limit_rows`. An infinite margin is that of a limit that is not stated.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
 
-HELD = 1e-11
-"""Violation of a limit (task sizes; shares of a length) that is rounding."""
+VIOLATION_TOLERANCE = 1e-11
+"""Violation of a limit (task sizes; shares of a length) that counts as rounding."""
 
-ROUNDS = 20
-"""Descents in which limits are brought to hold, at most."""
+MAX_ROUNDS = 20
+"""Greatest number of descents, with the multipliers renewed after each."""
 
-STEPS, TOLERANCE = 300, 1e-14
-"""Steps of each at most, and the relative decrease at which it ends."""
+MAX_STEPS, TOLERANCE = 300, 1e-14
+"""Greatest number of steps of each, and its tolerance: see :func:`synthesis.numerics.levenberg.descend`."""
 
-SLOW, STIFFENED = 0.25, 10.0
-"""Where the violation does not fall to the first share from one descent to the next the weight is multiplied."""
+SLOW_DECREASE, WEIGHT_INCREASE = 0.25, 10.0
+"""Where a descent leaves more than the first share of the violation, the weight is multiplied by the second."""
 
-WEIGHTLESS = 1e-300
-"""A weight w with which limits add nothing to the sum of squares."""
+MIN_WEIGHT = 1e-300
+"""A weight w with which limits add nothing to the sum of squares; w divides, so that it cannot be 0."""
 
 _IMPOSSIBLE, _INFEASIBLE = int(Status.IMPOSSIBLE), int(Status.INFEASIBLE)
 
@@ -122,7 +122,7 @@ def hold(
     rows, x, points, setting, state, most
         As for :func:`synthesis.numerics.levenberg.descend`.
     limits, equations : int
-        Limits of the problem, and how many of them, the last, are equations.
+        Number of limits, and how many of them, the last, are equations.
     weight : float
         w at first.
     ended : float64, shape (1,)
@@ -135,21 +135,21 @@ def hold(
     before = worst = np.inf
     status = _IMPOSSIBLE
     ended[0] = np.inf
-    for _ in range(ROUNDS):
-        _, status = descend(rows, x, points, setting, multipliers, state, most, STEPS, TOLERANCE)
+    for _ in range(MAX_ROUNDS):
+        _, status = descend(rows, x, points, setting, multipliers, state, most, MAX_STEPS, TOLERANCE)
         if status == _IMPOSSIBLE:
             return _IMPOSSIBLE
         worst = _renew(margins, equations, multipliers)
-        if worst <= HELD:
+        if worst <= VIOLATION_TOLERANCE:
             break
-        if worst > SLOW * before:
-            # Multipliers stay what they are: their unit does not hang on the weight.
-            multipliers[limits] *= STIFFENED
+        if worst > SLOW_DECREASE * before:
+            # Multipliers are forces: they are kept when the weight changes.
+            multipliers[limits] *= WEIGHT_INCREASE
         before = worst
-    multipliers[:limits], multipliers[limits] = 0.0, WEIGHTLESS
+    multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
     m = rows(x, points, setting, multipliers, state, residuals, jacobian)
     if m < 0:
         return _IMPOSSIBLE
     ended[0] = half_square(residuals, m)
-    end: int = status if worst <= 10.0 * HELD else _INFEASIBLE
+    end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
     return end

@@ -7,9 +7,9 @@ A problem is one compiled function that writes residuals and their Jacobian:
 
     rows(x, points, setting, multipliers, state, residuals, jacobian) -> number of rows m, or −1 where x is impossible
 
-``points`` and ``setting`` are what the problem is made of. ``multipliers`` has one number for each limit and their
-weight as its last. ``state`` is what a problem remembers of the last point that was accepted, and changes as it likes:
-unknowns that it eliminates itself. The type of the function is :data:`ROWS`, so that one compiled method serves all.
+``points`` and ``setting`` are the problem's data. ``multipliers`` has one number for each limit, and their weight as
+the last. ``state`` belongs to the problem: it holds what the function eliminates itself, such as crank angles, and is
+kept only with steps that are accepted. All functions have the type :data:`ROWS`, so that the method is compiled once.
 
 With r the residuals, J their Jacobian, A = JᵀJ and g = Jᵀr, a step solves
 
@@ -39,18 +39,19 @@ ROWS = types.int64(VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX)
 """The type of a problem: x, points, setting, multipliers, state, residuals, jacobian."""
 
 MIN_DAMPING, FIRST_DAMPING, MAX_DAMPING = 1e-15, 1e-3, 1e12
+"""Damping μ: least, at first, and that above which the descent has stalled."""
 
-LONGEST_STEP = 1.0
-"""Longest step of one unknown; unknowns are scaled so that this is far."""
+MAX_STEP = 1.0
+"""Greatest change of an unknown in one step; problems scale their unknowns so that this is far."""
 
-NOTHING = 1e-30
-"""A sum of squares that is rounding alone."""
+ZERO_COST = 1e-30
+"""Cost that is rounding alone; residuals are scaled to the task."""
 
-SMALLEST_SQUARE = 1e-12
-"""Least entry of D: an unknown that no residual hangs on stays where it is."""
+MIN_SCALE = 1e-12
+"""Least entry of D: an unknown on which no residual depends stays where it is."""
 
-ROUNDING = 1e-15
-"""A step of this length, or a gain of this share of the cost, is rounding."""
+STEP_TOLERANCE = 1e-15
+"""A step of this length, or an expected gain of this share of the cost, is rounding."""
 
 _STALLED, _SINGULAR, _IMPOSSIBLE = int(Status.STALLED), int(Status.SINGULAR), int(Status.IMPOSSIBLE)
 _STEP_LIMIT, _GRADIENT, _COST = int(Status.STEP_LIMIT), int(Status.GRADIENT), int(Status.COST)
@@ -120,13 +121,13 @@ def descend(
     rows : compiled function of type :data:`ROWS`
         The problem.
     x, points, setting, multipliers, state : float64
-        What it is given; ``x`` and ``state`` are changed.
+        Arguments of the function; ``x`` and ``state`` are changed in place.
     most : int
-        Rows at most.
+        Greatest number of rows.
     steps : int
-        Steps at most, tried ones included.
+        Greatest number of steps, refused ones included.
     tolerance : float
-        Relative decrease at which the descent ends when two steps in turn make no more.
+        The descent has converged when the relative decrease of the cost is below this in two steps in turn.
 
     Returns
     -------
@@ -143,14 +144,14 @@ def descend(
         return np.inf, _IMPOSSIBLE
     trial, trial_state = np.empty(n), np.empty(state.size)
     matrix, factor, gradient, step = np.empty((n, n)), np.empty((n, n)), np.empty(n), np.empty(n)
-    scale = np.full(n, SMALLEST_SQUARE)
+    scale = np.full(n, MIN_SCALE)
     cost = half_square(residuals, m)
     if not cost < np.inf:
         return np.inf, _IMPOSSIBLE
     _normal(residuals, jacobian, m, n, matrix, gradient)
     damping, growth, small = FIRST_DAMPING, 2.0, 0
     for _ in range(steps):
-        if cost < NOTHING:
+        if cost < ZERO_COST:
             return cost, _ZERO
         for i in range(n):
             scale[i] = max(scale[i], matrix[i, i])
@@ -166,7 +167,7 @@ def descend(
         longest = np.abs(step).max()
         if not longest < np.inf:
             return cost, _SINGULAR
-        step *= LONGEST_STEP / longest if longest > LONGEST_STEP else 1.0
+        step *= MAX_STEP / longest if longest > MAX_STEP else 1.0
         expected = _expected_gain(matrix, gradient, step)
         trial[:] = x + step
         trial_state[:] = state
@@ -186,10 +187,10 @@ def descend(
             if small >= 2:
                 return cost, _COST
             continue
-        # A step that should gain less than rounding and gains nothing: the minimum is here.
-        if expected <= ROUNDING * cost:
+        # Refused although the model expects no more than rounding: the point is stationary as far as can be computed.
+        if expected <= STEP_TOLERANCE * cost:
             return cost, _GRADIENT
-        if longest < ROUNDING:
+        if longest < STEP_TOLERANCE:
             return cost, _STEP
         damping *= growth
         growth *= 2.0

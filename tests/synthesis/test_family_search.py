@@ -6,7 +6,7 @@ import pytest
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, natural
-from synthesis.kinds.path.curve_descent import ANYWHERE, descend
+from synthesis.kinds.path.curve_descent import UNLIMITED_PIVOTS, descend
 from synthesis.registry import parse_problem
 
 
@@ -127,7 +127,7 @@ def test_size_and_place_do_not_matter(size):
 def test_descents_put_pivots_where_they_are_asked_for():
     _, points = planted(5, 1)
     start = np.array([[0.1, 0.2, 0.4, 0.0, 0.5, 0.6, 0.4, 1.0, 1.0]])
-    within = ANYWHERE.copy()
+    within = UNLIMITED_PIVOTS.copy()
     within[0], within[1] = (0.5, 0.7), (-2.0, -2.0)
     theta = np.linspace(0.0, 3.0, 5)[None]
     ends = descend(CRANK_ROCKER, start, np.ones(1), theta, points, within=within, iterations=400)

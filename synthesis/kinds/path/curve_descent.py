@@ -1,4 +1,4 @@
-"""Least squares of a traced curve through points, at crank angles that are free: one compiled descent.
+"""Least squares of a traced curve through points, with the crank angles free: one compiled Levenberg-Marquardt descent.
 
 The unknowns are the linkage's m numbers x and the crank angle θᵢ at each of n points tᵢ; the residuals are the vectors
 z(x, θᵢ) − tᵢ. Each θᵢ enters its own residual alone, so that Levenberg and Marquardt's equations
@@ -6,9 +6,9 @@ z(x, θᵢ) − tᵢ. Each θᵢ enters its own residual alone, so that Levenber
     [ A   C ] [δx]     [g]          A = Σ Re(z̄ₓ z̦ₓ),  cᵢ = Re(z̄_θ zₓ),  aᵢ = |z_θ|²
     [ Cᵀ  D ] [δθ] = − [h],         g = Σ Re(z̄ₓ rᵢ),   hᵢ = Re(z̄_θ rᵢ),   D = diag aᵢ
 
-are solved by elimination of the angles (Schur's complement, m × m) at a cost linear in n: orthogonal distance without
-an inner search for the nearest point (Boggs, Byrd & Schnabel 1987, doi:10.1137/0908085, whose structure this is).
-Points may be weighted. The step is refused where the linkage does not close at some point.
+are solved by elimination of the angles (Schur's complement, m × m). The cost of a step is linear in n, and no inner
+search for the nearest point is needed: this is the structure of orthogonal distance regression (Boggs, Byrd & Schnabel
+1987, doi:10.1137/0908085). Points may be weighted. A step is refused where the linkage does not close at some point.
 """
 
 from __future__ import annotations
@@ -28,39 +28,44 @@ from synthesis.numerics.portions import in_portions
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-FIRST_DAMPING, EASED, STIFFENED = 1e-2, 0.2, 5.0
-"""Marquardt's damping: at first, after a good step, after a refused one."""
+FIRST_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE = 1e-2, 0.2, 5.0
+"""Marquardt's damping: at first, and its factors after an accepted and after a refused step."""
 
-MIN_DAMPING, STIFFEST = 1e-12, 1e10
-"""Least damping, and that at which no step is left."""
+MIN_DAMPING, MAX_DAMPING = 1e-12, 1e10
+"""Least damping, and that above which the descent has stalled."""
 
-STILL_X, STILL_TURN = 1e-14, 1e-12
-"""Added to the diagonals of A and, a unit of weight, of D: what nothing hangs on stays where it is."""
+MIN_CURVATURE, MIN_TURN_CURVATURE = 1e-14, 1e-12
+"""Added to the diagonals of A and, times the point's weight, of D: an unknown without influence stays where it is. Task
+units: both diagonals are sums of squared distances in them."""
 
-FURTHEST_TURN, FURTHEST_LOG = 0.4, 1.0
-"""Crank angles (radians) and unknowns move no farther than this in one step, where the linear model means something."""
+MAX_TURN_STEP, MAX_LOG_STEP = 0.4, 1.0
+"""Greatest change of a crank angle (radians) and of a logarithm in one step: beyond it the linear model fails."""
 
-ARRIVED = 1e-12
-"""Relative decrease of the cost below which nothing is gained any more, twice in a row."""
+COST_TOLERANCE = 1e-12
+"""The descent has converged when the relative decrease of the cost is below this in two steps in turn."""
 
-NOTHING = 1e-28
-"""A cost (task sizes squared) below this is rounding."""
+ZERO_COST = 1e-28
+"""Cost, in squared task sizes, that is rounding alone."""
 
-TOO_LONG = 4.0
-"""Weight of a length's excess over the longest allowed: only a guide for the search, what is returned is checked."""
+LENGTH_WEIGHT = 4.0
+"""Weight of the relative excess of a length over the longest allowed. It only guides the search: answers are
+checked."""
 
-ANYWHERE = np.array([[-np.inf, np.inf]] * 4)
-"""Fixed pivots without limits."""
+UNLIMITED_PIVOTS = np.array([[-np.inf, np.inf]] * 4)
+"""Bounds of fixed pivots, shape (4, 2), where nothing is demanded of them."""
+
+UNLIMITED_LENGTH = 1e300
+"""Longest link where none is stated; finite, as the excess is a difference of ratios to it."""
 
 PORTION = 5
-"""Starts that a thread takes at a time; some milliseconds."""
+"""Number of starts that a thread takes at a time: some milliseconds of work."""
 
 CYCLE_CHECKS = 48
 """Crank positions a cycle at which a geared fivebar must not jam."""
 
 
 class Descent(NamedTuple):
-    """Where descents have led: unknowns (n, m), crank angles (n, points), and sums of squared distances (n,)."""
+    """Ends of descents: unknowns (n, m), crank angles (n, points), and sums of squared distances (n,)."""
 
     x: Real
     theta: Real
@@ -110,7 +115,8 @@ def _cost(
 
 @njit(**OPTIONS)
 def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, off: Real, slopes: Real) -> float:
-    """Sum of squares of what the fixed pivots lie outside their limits; each part, and its slopes in the unknowns."""
+    """Sum of squared distances of the fixed pivots from their limits; ``off`` (4,) gets each coordinate's distance, and
+    ``slopes`` (4, m) its derivatives by the unknowns."""
     off[:] = 0.0
     slopes[:] = 0.0
     places = np.empty(4)
@@ -138,13 +144,13 @@ def _pivots_off(family: int, x: Real, lengths: Real, chart: Real, within: Real, 
 
 @njit(**OPTIONS)
 def _first_log(family: int) -> int:
-    """Where the numbers for lengths begin in x."""
+    """Index of the first unknown that stands for a length."""
     return 4 if family == GEARED_FIVEBAR else 3
 
 
 @njit(**OPTIONS)
 def _links(family: int) -> int:
-    """How many numbers for lengths there are."""
+    """Number of unknowns that stand for lengths."""
     return 4 if family <= FOURBAR or family == GEARED_FIVEBAR else 3
 
 
@@ -174,9 +180,9 @@ def _normal_equations(
 def _add_guides(
     family: int, x: Real, lengths: Real, chart: Real, longest: float, off: Real, off_slopes: Real, a: Real, g: Real
 ) -> None:
-    """To A and g what fixed pivots outside their limits add, and lengths beyond the longest, each its own residual."""
+    """Add to A and g the residuals of fixed pivots outside their limits, and of lengths beyond the longest."""
     m, logs, count = len(x), _first_log(family), _links(family)
-    guide = TOO_LONG * TOO_LONG
+    guide = LENGTH_WEIGHT * LENGTH_WEIGHT
     for i in range(4):
         if off[i] != 0.0:
             for j in range(m):
@@ -208,10 +214,10 @@ def _eliminated(
     m, n = len(g), len(h)
     work[:] = a
     for j in range(m):
-        work[j, j] = a[j, j] * (1.0 + damping) + STILL_X
+        work[j, j] = a[j, j] * (1.0 + damping) + MIN_CURVATURE
         step[j] = -g[j]
     for i in range(n):
-        inverse = 1.0 / (d[i] * (1.0 + damping) + STILL_TURN * weights[i])
+        inverse = 1.0 / (d[i] * (1.0 + damping) + MIN_TURN_CURVATURE * weights[i])
         for j in range(m):
             cij = c[i, j] * inverse
             step[j] += cij * h[i]
@@ -226,11 +232,14 @@ def _move(
     family: int, x: Real, theta: Real, c: Real, d: Real, h: Real, weights: Real, damping: float, step: Real,
     x_new: Real, theta_new: Real,
 ) -> None:  # fmt: skip
-    """The linkage and crank angles a step away, no farther than the linear model means something."""
+    """Linkage and crank angles after the step, which is cut to :data:`MAX_LOG_STEP` and :data:`MAX_TURN_STEP`.
+
+    The linkage's step is shortened as a whole, so that it keeps its direction; angles are cut one by one.
+    """
     m, n, logs, count = len(x), len(theta), _first_log(family), _links(family)
     shrink = 1.0
     for j in range(logs, logs + count):
-        shrink = min(shrink, FURTHEST_LOG / max(FURTHEST_LOG, abs(step[j])))
+        shrink = min(shrink, MAX_LOG_STEP / max(MAX_LOG_STEP, abs(step[j])))
     for j in range(m):
         x_new[j] = x[j] + shrink * step[j]
     for j in range(logs, logs + count):
@@ -239,8 +248,8 @@ def _move(
         turn = -h[i]
         for j in range(m):
             turn -= c[i, j] * step[j]
-        turn *= shrink / (d[i] * (1.0 + damping) + STILL_TURN * weights[i])
-        theta_new[i] = theta[i] + min(max(turn, -FURTHEST_TURN), FURTHEST_TURN)
+        turn *= shrink / (d[i] * (1.0 + damping) + MIN_TURN_CURVATURE * weights[i])
+        theta_new[i] = theta[i] + min(max(turn, -MAX_TURN_STEP), MAX_TURN_STEP)
 
 
 @njit(**OPTIONS)
@@ -270,7 +279,7 @@ def _descend(
     distance: float = _cost(family, x, lengths, sign, ratio, theta, points, weights, cycle)
     if not distance < math.inf:
         return math.inf
-    guide = TOO_LONG * TOO_LONG
+    guide = LENGTH_WEIGHT * LENGTH_WEIGHT
     off, off_slopes = np.zeros(4), np.zeros((4, m))
     distance += _pivots_off(family, x, lengths, chart, within, off, off_slopes)
     cost = distance + guide * _excess(lengths[:count], m, x, longest)
@@ -281,9 +290,9 @@ def _descend(
         _pivots_off(family, x, lengths, chart, within, off, off_slopes)
         _add_guides(family, x, lengths, chart, longest, off, off_slopes, a, g)
         accepted = False
-        while damping < STIFFEST:
+        while damping < MAX_DAMPING:
             if not _eliminated(a, g, c, d, h, weights, damping, work, step):
-                damping *= STIFFENED
+                damping *= DAMPING_INCREASE
                 continue
             _move(family, x, theta, c, d, h, weights, damping, step, x_new, theta_new)
             natural(family, x_new, lengths, chart)
@@ -293,16 +302,16 @@ def _descend(
             if cost_new < cost:
                 accepted = True
                 break
-            damping *= STIFFENED
+            damping *= DAMPING_INCREASE
         if not accepted:
             break
         gain = cost - cost_new
         x[:] = x_new
         theta[:] = theta_new
         cost, distance = cost_new, distance_new
-        damping = max(damping * EASED, MIN_DAMPING)
-        idle = idle + 1 if gain <= ARRIVED * cost else 0
-        if idle >= 2 or cost <= NOTHING:
+        damping = max(damping * DAMPING_DECREASE, MIN_DAMPING)
+        idle = idle + 1 if gain <= COST_TOLERANCE * cost else 0
+        if idle >= 2 or cost <= ZERO_COST:
             break
     return distance
 
@@ -355,21 +364,21 @@ def descend(
     weights : float, shape (points,), optional
         Of the squared distances.
     longest : float
-        Links longer than this are discouraged.
+        Longest link; what is longer adds to the cost by :data:`LENGTH_WEIGHT`.
     cycle : float
         For geared fivebars: the crank's full cycle, over which it must not jam; 0 where it need not go round.
     within : float, shape (4, 2), optional
-        Least and greatest x and y of O2, then of the other fixed pivot: what lies outside counts as a distance, so that
-        a cost of zero keeps them. For slider-cranks the last two rows have no meaning.
+        Least and greatest x and y of O2, then of the other fixed pivot. The distance from these bounds is a residual
+        like that of a point, so that a cost of zero means that they hold. Slider-cranks do not use the last two rows.
     iterations : int
-        Steps at most.
+        Greatest number of accepted steps.
     """
     x, theta = np.array(x, np.float64), np.array(theta, np.float64)
     w = np.ones(len(points)) if weights is None else np.ascontiguousarray(weights, np.float64)
     cost = np.empty(len(x))
     signs, targets = np.ascontiguousarray(sign, np.float64), np.ascontiguousarray(points, np.complex128)
-    inside = ANYWHERE if within is None else np.ascontiguousarray(within, np.float64)
-    limit = longest if math.isfinite(longest) else 1e300
+    inside = UNLIMITED_PIVOTS if within is None else np.ascontiguousarray(within, np.float64)
+    limit = longest if math.isfinite(longest) else UNLIMITED_LENGTH
 
     def work(some: slice) -> None:
         _descend_all(

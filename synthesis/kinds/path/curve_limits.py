@@ -28,7 +28,7 @@ from synthesis.fit.demands import (
     margins,
 )
 from synthesis.kinds.path.curve_descent import Descent
-from synthesis.kinds.path.limits import FIRM, GRASHOF, INSIDE, ORDERED, TIMED, setting_of
+from synthesis.kinds.path.limits import LIMIT_MARGIN, LIMIT_WEIGHT, MIN_GRASHOF, ORDERED, TIMED, setting_of
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.numerics.augmented_lagrangian import hold
@@ -37,13 +37,13 @@ from synthesis.numerics.status import Status
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-ROOM = 1e-9
+LENGTH_TOLERANCE = 1e-9
 """Relative excess of a length that is rounding: cognates repeat a curve to some roundings."""
 
-EDGE = 1e-7
+REGION_MARGIN = 1e-7
 """Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
 
-USABLE = 25.0
+USABLE_TRANSMISSION = 25.0
 """Transmission angle, degrees, with which designs are offered beside the nearest where none is demanded: fits tend to
 change points, where it vanishes."""
 
@@ -55,8 +55,8 @@ def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
     """
     setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
     lengths = problem.constraints.link_length
-    setting[LINKS] = 0.0 if lengths is None else lengths.min / size * (1.0 + INSIDE)
-    setting[LINKS + 1] = problem.longest_link / size * (1.0 - INSIDE)
+    setting[LINKS] = 0.0 if lengths is None else lengths.min / size * (1.0 + LIMIT_MARGIN)
+    setting[LINKS + 1] = problem.longest_link / size * (1.0 - LIMIT_MARGIN)
     setting[CHANGE_POINT] = setting[TIMED] = setting[ORDERED] = 0.0
     setting[WHOLE] = problem.closed or problem.constraints.full_rotation
     return setting
@@ -65,11 +65,11 @@ def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
 def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
     """Least and greatest x and y of O2, then of the other fixed pivot, shape (4, 2), in the task's unit.
 
-    Regions are drawn in by :data:`EDGE`; where a coordinate is given both are it.
+    Regions are drawn in by :data:`REGION_MARGIN`; where a coordinate is given both are it.
     """
     setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
     within = setting[BOXES : BOXES + 8].reshape(4, 2)
-    margin = np.minimum(EDGE, 0.25 * (within[:, 1] - within[:, 0]))
+    margin = np.minimum(REGION_MARGIN, 0.25 * (within[:, 1] - within[:, 0]))
     given = setting[GIVEN : GIVEN + 4, None]
     return np.where(np.isnan(given), within + np.stack([margin, -margin], axis=1), given)
 
@@ -79,13 +79,13 @@ def usable(setting: Real) -> Real | None:
     if math.isfinite(setting[COSINE]):
         return None
     stated = setting.copy()
-    stated[COSINE] = math.cos(math.radians(USABLE))
+    stated[COSINE] = math.cos(math.radians(USABLE_TRANSMISSION))
     return stated
 
 
 def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> bool:
     """Whether lengths, in the target's unit, are within their limits."""
-    slack = 1.0 + 2.0 * ROOM
+    slack = 1.0 + 2.0 * LENGTH_TOLERANCE
     short, long = min(links), max(links)
     least, most, ratio = setting[LINKS], setting[LINKS + 1], setting[RATIO]
     return bool(long <= most * slack and short * slack >= least and long <= ratio * short * slack)
@@ -117,10 +117,10 @@ def descend_within(
     if _kept(x, state[[0, n - 1]], demanded):
         return free
     # Under demands fits run to change points, where the crank would no longer turn through.
-    demanded[CHANGE_POINT] = GRASHOF
+    demanded[CHANGE_POINT] = MIN_GRASHOF
     rows = np.stack([points.real, points.imag, np.zeros(n), np.sqrt(weights)], axis=1)
     ended = np.empty(1)
-    status = hold(path_rows, x, rows, demanded, state, 2 * n + LIMITS, LIMITS, EQUATIONS, FIRM, ended)
+    status = hold(path_rows, x, rows, demanded, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE):
         return None
     return Descent(x, state[:n] + x[2], 2.0 * ended[0])
@@ -132,4 +132,4 @@ def _kept(x: Real, ends: Real, setting: Real) -> bool:
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, len(x)))
     natural(int(setting[FAMILY]), x, lengths, slopes)
     margins(x, lengths, slopes, ends, setting, values, gradients)
-    return bool(values.min() >= -INSIDE)
+    return bool(values.min() >= -LIMIT_MARGIN)

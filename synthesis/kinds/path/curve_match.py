@@ -73,49 +73,49 @@ DRAWN = {
 }
 """Linkages drawn, by family and whether the target is closed; an open one is compared with 216 windows of each."""
 
-FOLLOWED = 150
+MAX_FOLLOWED = 150
 """Starts of a family that are refined at equal steps along the target."""
 
-REFINED = 20
+MAX_REFINED = 20
 """Of these, the best that are refined at the target's own points."""
 
-ROUGHLY, SETTLED = 30, 300
+ROUGH_STEPS, FINE_STEPS = 30, 300
 """Steps of these refinements at most."""
 
 THINNED, ALL = 120, 60
 """More points than this are thinned at first, and all of them then taken for so many steps at most."""
 
-HOPELESS, SHAPE_ERROR = 100.0, 1e-3
+MAX_COST_RATIO, SHAPE_ERROR = 100.0, 1e-3
 """Linkages whose sum of squares at equal steps is this many times the least are given up; below the second, a share of
 the size at every point, that sum says nothing, as the steps lie on straight lines between the points."""
 
-LOOKED_AT = 121
+CURVE_SAMPLES = 121
 """Places on a candidate's curve at which excursions between the points are looked for."""
 
-LIMITED = 7
+MAX_LIMITED = 7
 """Refined linkages of a family, all different, that are brought within the problem's limits."""
 
-HALVES = 0.4
+NEAREST_SHARE = 0.4
 """A linkage stays in the running while its error is below the best one's over this; demands may choose among them."""
 
-ALSO_USABLE = 2
+MAX_USABLE = 2
 """Refined linkages of a family that are offered with better force transmission too, at the cost of accuracy."""
 
-OFFERED = 10
+MAX_OFFERED = 10
 """Linkages, each with its cognates, that are verified."""
 
 SAME_DESIGN = 1e-4
 """Designs whose joints agree to this share of the curve's size are one and the same: fits of different accuracy."""
 
-EQUALLY_NEAR, NEARER, NOTHING = 1.1, 1.001, 1e-9
+EQUALLY_NEAR, NEARER, ERROR_TOLERANCE = 1.1, 1.001, 1e-9
 """Errors within these factors are alike, and quality decides: where the best design is asked for, and where the most
 accurate is. Errors below the last, a share of the curve's size, are rounding."""
 
-SHORTEST = 1e-7
+MIN_LINK = 1e-7
 """Links shorter than this share of the curve's size are no links."""
 
 
-ROUNDING = 1e-6
+STEP_ROUNDING = 1e-6
 """Share of a step of nearness that is rounding."""
 
 
@@ -178,7 +178,7 @@ def _alike(
             target.steps,
             problem.closed,
             count,
-            FOLLOWED,
+            MAX_FOLLOWED,
             longest=float(setting[LINKS + 1]),
             seed=problem.seed % 2**32,
             progress=compared,
@@ -237,10 +237,10 @@ def _refined(
     if not len(starts.x):
         return [], least
     family, longest = starts.family, float(setting[LINKS + 1])
-    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGHLY)
+    rough = descend(family, starts.x, starts.sign, starts.theta, target.steps, longest=longest, iterations=ROUGH_STEPS)
     least = min(least, float(rough.cost.min()))
-    best = np.argsort(rough.cost, kind="stable")[:REFINED]
-    best = best[rough.cost[best] <= HOPELESS * max(least, SHAPE_POINTS * SHAPE_ERROR**2)]
+    best = np.argsort(rough.cost, kind="stable")[:MAX_REFINED]
+    best = best[rough.cost[best] <= MAX_COST_RATIO * max(least, SHAPE_POINTS * SHAPE_ERROR**2)]
     if not len(best):
         return [], least
     theta = np.array([target.angles(rough.theta[k]) for k in best])
@@ -253,13 +253,13 @@ def _refined(
         target.fitted[thin],
         weights=target.weights[thin],
         longest=longest,
-        iterations=SETTLED,
+        iterations=FINE_STEPS,
     )
     signs = starts.sign[best]
     order = [k for k in np.argsort(fine.cost, kind="stable") if math.isfinite(fine.cost[k])]
     order = [
         order[k]
-        for k in _distinct([_rough(family, fine.x[k], float(signs[k]), fine.theta[k]) for k in order], 2 * LIMITED)
+        for k in _distinct([_rough(family, fine.x[k], float(signs[k]), fine.theta[k]) for k in order], 2 * MAX_LIMITED)
     ]
     if len(target.fitted) > THINNED:
         fine = _at_all_points(target, family, fine, signs, thin, longest, order)
@@ -267,7 +267,7 @@ def _refined(
     free.sort(key=lambda pair: pair[0].error)
     demanded, offered = [], list[_Candidate]()
     practical = usable(setting) if traded else None
-    for candidate, k in free[:LIMITED]:
+    for candidate, k in free[:MAX_LIMITED]:
         descent = Descent(fine.x[k], fine.theta[k], fine.cost[k])
         kept = descend_within(family, descent, candidate.sign, target.fitted, target.weights, setting)
         if kept is None:
@@ -275,7 +275,7 @@ def _refined(
         demanded.append(
             candidate if kept is descent else _candidate(target, family, kept.x, candidate.sign, kept.theta)
         )
-        if practical is not None and len(demanded) <= ALSO_USABLE:
+        if practical is not None and len(demanded) <= MAX_USABLE:
             better = descend_within(family, kept, candidate.sign, target.fitted, target.weights, practical)
             if better is not None and better is not kept:
                 offered.append(_candidate(target, family, better.x, candidate.sign, better.theta))
@@ -318,7 +318,7 @@ def _candidate(target: Target, family: int, x: Real, sign: float, theta: Real) -
         for point, at in zip(target.points, angles, strict=True)
     ]
     end = angles[0] + 2.0 * math.pi if target.closed else angles[-1]
-    run = np.linspace(angles[0], end, LOOKED_AT)
+    run = np.linspace(angles[0], end, CURVE_SAMPLES)
     curve = np.array([place(family, x, lengths, sign, 0.0, float(at))[1] for at in run])
     _, beyond = distances(curve, target.points, target.closed, max(misses))
     error = math.hypot(math.sqrt(float(np.mean(np.square(misses)))), float(beyond.max()))
@@ -335,9 +335,9 @@ def _running(candidates: list[_Candidate]) -> list[_Candidate]:
     ordered = sorted(candidates, key=lambda candidate: candidate.error)
     if not ordered:
         return []
-    worst = max(ordered[0].error / HALVES, NOTHING)
+    worst = max(ordered[0].error / NEAREST_SHARE, ERROR_TOLERANCE)
     ordered = [candidate for candidate in ordered if candidate.error <= worst]
-    return [ordered[k] for k in _distinct(ordered, OFFERED)]
+    return [ordered[k] for k in _distinct(ordered, MAX_OFFERED)]
 
 
 def _joints(candidate: _Candidate) -> FourbarConfiguration:
@@ -369,11 +369,11 @@ def _verified(
 ) -> PathDesign | str | None:
     """A linkage in the target's unit, driven and measured; or why it is not driven."""
     links = joints.lengths
-    if min(links) < SHORTEST:
+    if min(links) < MIN_LINK:
         return "degenerate"
     if not lengths_kept(setting, links):
         return "link_length"
-    if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + NOTHING):
+    if problem.closed and 2.0 * (max(links) + min(links)) > sum(links) * (1.0 + ERROR_TOLERANCE):
         return "full_rotation"
     drawn = FourbarConfiguration(*(target.centre + target.size * joint for joint in joints))
     alpha, beta = placement_of(problem, drawn)
@@ -410,13 +410,15 @@ def _summary(problem: PathProblem, sifting: Sifting[PathDesign], sweep: CurveSwe
 
 def error_of(design: PathDesign, problem: PathProblem) -> float:
     """How far a design is from the curve: its rms distance from the points, and how far it goes astray between them."""
-    return max(NOTHING * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0))
+    return max(
+        ERROR_TOLERANCE * problem.task_size, math.hypot(design.metrics.rms_distance, design.metrics.excursion or 0.0)
+    )
 
 
 def near_the_nearest(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
-    """Designs whose error is not beyond the least one over :data:`HALVES`."""
+    """Designs whose error is not beyond the least one over :data:`NEAREST_SHARE`."""
     least = min((error_of(design, problem) for design in designs), default=0.0)
-    return [design for design in designs if error_of(design, problem) <= least / HALVES]
+    return [design for design in designs if error_of(design, problem) <= least / NEAREST_SHARE]
 
 
 def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[PathDesign]:
@@ -426,7 +428,7 @@ def ranked_by_nearness(designs: list[PathDesign], problem: PathProblem) -> list[
     least = min((error_of(design, problem) for design in designs), default=0.0)
 
     def nearness(design: PathDesign) -> int:
-        return math.floor(math.log(error_of(design, problem) / least) / factor + ROUNDING)
+        return math.floor(math.log(error_of(design, problem) / least) / factor + STEP_ROUNDING)
 
     if problem.rank_by in ("size", "transmission_angle"):
         return ranked(designs, problem.rank_by, group=lambda design: error_of(design, problem) > 2.0 * least)

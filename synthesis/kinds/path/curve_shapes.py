@@ -1,14 +1,14 @@
 """Which of many coupler curves have the shape of a given one: sweep, resample by arc length, compare, place.
 
 Shapes are compared with position, size and rotation removed. A curve is N points at equal distances along it, less its
-centroid, of unit norm. Two closed ones are as like as
+centroid, of unit norm. The likeness of two closed ones is
 
     ρ = max over s and direction of |Σⱼ z̄ⱼ tⱼ₊ₛ| ≤ 1,
 
-because √(1 − ρ²) is the norm of what the best similarity transformation leaves; all shifts s come from one inverse
-transform of the product of their Fourier descriptors (Zahn & Roskies 1972, doi:10.1109/TC.1972.5008949). Mirror images
-count as alike: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point and needs no
-shift; it is compared with windows of every candidate, of several lengths and places along it.
+because √(1 − ρ²) is the norm of the difference that the best similarity transformation leaves. The sums for all s are
+one inverse transform of the product of Fourier descriptors (Zahn & Roskies 1972, doi:10.1109/TC.1972.5008949).
+Mirror images count as alike: the mirrored linkage has the mirrored curve. An open stroke has a first and a last point
+and needs no shift; it is compared with windows of every candidate, of several lengths and at several places along it.
 
 Candidates are drawn at run time (:mod:`synthesis.kinds.path.curve_candidates`) and swept by the compiled kernel.
 """
@@ -41,7 +41,7 @@ SWEEP_STEPS = 96
 """Crank positions a candidate is swept at, before it is resampled."""
 
 CHUNK = 2048
-"""Candidates that are compared at a time; what they need stays in the cache."""
+"""Number of candidates that are compared at a time: their curves fit into the processor's cache."""
 
 WINDOW_LENGTHS = (1.0, 0.85, 0.7, 0.58, 0.47, 0.38, 0.3, 0.22, 0.15)
 """Shares of a closed curve's length that are compared with an open stroke."""
@@ -52,14 +52,17 @@ WINDOW_STARTS = 24
 WINDOW_POINTS = 24
 """Points in which a window is compared with a stroke: half of a shape's, as there are so many windows."""
 
-SAME_PLACE = 0.12
-"""Starts whose pivots agree to this share of the task's size lead to the same linkage; one of them is followed."""
+SAME_START = 0.12
+"""Starts whose pivots agree to this share of the task's size lead to the same linkage; only the first is followed."""
 
 OVERSUPPLY = 6
-"""The most alike candidates are many times the same; so many times what is wanted are looked through."""
+"""The most alike candidates are often nearly equal: so many times the wanted number are sifted for different ones."""
 
-OVERSIZE = 2.0
-"""Starts this many times too long are still followed: most shrink on the way."""
+MAX_OVERSIZE = 2.0
+"""Starts with links at most this many times too long are still followed: most shrink in the descent."""
+
+WHOLE_TURN = 1e-12
+"""Relative rounding of a range of crank angles that is a whole cycle."""
 
 
 class Starts(NamedTuple):
@@ -137,8 +140,8 @@ def _windows(
                     k = int(at)
                     if not ring and k >= count - 1:
                         k = count - 2
-                    one, two = curves[i, k % count], curves[i, (k + 1) % count]
-                    window[j] = one + (at - k) * (two - one)
+                    left, right = curves[i, k % count], curves[i, (k + 1) % count]
+                    window[j] = left + (at - k) * (right - left)
                     middle += window[j]
                 middle /= points
                 f0, f1, b0, b1 = 0j, 0j, 0j, 0j
@@ -161,13 +164,14 @@ def _windows(
 
 
 class _Likeness(NamedTuple):
-    """Candidates of a chunk: how alike, and how the target lies on them (shift or window, and the manner)."""
+    """Candidates of a chunk: ρ, shape (n,), and where the target lies on them, shape (n, 3): see :func:`_windows`."""
 
     rho: Real
     where: NDArray[np.int64]
 
 
 def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
+    """Closed curves against a closed target, over all shifts, both directions and the mirror image."""
     shapes = np.empty((len(curves), SHAPE_POINTS), np.complex128)
     _resample(curves, True, shapes)
     shapes -= shapes.mean(axis=1, keepdims=True)
@@ -178,7 +182,7 @@ def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
     for manner in range(4):
         asked = target[::-1] if manner % 2 else target
         if manner >= 2:
-            # Σ z t̄... : the mirrored candidate, z̄, against t is z against t̄, conjugated.
+            # The mirrored candidate z̄ against t has the |Σ| of z against t̄.
             asked = asked.conj()
         product = fft.ifft(fft.fft(asked).astype(np.complex64) * descriptors.conj(), axis=1)
         sizes = np.abs(product)
@@ -191,6 +195,7 @@ def _alike_closed(curves: Complex, target: Complex) -> _Likeness:
 
 
 def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Likeness:
+    """Windows of curves against an open target; ``ring`` where the curves close."""
     shapes = np.empty((len(curves), SWEEP_STEPS), np.complex128)
     _resample(curves, ring, shapes)
     rho, where = np.empty(len(curves)), np.zeros((len(curves), 3), np.int64)
@@ -270,7 +275,7 @@ def _swept(drawn: Draw, family: int, rows: Any, ratio: float) -> tuple[Complex, 
     """P and θ over the crank's range of each candidate; which do not jam; and which come round."""
     x, sign, begin, end = drawn.x[rows], drawn.sign[rows], drawn.begin[rows], drawn.end[rows]
     turn = cycle_of(ratio) if family == GEARED_FIVEBAR else 2.0 * math.pi
-    rings = end - begin >= turn * (1.0 - 1e-12)
+    rings = end - begin >= turn * (1.0 - WHOLE_TURN)
     curves, theta = np.empty((len(x), SWEEP_STEPS), np.complex128), np.empty((len(x), SWEEP_STEPS))
     good = np.empty(len(x), np.bool_)
     sweep(family, x, sign, ratio, begin, end, rings, curves, theta, good)
@@ -373,10 +378,10 @@ def _different(x: Real, theta: Real, size: float, longest: float, family: int, k
     for i in range(len(x)):
         lengths[:] = 0.0
         natural(family, x[i], lengths, chart)
-        if max(float(np.abs(lengths).max()), math.hypot(x[i, -2], x[i, -1])) > OVERSIZE * longest:
+        if max(float(np.abs(lengths).max()), math.hypot(x[i, -2], x[i, -1])) > MAX_OVERSIZE * longest:
             continue
         pin = complex(x[i, 0], x[i, 1]) + lengths[0 if family > FOURBAR else 1] * cmath.exp(1j * theta[i, 0])
         far = lengths[:4] if family == GEARED_FIVEBAR else lengths[1:]
         rows.append(i)
         marks.append([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
-    return np.array(rows, np.int64)[distinct(marks, keep, SAME_PLACE * size)]
+    return np.array(rows, np.int64)[distinct(marks, keep, SAME_START * size)]

@@ -26,10 +26,10 @@ from synthesis.model.kind import Progress, part_of
 ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 20.0), None)
 """What is asked of the linkages beyond the client's limits, round by round."""
 
-DRAWN = 40
+MAX_REFINED = 40
 """Linkages that are refined and verified in each round, at most."""
 
-EXACT = 1e-11
+EXACT_TOLERANCE = 1e-11
 """Root mean square distance, in task sizes, up to which a descent has ended on the family."""
 
 
@@ -44,8 +44,8 @@ def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | No
     sound = 0
     for n, usable in enumerate(ROUNDS):
         part = part_of(progress, n / len(ROUNDS), (n + 1) / len(ROUNDS))
-        for candidate in fitted(problem, task, rng, part, finalists=DRAWN, usable=usable):
-            if math.sqrt(2.0 * candidate.cost / len(task.rows)) > EXACT:
+        for candidate in fitted(problem, task, rng, part, finalists=MAX_REFINED, usable=usable):
+            if math.sqrt(2.0 * candidate.cost / len(task.rows)) > EXACT_TOLERANCE:
                 continue
             mechanism = mechanism_of(candidate, task)
             design = None if mechanism is None else verify_path(problem, mechanism)

@@ -33,25 +33,25 @@ from synthesis.outcome.sifting import Sifting, reported
 DRAWN = 6144
 """Linkages of a family that are drawn in each round, and compared by their parts with a curve through the points."""
 
-FOLLOWED = 220
+MAX_FOLLOWED = 220
 """The most alike of them, which are brought to the points."""
 
-SETTLED = 150
+MAX_STEPS = 150
 """Steps of least squares at most; members are reached in some twenty."""
 
-MET = 1e-22
+COST_TOLERANCE = 1e-22
 """Sum of squared distances, in squares of the task's size, at which a member of the family is reached."""
 
-LONGEST = 12.0
+MAX_LINK = 12.0
 """Links longer than this many task sizes are discouraged, where no limit is stated."""
 
 SAME_DESIGN = 1e-3
 """Members whose joints agree to this share of the task's size are offered once: the family is continuous."""
 
-SHORTEST = 1e-6
+MIN_LINK = 1e-6
 """Links shorter than this share of the task's size are no links."""
 
-DRIVEN = 160
+MAX_DRIVEN = 160
 """Members that are driven at most."""
 
 
@@ -62,7 +62,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     points = (given - centre) / size
     within = pivot_limits(problem, centre, size)
     limit = problem.constraints.link_length
-    longest = LONGEST if limit is None or limit.max is None else limit.max / size
+    longest = MAX_LINK if limit is None or limit.max is None else limit.max / size
     smooth, places = smooth_steps(points, closed=False)
     families = families_of(problem)
     members: list[FourbarConfiguration] = []
@@ -72,15 +72,15 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
             done = (turn + n / len(families)) / problem.rounds
             progress(0.6 * done, f"round {turn + 1} of {problem.rounds}: {len(members)} linkages meet all points")
             seed = int(np.random.default_rng([problem.seed, turn, n]).integers(2**31))
-            starts = alike(family, smooth, False, DRAWN, FOLLOWED, longest=longest, seed=seed)
+            starts = alike(family, smooth, False, DRAWN, MAX_FOLLOWED, longest=longest, seed=seed)
             brought += len(starts.x)
             if not len(starts.x):
                 continue
             theta = np.array([angles_at(places, angles, False, 0.0) for angles in starts.theta])
             ends = descend(
-                family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=SETTLED
+                family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=MAX_STEPS
             )
-            for k in np.flatnonzero(ends.cost <= MET):
+            for k in np.flatnonzero(ends.cost <= COST_TOLERANCE):
                 joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
                 members.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
     return _answer(problem, members, brought, progress)
@@ -91,11 +91,11 @@ def _answer(problem: PathProblem, met: list[FourbarConfiguration], brought: int,
     size = problem.task_size
 
     def verified(member: FourbarConfiguration) -> PathDesign | str | None:
-        if min(member.lengths) < SHORTEST * size:
+        if min(member.lengths) < MIN_LINK * size:
             return "degenerate"
         return verify_path(problem, fourbar_mechanism(member))
 
-    driven = [met[k] for k in distinct(met, DRIVEN, SAME_DESIGN * size)]
+    driven = [met[k] for k in distinct(met, MAX_DRIVEN, SAME_DESIGN * size)]
     sifting = Sifting[PathDesign](problem)
     sifting.sift(reported(driven, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
     progress(1.0, "verified")

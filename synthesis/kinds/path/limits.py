@@ -39,19 +39,19 @@ SETTING = DEMANDS + 3
 FREE, ABSOLUTE, GROUND_LINE = range(3)
 """What crank angles are measured from."""
 
-LONGEST = 50.0
+MAX_LINK = 50.0
 """Links of more task sizes are looked for only where the client allows them: fits run off to sliders otherwise."""
 
-SHORTEST_SHARE = 1e-4
+MIN_LINK = 1e-4
 """No link is shorter than this share of the task's size; it could not be drawn, let alone be built."""
 
-GRASHOF = 1e-6
+MIN_GRASHOF = 1e-6
 """Least of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
 
-FIRM = 1e3
+LIMIT_WEIGHT = 1e3
 """Weight of limits in task units at first, where they are brought to hold."""
 
-INSIDE = 1e-10
+LIMIT_MARGIN = 1e-10
 """Limits are drawn in by this share, so that what rounding leaves lies on their right side."""
 
 
@@ -71,20 +71,20 @@ def setting_of(
     limits = problem.constraints
     out = np.full(SETTING, math.inf)
     out[FAMILY], out[SIGN], out[WHOLE] = family, sign, problem.closed
-    out[TIMED], out[CHANGE_POINT] = problem.prescribed, GRASHOF
+    out[TIMED], out[CHANGE_POINT] = problem.prescribed, MIN_GRASHOF
     out[PHASED] = ("free", "absolute", "ground_line").index(problem.crank_phase)
     out[ORDERED] = limits.in_order
-    least, most = SHORTEST_SHARE, LONGEST
+    least, most = MIN_LINK, MAX_LINK
     if limits.link_length is not None:
-        least = max(limits.link_length.min / size, SHORTEST_SHARE)
-        most = LONGEST if limits.link_length.max is None else limits.link_length.max / size
+        least = max(limits.link_length.min / size, MIN_LINK)
+        most = MAX_LINK if limits.link_length.max is None else limits.link_length.max / size
     if usable is not None:
         most = min(most, max(usable.longest, 2.0 * least))
         out[RATIO] = usable.ratio
         out[COSINE] = math.cos(math.radians(usable.transmission))
-    out[LINKS], out[LINKS + 1] = least * (1.0 + INSIDE), most * (1.0 - INSIDE)
+    out[LINKS], out[LINKS + 1] = least * (1.0 + LIMIT_MARGIN), most * (1.0 - LIMIT_MARGIN)
     if limits.max_link_ratio is not None:
-        out[RATIO] = min(out[RATIO], limits.max_link_ratio * (1.0 - INSIDE))
+        out[RATIO] = min(out[RATIO], limits.max_link_ratio * (1.0 - LIMIT_MARGIN))
     out[BOXES : BOXES + 4] = _box([limits.fixed_pivot_region, limits.input_pivot_region], origin, size)
     out[BOXES + 4 : BOXES + 8] = _box([limits.fixed_pivot_region], origin, size)
     out[POINT_BOX : POINT_BOX + 4] = -math.inf, math.inf, -math.inf, math.inf
@@ -93,7 +93,7 @@ def setting_of(
             if interval is not None:
                 out[POINT_BOX + 2 * k : POINT_BOX + 2 * k + 2] = interval[0] / size, interval[1] / size
     if limits.min_transmission_angle is not None:
-        out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - INSIDE))
+        out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - LIMIT_MARGIN))
     out[GIVEN : GIVEN + 4] = math.nan
     for k, pivot in enumerate((problem.fixed_pivots.input, problem.fixed_pivots.output)):
         x, y = pivot or (None, None)

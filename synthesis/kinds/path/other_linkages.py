@@ -61,13 +61,13 @@ Mechanism = SliderCrankMechanism | GearedFivebarMechanism
 CLOSED_DRAWN, OPEN_DRAWN = 49152, 8192
 """Linkages that are drawn of a family: for a closed curve, and for a stroke, which is compared with parts of each."""
 
-FOLLOWED, REFINED, DRIVEN = 150, 24, 16
+MAX_FOLLOWED, MAX_REFINED, MAX_DRIVEN = 150, 24, 16
 """The most alike that are brought to the points; the best of them that are refined; and those that are driven."""
 
-SETTLED = 250
+MAX_STEPS = 250
 """Steps of least squares at most."""
 
-MET = 1e-22
+COST_TOLERANCE = 1e-22
 """Sum of squared distances, in squares of the task's size, at which exact points count as met."""
 
 RATIOS = (1.0, -1.0, 2.0, -2.0)
@@ -76,10 +76,10 @@ RATIOS = (1.0, -1.0, 2.0, -2.0)
 SAME_DESIGN = 1e-4
 """Designs whose joints agree to this share of the task's size are one."""
 
-COGNATES = 3
+MAX_COGNATES = 3
 """Fourbars whose geared cognates are offered, each with up to three."""
 
-SHORTEST = 1e-6
+MIN_LINK = 1e-6
 """Links shorter than this share of the task's size are no links."""
 
 
@@ -106,7 +106,15 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
         drawn = (CLOSED_DRAWN if problem.closed else OPEN_DRAWN) // (1 if len(tasks) < 3 else 2)
         seed = int(np.random.default_rng([problem.seed, n]).integers(2**31))
         starts = alike(
-            family, target, problem.closed, drawn, FOLLOWED, ratio=ratio, longest=longest, seed=seed, progress=compared
+            family,
+            target,
+            problem.closed,
+            drawn,
+            MAX_FOLLOWED,
+            ratio=ratio,
+            longest=longest,
+            seed=seed,
+            progress=compared,
         )
         if not len(starts.x):
             continue
@@ -115,15 +123,15 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
         theta = np.array([angles_at(places, angles, problem.closed, span) for angles in starts.theta])
         settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
         rough = descend(family, starts.x, starts.sign, theta, points, iterations=40, **settings)
-        best = np.argsort(rough.cost, kind="stable")[: REFINED if problem.fitted else None]
+        best = np.argsort(rough.cost, kind="stable")[: MAX_REFINED if problem.fitted else None]
         best = best[np.isfinite(rough.cost[best])]
         if not len(best):
             continue
         fine = descend(
-            family, rough.x[best], starts.sign[best], rough.theta[best], points, iterations=SETTLED, **settings
+            family, rough.x[best], starts.sign[best], rough.theta[best], points, iterations=MAX_STEPS, **settings
         )
         for k in np.argsort(fine.cost, kind="stable"):
-            if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= MET):
+            if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= COST_TOLERANCE):
                 mechanism = _mechanism(
                     family, fine.x[k], float(starts.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
                 )
@@ -139,7 +147,7 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
 
 def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
     """The geared fivebars that draw the curves of the best fourbars."""
-    asked = problem.model_copy(update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": COGNATES})
+    asked = problem.model_copy(update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES})
     fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
     cognates: list[Mechanism] = []
     for design in fourbars.designs:
@@ -214,10 +222,10 @@ def _mechanism(
     if family == GEARED_FIVEBAR:
         o5 = complex(x[2], x[3])
         b, c = o5 + cmath.rect(float(lengths[3]), ratio * theta + float(x[8])), a + lengths[1] * unit
-        if min(*lengths, abs(o5 - o2)) < SHORTEST:
+        if min(*lengths, abs(o5 - o2)) < MIN_LINK:
             return None
         return geared_fivebar_mechanism(put(o2), put(a), put(c), put(b), put(o5), put(p), ratio, theta)
-    if min(lengths[0], lengths[1]) < SHORTEST:
+    if min(lengths[0], lengths[1]) < MIN_LINK:
         return None
     return slider_crank_mechanism(put(o2), put(a), put(a + lengths[1] * unit), float(x[2]), put(p))
 
@@ -225,7 +233,7 @@ def _mechanism(
 def _different(mechanisms: list[Mechanism], size: float) -> list[Mechanism]:
     """Those that differ in some joint, in their order, no more than are driven."""
     joints = [[to_complex(joint) for joint in mechanism.skeleton.joints.values()] for mechanism in mechanisms]
-    return [mechanisms[n] for n in distinct(joints, DRIVEN, SAME_DESIGN * size)]
+    return [mechanisms[n] for n in distinct(joints, MAX_DRIVEN, SAME_DESIGN * size)]
 
 
 def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progress) -> PathResult:

@@ -28,7 +28,7 @@ from synthesis.fit.coupler_curve import place
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
-from synthesis.kinds.path.limits import FIRM, Usable, setting_of
+from synthesis.kinds.path.limits import LIMIT_WEIGHT, Usable, setting_of
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
     COUPLER,
@@ -62,9 +62,9 @@ PORTION = 16
 
 TIMED_STARTS, FREE_STARTS, STARTS_OF_MANY = 6000, 1800, 1300
 """Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more.
-The last is for free timing with more than :data:`FEW` points, which take longer."""
+The last is for free timing with more than :data:`MAX_FEW` points, which take longer."""
 
-FEW = 18
+MAX_FEW = 18
 
 TIMED_SHARE = 0.15
 """Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
@@ -87,7 +87,7 @@ SPREAD = 0.8
 
 KICK_THINNING = ((1.0, 10, 1e-3), (0.25, 60, 1e-6))
 
-FINALISTS = 24
+MAX_FINALISTS = 24
 """Minima that are refined within the limits and verified, at most."""
 
 RETURNS, AGAIN = 1, 10
@@ -96,19 +96,19 @@ RETURNS, AGAIN = 1, 10
 MANY, OF_MANY = 100, 6
 """With more points than that, minima that are refined and verified, at most: each takes longer."""
 
-LEAST_DRIVEN = 12
+MIN_DRIVEN = 12
 """Linkages that are verified at least, however few are wanted."""
 
-EXPLORED = 48
+MAX_EXPLORED = 48
 """Points with which starts are made and thinned out, at most: evenly chosen ones of more."""
 
-SOFT = 10.0
+SOFT_WEIGHT = 10.0
 """Weight of limits in task units while starts are thinned out."""
 
 SAME_FIT = 1e-2
 """Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
 
-AS_GOOD_AS_EXACT = 1e-9
+EXACT_TOLERANCE = 1e-9
 """Root mean square distance, in task sizes, below which fits are equally near."""
 
 _FAMILIES = {
@@ -175,7 +175,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     fits.sift(
         reported(minima, progress, (0.9, 1.0), "driving linkage {next} of {all}"),
         verified,
-        enough=max(2 * problem.max_designs, LEAST_DRIVEN),
+        enough=max(2 * problem.max_designs, MIN_DRIVEN),
     )
     progress(1.0, "verified")
     return fits.result("least_squares", complete=False, summary=fits.summary())
@@ -204,7 +204,7 @@ def fitted(
     rng: np.random.Generator,
     progress: Progress,
     *,
-    finalists: int = FINALISTS,
+    finalists: int = MAX_FINALISTS,
     usable: Usable | None = None,
 ) -> list[Candidate]:
     """Minima within the limits, least first: ``finalists`` of them at most, within limits of our own too if stated."""
@@ -279,9 +279,9 @@ def _flock_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Flock:
 def _thinned(task: PointTask) -> PointTask:
     """At most so many points as are needed to find where to go."""
     n = len(task.rows)
-    if n <= EXPLORED:
+    if n <= MAX_EXPLORED:
         return task
-    return task._replace(rows=np.ascontiguousarray(task.rows[np.linspace(0, n - 1, EXPLORED).round().astype(int)]))
+    return task._replace(rows=np.ascontiguousarray(task.rows[np.linspace(0, n - 1, MAX_EXPLORED).round().astype(int)]))
 
 
 def _directed(rows: Real, way: int) -> Real:
@@ -291,7 +291,7 @@ def _directed(rows: Real, way: int) -> Real:
 def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Flock:
     """Where random starts of one class and assembly lead, thinned out on the way."""
     n = len(rows)
-    free = FREE_STARTS if n <= FEW else STARTS_OF_MANY
+    free = FREE_STARTS if n <= MAX_FEW else STARTS_OF_MANY
     count = (TIMED_STARTS if problem.prescribed else free) // cases
     phased = problem.prescribed and problem.crank_phase == "free"
     unknowns = UNKNOWNS[FOURBAR] + phased
@@ -384,7 +384,7 @@ def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: fl
     if not len(flock.costs):
         return
     multipliers = np.zeros(LIMITS + 1)
-    multipliers[LIMITS] = SOFT
+    multipliers[LIMITS] = SOFT_WEIGHT
     most = 2 * len(rows) + LIMITS
 
     def work(some: slice) -> None:
@@ -425,7 +425,7 @@ def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidat
         state = state.copy()
     rows = _directed(task.rows, candidate.way)
     ended = np.empty(1)
-    status = hold(path_rows, x, rows, candidate.setting, state, 2 * n + LIMITS, LIMITS, EQUATIONS, FIRM, ended)
+    status = hold(path_rows, x, rows, candidate.setting, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(ended[0]):
         return None
     return candidate._replace(x=x, state=state, cost=float(ended[0]), status=Status(status))
@@ -450,7 +450,7 @@ class _Fits(Harvest):
 
     def different(self, designs: list[PathDesign]) -> list[PathDesign]:
         """Nearest first unless another order is asked for; among answers that are equally near, quality decides."""
-        nearest = {"quality": lambda design: max(design.metrics.rms_residual, AS_GOOD_AS_EXACT)}
+        nearest = {"quality": lambda design: max(design.metrics.rms_residual, EXACT_TOLERANCE)}
         return ranked(super().different(designs), self.problem.rank_by, nearest)
 
     def summary(self) -> str:

@@ -2,11 +2,12 @@
 
 With prescribed timing each point has its crank angle, and the residuals are the coordinates of P − z.
 
-With free timing the crank angles are eliminated: for each linkage they are put where P is nearest to the points, none
-before the one before it. That is done by Newton's method for each and by pooling those that come out of order (a
-quadratic programme whose matrix is diagonal). Where angles are at their best the derivative of the distance by them
-vanishes, hence the residuals move as if they stood still, less what lies along the curve (variable projection; Golub &
-Pereyra 1973, doi:10.1137/0710036, in Kaufman's form). Points that share an angle are projected together.
+With free timing the crank angles are eliminated: for each linkage they are those at which P is nearest to the points in
+their order. Newton's method finds each angle by itself, and angles that come out of order are pooled (isotonic
+regression: a quadratic programme with a diagonal matrix). At these angles the derivative of the distances by the angles
+vanishes, so that the Jacobian by the other unknowns is that at fixed angles, less its part along the curve (variable
+projection; Golub & Pereyra 1973, doi:10.1137/0710036, in Kaufman's form). Points that share an angle are projected
+together.
 """
 
 from __future__ import annotations
@@ -28,34 +29,41 @@ from synthesis.numerics.levenberg import ROWS
 Real = NDArray[np.float64]
 
 PHASE = 9
-"""Where the crank's phase stands among the unknowns, behind those of the chart, where it is one."""
+"""Index of the crank's phase among the unknowns, behind those of the chart; only where the phase is free."""
 
-WIDEST_LOG = 40.0
-"""No number for a length leaves ± this: beyond it lengths are rounding beside one another."""
+MAX_ABS_LOG = 40.0
+"""Greatest logarithm of a length, in absolute value: beyond it lengths are rounding beside one another."""
 
 DIFFERENCE = 1e-5
 """Radians over which the curvature of P's path is differenced."""
 
 NEWTON_STEPS = 4
-"""Steps of the eliminated angles at each linkage; the last linkage's are the start."""
+"""Newton steps of the eliminated angles at each linkage; they start from the angles of the last accepted one."""
 
-LONGEST_TURN = 0.2
-"""Longest such step, radians."""
+MAX_TURN_STEP = 0.2
+"""Greatest such step, radians."""
 
-SETTLED = 1e-7
-"""Radians; where a step of Newton's is shorter, the next would be shorter than rounding."""
+TURN_TOLERANCE = 1e-7
+"""Newton step, radians, after which the angles have converged: the next would be below rounding."""
 
-STILL = 1e-9
-"""Speed of P below which its path has no direction."""
+MIN_SPEED = 1e-9
+"""Speed of P, task sizes a radian, below which its path has no direction."""
+
+MIN_DIRECTION = 1e-24
+"""Squared length of a direction, task sizes squared, below which nothing is projected along it."""
+
+MIN_CURVATURE, SPEED_SHARE = 1e-12, 0.25
+"""Least second derivative of half the squared distance, absolute (task sizes squared) and as a share of the squared
+speed: the Newton step stays a descent where the curve bends towards the point."""
 
 
 @njit(cache=True, nogil=True)
 def _project(jacobian: Real, first: int, last: int, direction: Real) -> None:
-    """Take out of some rows what lies along a direction."""
+    """Remove from the rows ``first`` to ``last`` of the Jacobian their component along a direction, in place."""
     square = 0.0
     for k in range(last - first):
         square += direction[k] * direction[k]
-    if not square > 1e-24:
+    if not square > MIN_DIRECTION:
         return
     for i in range(9):
         along = 0.0
@@ -87,9 +95,9 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
             curved = square
             if good:
                 curved += ((ahead.real - t.real) * gx + (ahead.imag - t.imag) * gy) / DIFFERENCE
-            curved = max(curved, 0.25 * square, 1e-12)
+            curved = max(curved, SPEED_SHARE * square, MIN_CURVATURE)
             step = -(t.real * gx + t.imag * gy) / curved
-            values[k] = way * (angles[k] + min(max(step, -LONGEST_TURN), LONGEST_TURN))
+            values[k] = way * (angles[k] + min(max(step, -MAX_TURN_STEP), MAX_TURN_STEP))
             weights[k] = points[k, 3] * points[k, 3] * curved
         if setting[ORDERED] == 0.0:
             blocks[:] = np.arange(n)
@@ -105,7 +113,7 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
         for k in range(n):
             moved = max(moved, abs(way * values[k] - angles[k]))
             angles[k] = way * values[k]
-        if moved < SETTLED:
+        if moved < TURN_TOLERANCE:
             break
     return True
 
@@ -116,14 +124,14 @@ def path_rows(
 ) -> int:
     """Residuals and Jacobian of all points, and of the limits; see :data:`synthesis.numerics.levenberg.ROWS`.
 
-    ``points`` are rows (x, y, crank angle, root of the weight); with free timing the third number is not looked at, and
+    ``points`` are rows (x, y, crank angle, root of the weight); with free timing the third number is not used, and
     ``state`` has the crank angles from the ground line first; with prescribed timing they are written there. Behind
     them stands room for two numbers a point, and the limits' margins are the last.
     """
     n = len(points)
     lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty(10, np.complex128)
     for i in range(LENGTHS, LENGTHS + 4):
-        if not -WIDEST_LOG < x[i] < WIDEST_LOG:
+        if not -MAX_ABS_LOG < x[i] < MAX_ABS_LOG:
             return -1
     natural(int(setting[FAMILY]), x, lengths, slopes)
     sign = setting[SIGN]
@@ -151,7 +159,7 @@ def path_rows(
         if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
             # Alone at its angle: what lies across the curve is all that is left.
             fast = math.sqrt(tx * tx + ty * ty)
-            if fast > STILL:
+            if fast > MIN_SPEED:
                 nx, ny = -ty / fast, tx / fast
                 residuals[m] = nx * gx + ny * gy
                 for i in range(9):

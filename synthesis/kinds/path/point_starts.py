@@ -6,8 +6,8 @@ For a shape (ratios of lengths) and crank angles φ_k the path is linear in thre
 
 the fixed pivot O2, the ground vector and the coupler point turned with it. With prescribed timing that leaves four
 numbers to draw: three ratios, and the crank's phase. With free timing the angles are drawn too, as a run of the crank
-along the points, and are then put right by turns: the path that comes out is sampled, points are assigned to samples in
-order, and the linear problem is solved again.
+along the points, and are then improved in alternation: the path that results is sampled, points are assigned to samples
+in order, and the linear problem is solved again.
 """
 
 from __future__ import annotations
@@ -37,22 +37,32 @@ BEFORE = 4
 """Samples before a curve's nearest to the first point at which a run may begin."""
 
 TAIL = 0.2
-"""Logarithms of lengths have tails: the best linkages often stand at a limit, with links far longer than others or
-near a change point."""
+"""Cubic term of the drawn logarithms of lengths, which gives their distribution long tails: the best linkages often are
+at a limit, with one link far longer than the others or near a change point."""
 
 SAME, OUTPUT, COUPLER, FAR_DYAD = FLIPS = range(4)
 """How a linkage is turned inside out: not; O4 goes to the other side of B; B to the other side of A; B and O4 both to
 the other sides of A and O2. A fit that has run to the limit of a link's length has found that a slider would be better,
 and beyond the slider there is the link's mirror image."""
 
-NEAR_EDGE = 1e-5
-"""Share of all links together at which a linkage that has left its class is put back."""
+CLASS_MARGIN = 1e-5
+"""Margin, as a share of all links together, with which a linkage that has left its class is put back into it."""
 
-SMALLEST_GROUND = 1e-3
+MIN_SPREAD = 1e-12
+"""Added to sums of squared unit vectors that divide: a shape that does not move has no best place."""
+
+MIN_SCALE, MAX_SCALE = 1e-9, 1e9
+"""Ground links of a start, in task sizes, beyond which it is a degenerate solution of the linear problem."""
+
+UNREACHABLE = 1e18
+"""Squared distance, task sizes squared, of a sample at which the linkage does not close; finite, as sums of them are
+compared."""
+
+MIN_GROUND = 1e-3
 """Least ground link of a start, in task sizes, where its direction is given."""
 
 TURNS = 3
-"""Times that angles and places are put right by turns."""
+"""Number of times that angles, and then place and coupler point, are fitted in turn."""
 
 
 @njit(cache=True, nogil=True)
@@ -79,7 +89,7 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
         mean_target = complex(setting[GIVEN], setting[GIVEN + 1])
     else:
         mean_crank, mean_coupler, mean_target = crank.mean(), coupler.mean(), target.mean()
-    square, on_crank, on_target = 1e-12, 0.0j, 0.0j
+    square, on_crank, on_target = MIN_SPREAD, 0.0j, 0.0j
     for k in range(n):
         e = coupler[k] - mean_coupler
         square += e.real * e.real + e.imag * e.imag
@@ -87,7 +97,7 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
         on_target += e.conjugate() * (target[k] - mean_target)
     on_crank /= square
     on_target /= square
-    across, mixed = 1e-12, 0.0j
+    across, mixed = MIN_SPREAD, 0.0j
     for k in range(n):
         e = coupler[k] - mean_coupler
         f = crank[k] - mean_crank - on_crank * e
@@ -98,9 +108,9 @@ def fitted_place(lengths: Real, sign: float, angles: Real, points: Real, setting
         ground = complex(setting[GIVEN + 2] - setting[GIVEN], setting[GIVEN + 3] - setting[GIVEN + 1])
     elif setting[TIMED] > 0.0 and setting[PHASED] == ABSOLUTE:
         along = unit(turn)
-        ground = max((ground * along.conjugate()).real, SMALLEST_GROUND) * along
+        ground = max((ground * along.conjugate()).real, MIN_GROUND) * along
     size = abs(ground)
-    if not 1e-9 < size < 1e9:
+    if not MIN_SCALE < size < MAX_SCALE:
         return np.inf
     arm = on_target - ground * on_crank
     pivot = mean_target - ground * mean_crank - arm * mean_coupler
@@ -227,7 +237,7 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
         good, p, _ = place(FOURBAR, x, lengths, setting[SIGN], 0.0, x[2] + begin + j * step)
         for k in range(n):
             gx, gy = p.real - points[k, 0], p.imag - points[k, 1]
-            squares[k, j] = gx * gx + gy * gy if good else 1e18
+            squares[k, j] = gx * gx + gy * gy if good else UNREACHABLE
     if setting[ORDERED] == 0.0:
         least = 0.0
         for k in range(n):
@@ -322,7 +332,7 @@ def kicked(
                     o4 = -o4
             turned = math.atan2(o4.imag, o4.real)
             lengths[0], lengths[3] = abs(o4), abs(b - o4)
-            if not from_lengths(lengths, family, NEAR_EDGE, x):
+            if not from_lengths(lengths, family, CLASS_MARGIN, x):
                 continue
         for i in range(4):
             x[LENGTHS + i] += draws[row, i]

@@ -33,16 +33,16 @@ EQUAL_POINTS = 1e-9
 EQUAL_ANGLES = 1e-9
 """Crank angles closer than this, in degrees modulo full turns, are one angle."""
 
-MOST_FREE = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
+MAX_EXACT = {"fourbar": 9, "slider_crank": 8, "geared_fivebar": 11}
 """Points that a linkage can meet exactly, in general: as many as it has dimensions, its gear ratio apart."""
 
-GEAR_TURNS = 60
+MAX_GEAR_TURNS = 60
 """Turns of the crank within which a geared fivebar must come round, so that its whole motion can be driven."""
 
-MOST_POINTS = 1000
+MAX_POINTS = 1000
 """Points that are taken; a curve that needs more is oversampled."""
 
-LONGEST_LINK = 5.0
+MAX_LINK = 5.0
 """Longest link of a curve match where no limit is stated, in diagonals of the box around the curve: fits without one
 run off to links that are many times longer and bring nothing."""
 
@@ -180,7 +180,7 @@ class PathProblem(LinkageProblem):
 
     kind: Literal["path"]
     points: list[PathPoint] = Field(
-        min_length=3, max_length=MOST_POINTS, description="In the order in which they are visited."
+        min_length=3, max_length=MAX_POINTS, description="In the order in which they are visited."
     )
     timing: Literal["free", "prescribed"] = Field(
         default="free", description="Whether each point has a crank angle at which it is met."
@@ -234,7 +234,7 @@ class PathProblem(LinkageProblem):
     @property
     def most_exact(self) -> int:
         """How many points can be met exactly, in general: as many as there are freedoms for."""
-        free = MOST_FREE[self.mechanism] - self.fixed_pivots.given()
+        free = MAX_EXACT[self.mechanism] - self.fixed_pivots.given()
         return (free + (self.crank_phase == "free")) // 2 if self.prescribed else free
 
     @property
@@ -256,7 +256,7 @@ class PathProblem(LinkageProblem):
         if limit is not None and limit.max is not None:
             return limit.max
         points = np.array([point.point for point in self.points])
-        return LONGEST_LINK * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
+        return MAX_LINK * math.hypot(float(np.ptp(points.real)), float(np.ptp(points.imag)))
 
     @property
     def crank_turns(self) -> list[float]:
@@ -389,13 +389,13 @@ class PathProblem(LinkageProblem):
         """What only fourbars can be asked, and the gear ratio."""
         faults = []
         if self.gear_ratio is not None:
-            turns = self.gear_ratio * np.arange(1.0, GEAR_TURNS + 1.0)
+            turns = self.gear_ratio * np.arange(1.0, MAX_GEAR_TURNS + 1.0)
             if self.mechanism != "geared_fivebar":
                 faults.append(Contradiction("/gear_ratio", f"a {self.mechanism} has no gears"))
             elif self.gear_ratio == 0.0:
                 faults.append(Contradiction("/gear_ratio", "an output that does not turn makes a fourbar; ask for one"))
             elif float(np.abs(turns - np.round(turns)).min()) > EQUAL_ANGLES:
-                detail = f"the gears do not come round within {GEAR_TURNS} turns; state a ratio of whole teeth"
+                detail = f"the gears do not come round within {MAX_GEAR_TURNS} turns; state a ratio of whole teeth"
                 faults.append(Contradiction("/gear_ratio", detail))
         if self.mechanism == "fourbar":
             return faults
