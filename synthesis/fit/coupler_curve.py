@@ -219,3 +219,17 @@ def crank_range(d: float, a: float, b: float, c: float) -> tuple[float, float]:
             return 1.0, 0.0
         high = 2.0 * math.atan(math.sqrt((far * far - (d - a) ** 2) / ((d + a) ** 2 - far * far)))
     return low, high
+
+
+@njit(**OPTIONS)
+def rocking_range(low: float, high: float) -> tuple[float, float]:
+    """Begin and width of a rocking crank's range, from its least and greatest |φ|.
+
+    It goes from toggle to toggle through φ = 0 or φ = π where it contains one of them; else it is the upper of two
+    mirrored ranges.
+    """
+    if low > 0.0 and high < math.pi:
+        return low, high - low
+    if low > 0.0:
+        return low, 2.0 * (math.pi - low)
+    return -high, 2.0 * high

@@ -1,8 +1,8 @@
 """Demands on a fourbar as margins over its chart: what must not be negative, or must be zero, with its derivatives.
 
-A demand is a smooth function g ≥ 0, or h = 0, of the unknowns (:mod:`synthesis.fit.chart`). It is written once, here,
-and every fit that appends :func:`margins` to its residuals is steered by it, by the multipliers of
-:mod:`synthesis.numerics.augmented_lagrangian`. What is not demanded has an infinite margin, and costs nothing.
+A demand is a smooth function g ≥ 0, or h = 0, of the unknowns (:mod:`synthesis.fit.chart`). Each is written once, here.
+It steers every fit that appends the rows of :func:`margins` to its residuals
+(:mod:`synthesis.numerics.augmented_lagrangian`). A demand that is not stated has an infinite margin and costs nothing.
 
 =================== ==== ==========================================================
 demand              g, h margin
@@ -41,10 +41,10 @@ on the coupler, cosine of the least transmission angle, least of s₁, s₂, s�
 coordinates (O2, O4; NaN where open). Infinite where nothing is demanded; 0 for a least length or share."""
 
 DEMANDS = 24
-"""Numbers of a setting that are demands; a fit's own stand behind them."""
+"""Number of entries of a setting that are demands; a fit's own entries come after them."""
 
 EQUATIONS = 4
-"""Margins, the last, that must be zero: coordinates of given pivots."""
+"""Number of margins, the last ones, that must be zero: coordinates of given pivots."""
 
 LIMITS = 8 + 12 + 8 + 4 + 8 + 3 + EQUATIONS
 """Margins: lengths, pairs of them, sides of the pivots' boxes and of P's, transmission, Grashof, given pivots."""
@@ -85,6 +85,7 @@ def margins(x: Real, lengths: Real, slopes: Real, ends: Real, setting: Real, val
 
 @njit(**OPTIONS)
 def _lengths(lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    """Logarithmic margins of all links from the least and the greatest length, from margin ``number`` on; the next."""
     for i in range(4):
         for side in range(2):
             limit = setting[LINKS + side]
@@ -101,6 +102,7 @@ def _lengths(lengths: Real, slopes: Real, setting: Real, values: Real, gradients
 
 @njit(**OPTIONS)
 def _ratios(lengths: Real, slopes: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    """Margins of every ordered pair of links from the greatest ratio: smooth, unlike that of longest to shortest."""
     if setting[RATIO] == np.inf:
         return number + 12
     for i in range(4):
@@ -153,6 +155,7 @@ def _coordinate(x: Real, lengths: Real, slopes: Real, pivot: int, axis: int, tow
 
 @njit(**OPTIONS)
 def _coupler_point(x: Real, setting: Real, values: Real, gradients: Real, number: int) -> int:
+    """Distances of P from the sides of its box in the coupler's frame."""
     for axis in range(2):
         for side in range(2):
             limit = setting[POINT_BOX + 2 * axis + side]
@@ -169,6 +172,7 @@ def _coupler_point(x: Real, setting: Real, values: Real, gradients: Real, number
 def _transmission(
     lengths: Real, slopes: Real, ends: Real, setting: Real, values: Real, gradients: Real, number: int
 ) -> int:
+    """Margins of cos γ at φ = 0, φ = π and both ends of the range, each from above and from below."""
     if setting[COSINE] == np.inf:
         return number + 8
     d, a, b, c = lengths[0], lengths[1], lengths[2], lengths[3]

@@ -53,9 +53,13 @@ CONVERGED = 1e-7
 """A last Newton step above this, relative, is no convergence: the end point is singular or a path was lost."""
 
 FIRST_STEP, LEAST_STEP = 0.02, 1e-12
+"""Step of t at first, and that below which a path is given up: it runs into a singularity."""
+
+OVERFLOW, UNDERFLOW = 1e300, 1e-300
+"""Squared sizes beyond the first are not finite enough to go on with; the second keeps a quotient by zero defined."""
 
 CHUNK = 16
-"""Paths that a thread takes at a time; some milliseconds."""
+"""Number of paths that a thread takes at a time: some milliseconds of work."""
 
 
 class Ends(NamedTuple):
@@ -89,9 +93,9 @@ def _relative(step: Complex, y: Complex, groups: Any) -> float:
             size = max(size, y[n].real ** 2 + y[n].imag ** 2)
             moved = max(moved, step[n].real ** 2 + step[n].imag ** 2)
             n += 1
-        if not moved <= 1e300:
+        if not moved <= OVERFLOW:
             return np.inf
-        largest = max(largest, moved / (size + 1e-300))
+        largest = max(largest, moved / (size + UNDERFLOW))
     return math.sqrt(largest)
 
 
@@ -197,7 +201,7 @@ def _follow(
             if moved < CLOSE:
                 accepted = True
                 break
-        scale = (0.4 * tolerance / (missed + 1e-300)) ** 0.2 if missed < 1e300 else 0.2
+        scale = (0.4 * tolerance / (missed + UNDERFLOW)) ** 0.2 if missed < OVERFLOW else 0.2
         if accepted:
             t = 1.0 if h >= 1.0 - t else t + h
             for k in range(n):

@@ -45,6 +45,9 @@ MET = 1e-13
 """Residual at which a real point counts as common to all quadrics where it cannot be proved: a double root, which data
 a few roundings away would have or not have."""
 
+SAME_DIRECTION = 1e-14
+"""1 − |cos| of two unit vectors that are one point, met twice: some roundings."""
+
 
 class CommonPoints(NamedTuple):
     """What quadrics have in common.
@@ -155,7 +158,7 @@ def _refined(forms: Real, points: Numbers) -> CommonPoints:
     kept: list[int] = []
     for k in np.flatnonzero(real_alone | (residual <= MET)):
         gaps = [1.0 - abs(float(reals[k] @ reals[j])) for j in kept]
-        if min(gaps, default=1.0) > 1e-14:
+        if min(gaps, default=1.0) > SAME_DIRECTION:
             kept.append(int(k))
     double = ~proved[: len(reals)][kept]
     return CommonPoints(reals[kept].reshape(-1, m), double, True, everywhere[~proved].astype(np.complex128))

@@ -1,9 +1,9 @@
-"""Points that are met exactly although they leave freedom: linkages of the family, drawn where they are usable.
+"""Fourbars that meet fewer points than they can exactly: random members of the family, within limits.
 
-Fewer points than a fourbar can meet leave a whole family of linkages. Descents from random starts
-(:mod:`synthesis.kinds.path.point_fit`) end on it at points that are as random as the starts, and within all limits.
-That serves constraints of every kind, given pivots among them. So that the answers are usable, the first rounds add
-limits of their own to the client's: a good transmission angle and links that can be built together.
+Fewer points than a fourbar can meet leave a family of linkages. Descents from random starts
+(:mod:`synthesis.kinds.path.point_fit`) end at random members of it that keep all limits, given pivots included. Most
+random members are poor linkages; therefore the first rounds add limits to the client's, on the transmission angle, the
+link ratio and the longest link, and relax them from round to round.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress, part_of
 
 ROUNDS = (Usable(45.0, 6.0, 6.0), Usable(25.0, 12.0, 12.0), Usable(12.0, 20.0, 20.0), None)
-"""What is asked of the linkages beyond the client's limits, round by round."""
+"""Limits added to the client's in each round, the strictest first."""
 
 MAX_REFINED = 40
-"""Linkages that are refined and verified in each round, at most."""
+"""Greatest number of linkages that are refined and verified in a round."""
 
 EXACT_TOLERANCE = 1e-11
-"""Root mean square distance, in task sizes, up to which a descent has ended on the family."""
+"""Root mean square distance, in task sizes, up to which a linkage counts as a member of the family."""
 
 
 def exact_fits(problem: PathProblem, progress: Progress) -> list[PathDesign | None]:

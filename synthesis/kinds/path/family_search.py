@@ -1,10 +1,10 @@
-"""Three to eight points and demands: the freedom that is left is used to satisfy the demands, and to rank.
+"""Fourbars through three to eight points under demands, which leave freedom: a search of the family.
 
-Fourbars through fewer than nine points are a family. Members are looked for near a curve that goes smoothly through the
-points: some ten thousand linkages of the demanded type are compared with it, as for whole curves, and the most alike go
-to least squares at the points alone, with given pivots and regions as further distances, until nothing is left of
-either. That is a descent to the nearest member of the family, one for each start; what else is demanded (transmission
-angle, lengths, order) chooses among the members, all of which are driven.
+Fourbars through fewer than nine points form a continuous family. Its members are sought near a smooth curve through the
+points: some ten thousand linkages of the demanded class are compared with that curve, as for whole curves. The most
+alike go to least squares at the points alone, with the distances from given pivots and regions as further residuals,
+until the cost is zero: each start leads to the nearest member of the family. All members that differ are driven, and
+the other demands (transmission angle, lengths, order) select among them.
 """
 
 from __future__ import annotations
@@ -31,19 +31,20 @@ from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import Sifting, reported
 
 DRAWN = 6144
-"""Linkages of a family that are drawn in each round, and compared by their parts with a curve through the points."""
+"""Number of linkages of each class drawn in a round; windows of their curves are compared with a smooth curve
+through the points."""
 
 MAX_FOLLOWED = 220
-"""The most alike of them, which are brought to the points."""
+"""Greatest number of the most alike that go to least squares."""
 
 MAX_STEPS = 150
-"""Steps of least squares at most; members are reached in some twenty."""
+"""Greatest number of steps of least squares; most members are reached in some twenty."""
 
 COST_TOLERANCE = 1e-22
-"""Sum of squared distances, in squares of the task's size, at which a member of the family is reached."""
+"""Cost, in squared task sizes, at which a descent has reached a member of the family."""
 
 MAX_LINK = 12.0
-"""Links longer than this many task sizes are discouraged, where no limit is stated."""
+"""Longest link, in task sizes, where no limit is stated."""
 
 SAME_DESIGN = 1e-3
 """Members whose joints agree to this share of the task's size are offered once: the family is continuous."""
@@ -52,7 +53,7 @@ MIN_LINK = 1e-6
 """Links shorter than this share of the task's size are no links."""
 
 MAX_DRIVEN = 160
-"""Members that are driven at most."""
+"""Greatest number of members that are driven."""
 
 
 def solve_family(problem: PathProblem, progress: Progress) -> PathResult:

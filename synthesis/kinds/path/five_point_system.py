@@ -28,6 +28,9 @@ SOLUTIONS = 36
 UNKNOWNS, PARAMETERS, SCRATCH = 8, 12, 72
 """x₁, x̄₁, x₂, x̄₂, s₁…s₄; δ₁…δ₄, their conjugates, a₁, ā₁, a₂, ā₂; and what the system needs to work with."""
 
+UNDERFLOW = 1e-300
+"""Added to the size of s, which scales a column: a coupler that does not turn leaves the column as it is, zero."""
+
 GROUPS = np.array([0, 0, 0, 0, 1, 1, 1, 1], np.int64)
 """The vectors share a scale, and the turns do."""
 
@@ -91,7 +94,7 @@ def conditions(y: Complex, p: Complex) -> NDArray[np.float64]:
         jacobian[:, rows, k + 1] = by_beta * s_back + alpha
         jacobian[:, rows, 4 + j] = by_alpha * x + by_beta * x_bar * slope
     vectors = np.abs(y[:, :4]).max(axis=1)[:, None]
-    sizes = np.concatenate([np.repeat(vectors, 4, axis=1), np.abs(s) + 1e-300], axis=1)
+    sizes = np.concatenate([np.repeat(vectors, 4, axis=1), np.abs(s) + UNDERFLOW], axis=1)
     jacobian *= sizes[:, None, :]
     norms = np.abs(jacobian).max(axis=2)
     jacobian /= np.where(norms > 0.0, norms, 1.0)[:, :, None]

@@ -29,7 +29,10 @@ from synthesis.numerics.continuation import CONVERGED, REACHED, follow, refine
 Complex = NDArray[np.complex128]
 
 BEND = 2.0
-"""How far the parameters go through complex values on their way, in sizes of the problem."""
+"""Size of the random bend of the parameters' way, in sizes of the problem."""
+
+FIRST_TOLERANCE, LATER_TOLERANCE = 5e-3, 1e-3
+"""Relative error of the prediction that a step may have: on the first way, and where that has lost a path."""
 
 WAYS = 4
 """Ways along which the solutions are followed, until all have arrived."""
@@ -41,7 +44,7 @@ SAME, REAL = 1e-6, 1e-6
 """Solutions are the same, and real, where they agree to this share of their size (with their conjugate)."""
 
 NEARLY_SINGULAR = 1e9
-"""Condition above which the points' last digits decide how many solutions are real: what is found may not be all."""
+"""Condition above which the last digits of the points decide how many solutions are real: some may be missed."""
 
 
 class FivePoints(NamedTuple):
@@ -86,7 +89,7 @@ def five_points(points: Complex, o2: complex, o4: complex, rng: np.random.Genera
     y = np.empty((0, UNKNOWNS), np.complex128)
     for way in range(WAYS):
         bend = BEND * (rng.normal(size=(PARAMETERS, 2)) @ np.array([1.0, 1.0j]))
-        tolerance = 5e-3 if way == 0 else 1e-3
+        tolerance = FIRST_TOLERANCE if way == 0 else LATER_TOLERANCE
         ends = follow(five_point_system, GROUPS, SCRATCH, begun.y, begun.p, p, bend, tolerance=tolerance)
         arrived = ends.y[(ends.status == REACHED) & np.isfinite(ends.y).all(axis=1)]
         arrived = arrived[residuals(arrived, p) <= RESIDUAL * np.maximum(1.0, np.abs(arrived[:, :4]).max(axis=1)) ** 2]
@@ -127,4 +130,4 @@ def _real(y: Complex, p: Complex) -> list[tuple[complex, complex]]:
     near, _, moved = refine(five_point_system, GROUPS, SCRATCH, near, np.zeros_like(near), p)
     near = near[moved < CONVERGED]
     still = np.abs(near - _conjugate(near)).max(axis=1) <= REAL * np.abs(near).max(axis=1)
-    return [(complex(one[0]), complex(one[2])) for one in near[still]]
+    return [(complex(solution[0]), complex(solution[2])) for solution in near[still]]

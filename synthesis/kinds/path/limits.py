@@ -1,6 +1,6 @@
 """A client's limits on a fourbar that guides a point, as demands of a fit (:mod:`synthesis.fit.demands`).
 
-Everything is in task coordinates, and drawn in a little, so that what rounding leaves lies on the right side.
+Limits are in task coordinates, and tightened by a margin, so that a fit that ends on a limit meets it after rounding.
 """
 
 from __future__ import annotations
@@ -37,27 +37,27 @@ SETTING = DEMANDS + 3
 """Numbers of a setting."""
 
 FREE, ABSOLUTE, GROUND_LINE = range(3)
-"""What crank angles are measured from."""
+"""The line from which prescribed crank angles are measured."""
 
 MAX_LINK = 50.0
-"""Links of more task sizes are looked for only where the client allows them: fits run off to sliders otherwise."""
+"""Longest link, in task sizes, where the client states none: without a limit fits run off to sliders."""
 
 MIN_LINK = 1e-4
-"""No link is shorter than this share of the task's size; it could not be drawn, let alone be built."""
+"""Shortest link, in task sizes; a shorter one could not be drawn, let alone be built."""
 
 MIN_GRASHOF = 1e-6
 """Least of s₁, s₂, s₃ as a share of all links together: nearer to a change point a linkage counts as one."""
 
 LIMIT_WEIGHT = 1e3
-"""Weight of limits in task units at first, where they are brought to hold."""
+"""Weight of limits, in task units, in the first descent of :func:`synthesis.numerics.augmented_lagrangian.hold`."""
 
 LIMIT_MARGIN = 1e-10
-"""Limits are drawn in by this share, so that what rounding leaves lies on their right side."""
+"""Relative margin by which limits are tightened."""
 
 
 class Usable(NamedTuple):
-    """What makes a linkage usable where a client does not say: least transmission angle (degrees), link ratio, and the
-    longest link in task sizes."""
+    """Limits of a usable linkage where the client states none: least transmission angle (degrees), greatest link ratio,
+    and longest link (task sizes)."""
 
     transmission: float
     ratio: float
@@ -105,7 +105,7 @@ def setting_of(
 
 
 def _box(regions: list[Region | None], origin: complex, size: float) -> tuple[float, float, float, float]:
-    """What regions have in common; everything where there is none."""
+    """The box common to all regions that are stated, as least and greatest x, least and greatest y."""
     x, y = (-math.inf, math.inf), (-math.inf, math.inf)
     for region in regions:
         if region is not None:

@@ -37,7 +37,7 @@ Complex = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 
 RESIDUAL = 1e-8
-"""Largest residual of a solution, with points of unit mean distance from the first one."""
+"""Greatest residual of a solution, with points of unit mean distance from the first one."""
 
 SAME_ORBIT = 1e-4
 """Orbits whose keys agree to this share count as the same. An end point far out has lost many digits, while 1442 keys
@@ -59,13 +59,16 @@ solutions; repeating the run would find the same."""
 
 NEARLY_SINGULAR, FEW = 1e10, 0.01
 """Of general points at most one in a thousand solutions has a condition above 1e10. Where more than a hundredth have,
-the points are special, and how many solutions there are, and how many real, hangs on their last digits."""
+the points are special, and the numbers of solutions and of real ones depend on their last digits."""
+
+FIRST_TOLERANCE, RETRY_TOLERANCE, LAST_TOLERANCE = 5e-3, 1e-3, 1e-5
+"""Relative error of the prediction that a step may have: at first, from each of three cognates, and from them again."""
 
 PORTION = 96
 """Paths between two reports of progress."""
 
 STEPS = 2000
-"""Steps of a path at most; almost all need less than 300, and lost ones are better followed from another member."""
+"""Greatest number of steps of a path. Almost all need less than 300; lost ones are better followed from a cognate."""
 
 
 class Triples(NamedTuple):
@@ -228,7 +231,7 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
     lost: list[int] = []
     for first in range(0, ORBITS, PORTION):
         some = np.arange(first, min(first + PORTION, ORBITS))
-        new = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, 5e-3, threads)
+        new = _follow(orbits, nine_point_system, begun.y[some], begun.p, bend, FIRST_TOLERANCE, threads)
         lost += [int(n) for n in some[~new]]
         progress(0.8 * (first + len(some)) / ORBITS)
         if len(lost) > 0.5 * PORTION + SPECIAL * ORBITS:
@@ -238,7 +241,7 @@ def _run(orbits: _Orbits, bend: Complex, threads: int, progress: Callable[[float
         if orbits.missing == 0:
             break
         members = cognates(begun.y[lost], begun.p)[:, attempt % 3]
-        tolerance = 1e-3 if attempt < 3 else 1e-5
+        tolerance = RETRY_TOLERANCE if attempt < 3 else LAST_TOLERANCE
         _follow(orbits, nine_point_system_extended, members, begun.p, bend, tolerance, threads)
         orbits.add_conjugates()
         progress(0.8 + 0.03 * attempt)

@@ -1,8 +1,8 @@
 """Fourbars fitted to points by least squares: any number of points, with prescribed or free timing, within limits.
 
-Many random starts are thinned out while they descend, so that most of the work goes into those that promise most; the
-best distinct ones are brought to minima that meet the client's limits to rounding, then driven and verified like any
-other linkage. Which class of fourbar is looked for is written into the unknowns
+A population of random starts descends in rounds, and only the best go on from one round to the next. The best that
+differ are perturbed and descend again, are then brought to minima that keep the client's limits to rounding, and are
+driven and verified like any other linkage. The Grashof class holds by the choice of unknowns
 (:mod:`synthesis.fit.chart`), and limits are met by multipliers (:mod:`synthesis.fit.demands`): neither is a penalty.
 """
 
@@ -58,52 +58,55 @@ Complex = NDArray[np.complex128]
 Whole = NDArray[np.int64]
 
 PORTION = 16
-"""Starts that a thread takes at a time; some milliseconds."""
+"""Number of starts that a thread takes at a time: some milliseconds of work."""
 
 TIMED_STARTS, FREE_STARTS, STARTS_OF_MANY = 6000, 1800, 1300
-"""Random starts of all classes and assemblies together: prescribed timing draws four numbers each, free timing more.
-The last is for free timing with more than :data:`MAX_FEW` points, which take longer."""
+"""Number of random starts, over all classes and assemblies: with prescribed timing, where a start has four random
+numbers; with free timing, where it has more; and with free timing and more than :data:`MAX_FEW` points, which take
+longer."""
 
 MAX_FEW = 18
+"""Greatest number of points with :data:`FREE_STARTS`."""
 
 TIMED_SHARE = 0.15
 """Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
 
 THINNING = ((1.0, 8, 1e-3), (0.25, 20, 1e-4), (0.06, 80, 1e-6))
-"""Rounds in which starts are thinned out: the share of them that goes on, steps, and tolerance of their descents."""
+"""Rounds of descents: share of the starts that goes on, number of steps, and tolerance."""
 
 KICKS, KICKED, COPIES, KICK = 3, 24, 6, 0.5
-"""Rounds in which the best are changed and descend again: how many of them, copies of each, and the standard deviation
-of the change in the logarithms of lengths."""
+"""Perturbation of the best: number of rounds, of linkages, of copies of each, and the standard deviation of the change
+in the logarithms of lengths."""
 
 SAME_COST = 1e-4
 """Relative difference below which costs are taken for those of one minimum."""
 
 FLIP_KICK = 0.1
-"""The same for those that are turned inside out."""
+"""That standard deviation for linkages that are turned inside out."""
 
 SPREAD = 0.8
-"""Standard deviation of the logarithm of that standard deviation: some changes are small and some are great."""
+"""Standard deviation of the logarithm of a perturbation's standard deviation: some are small and some are great."""
 
 KICK_THINNING = ((1.0, 10, 1e-3), (0.25, 60, 1e-6))
+"""As :data:`THINNING`, after a perturbation."""
 
 MAX_FINALISTS = 24
 """Minima that are refined within the limits and verified, at most."""
 
 RETURNS, AGAIN = 1, 10
-"""How often minima within the limits are changed once more, and how many of what comes out are refined at most."""
+"""Perturbation of minima within the limits: number of rounds, and greatest number of results that are refined."""
 
 MANY, OF_MANY = 100, 6
-"""With more points than that, minima that are refined and verified, at most: each takes longer."""
+"""With more points than the first, at most so many minima are refined and verified: each takes longer."""
 
 MIN_DRIVEN = 12
 """Linkages that are verified at least, however few are wanted."""
 
 MAX_EXPLORED = 48
-"""Points with which starts are made and thinned out, at most: evenly chosen ones of more."""
+"""Greatest number of points in the descents of the population: of more, evenly chosen ones."""
 
 SOFT_WEIGHT = 10.0
-"""Weight of limits in task units while starts are thinned out."""
+"""Weight of limits, in task units, in the descents of the population."""
 
 SAME_FIT = 1e-2
 """Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
@@ -190,9 +193,9 @@ def warm_up() -> None:
         problem = PathProblem.model_validate({"kind": "path", "method": "least_squares", **stated})
         task = point_task(problem)
         setting = setting_of(problem, task.origin, task.size, sign=1.0, family=CRANK_ROCKER)
-        flock = _descended(problem, task.rows, setting, 300, np.random.default_rng(0))
-        _kicked(problem, (flock, flock), task.rows, setting, np.random.default_rng(0))
-        for x, state in zip(flock.starts, flock.states, strict=True):
+        population = _descended(problem, task.rows, setting, 300, np.random.default_rng(0))
+        _kicked(problem, (population, population), task.rows, setting, np.random.default_rng(0))
+        for x, state in zip(population.starts, population.states, strict=True):
             mechanism = mechanism_of(Candidate(x, state, 0.0, Status.STEP_LIMIT, setting, 1), task)
             if mechanism is not None:
                 verify_path(problem, mechanism)
@@ -215,36 +218,36 @@ def fitted(
         setting_of(problem, task.origin, task.size, sign=sign, family=family, usable=usable)
         for _, family, sign in cases
     ]
-    flocks = []
+    populations = []
     for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
         progress(0.4 * n / len(cases), f"class {n + 1} of {len(cases)}: fitting from random starts")
-        flocks.append(_descended(problem, _directed(thinned.rows, way), setting, len(cases), rng))
+        populations.append(_descended(problem, _directed(thinned.rows, way), setting, len(cases), rng))
     for kick in range(KICKS):
-        progress(0.4 + 0.2 * kick / KICKS, "changing the best fits")
-        bases = [_different(_best(flock, 4 * KICKED), KICKED) for flock in flocks]
+        progress(0.4 + 0.2 * kick / KICKS, "perturbing the best fits")
+        bases = [_different(_best(population, 4 * KICKED), KICKED) for population in populations]
         for n, (way, _, sign) in enumerate(cases):
             # Next to each case stands the same with the other assembly.
             pair = bases[n], bases[n + 1 if sign > 0.0 else n - 1]
             rows = _directed(thinned.rows, way)
-            flocks[n] = _joined([flocks[n], _kicked(problem, pair, rows, settings[n], rng)])
+            populations[n] = _joined([populations[n], _kicked(problem, pair, rows, settings[n], rng)])
     pool = [
         Candidate(x, state, float(cost), Status(status), setting, way)
-        for (way, _, _), setting, flock in zip(cases, settings, flocks, strict=True)
-        for x, state, cost, status in zip(*_different(_best(flock, len(flock.costs)), finalists), strict=True)
+        for (way, _, _), setting, population in zip(cases, settings, populations, strict=True)
+        for x, state, cost, status in zip(*_different(_best(population, len(population.costs)), finalists), strict=True)
     ]
     pool.sort(key=lambda candidate: candidate.cost)
     most = finalists if len(task.rows) <= MANY else OF_MANY
     minima = _all_held(_distinct(pool, most), task, thinned, lambda share: progress(0.6 + 0.2 * share, "refining fits"))
     for _ in range(RETURNS if thinned is task else 0):
-        # What has come to its limits may lie next to something better beyond them.
+        # A minimum that lies on a limit may be left by a perturbation, which no descent within the limits would find.
         again: list[Candidate] = []
         for n, (way, family, sign) in enumerate(cases):
-            progress(0.8 + 0.1 * n / len(cases), "changing the best fits")
-            held = _flock_of(minima, (way, family, sign)), _flock_of(minima, (way, family, -sign))
-            flock = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
+            progress(0.8 + 0.1 * n / len(cases), "perturbing the best fits")
+            held = _population_of(minima, (way, family, sign)), _population_of(minima, (way, family, -sign))
+            population = _kicked(problem, held, _directed(thinned.rows, way), settings[n], rng)
             again += [
                 Candidate(x, state, float(cost), Status(status), settings[n], way)
-                for x, state, cost, status in zip(*_different(_best(flock, KICKED), KICKED), strict=True)
+                for x, state, cost, status in zip(*_different(_best(population, KICKED), KICKED), strict=True)
             ]
         again.sort(key=lambda candidate: candidate.cost)
         minima += _all_held(_distinct(again, AGAIN), task, thinned, lambda share: progress(0.9, "refining fits"))
@@ -265,19 +268,19 @@ def _all_held(
     return [candidate for candidate in minima if candidate is not None]
 
 
-def _flock_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Flock:
+def _population_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Population:
     """The best distinct ones of a case: the crank's direction, the family and the assembly."""
     way, family, sign = case
     own = [c for c in minima if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
     own.sort(key=lambda candidate: candidate.cost)
     if not own:
         return _empty(0, UNKNOWNS[FOURBAR], 0)
-    flock = _Flock(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
-    return _different(flock, KICKED)
+    population = _Population(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
+    return _different(population, KICKED)
 
 
 def _thinned(task: PointTask) -> PointTask:
-    """At most so many points as are needed to find where to go."""
+    """The task with at most :data:`MAX_EXPLORED` of its points."""
     n = len(task.rows)
     if n <= MAX_EXPLORED:
         return task
@@ -288,37 +291,37 @@ def _directed(rows: Real, way: int) -> Real:
     return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0, 1.0])
 
 
-def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Flock:
-    """Where random starts of one class and assembly lead, thinned out on the way."""
+def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Population:
+    """The population of one class and assembly after its descents from random starts."""
     n = len(rows)
     free = FREE_STARTS if n <= MAX_FEW else STARTS_OF_MANY
     count = (TIMED_STARTS if problem.prescribed else free) // cases
     phased = problem.prescribed and problem.crank_phase == "free"
     unknowns = UNKNOWNS[FOURBAR] + phased
     draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAWS - 4))], axis=1)
-    flock = _empty(count, unknowns, n)
+    population = _empty(count, unknowns, n)
     if problem.prescribed:
-        timed_starts(draws, rows, setting, unknowns, flock.starts, flock.costs)
+        timed_starts(draws, rows, setting, unknowns, population.starts, population.costs)
         count = math.ceil(TIMED_SHARE * count)
     else:
         runs = np.zeros((count, n))
         places = along(rows)
 
         def begin(some: slice) -> None:
-            free_starts(draws[some], places, rows, setting, flock.starts[some], runs[some], flock.costs[some])
+            free_starts(draws[some], places, rows, setting, population.starts[some], runs[some], population.costs[some])
 
         in_portions(begin, count, PORTION)
-        flock.states[:, :n] = runs
+        population.states[:, :n] = runs
     for share, steps, tolerance in THINNING:
-        flock = _best(flock, max(math.ceil(share * count), 1))
-        _descend(flock, rows, setting, steps, tolerance)
-    return flock
+        population = _best(population, max(math.ceil(share * count), 1))
+        _descend(population, rows, setting, steps, tolerance)
+    return population
 
 
 def _kicked(
-    problem: PathProblem, bases: tuple[_Flock, _Flock], rows: Real, setting: Real, rng: np.random.Generator
-) -> _Flock:
-    """Where the best of a case and of its other assembly lead when they are changed, or turned inside out."""
+    problem: PathProblem, bases: tuple[_Population, _Population], rows: Real, setting: Real, rng: np.random.Generator
+) -> _Population:
+    """Ends of descents from perturbed copies of the best of a case, and from those of its other assembly inside out."""
     n, sign = len(rows), float(setting[SIGN])
     parts = []
     for flip, base, its_sign, copies in (
@@ -344,7 +347,7 @@ def _kicked(
     return near
 
 
-class _Flock(NamedTuple):
+class _Population(NamedTuple):
     """Starts that descend together: unknowns (k, unknowns), states (k, 3 points + limits), costs (k,), and how the last
     descent of each has ended (k,)."""
 
@@ -354,8 +357,8 @@ class _Flock(NamedTuple):
     statuses: Whole
 
 
-def _empty(count: int, unknowns: int, points: int) -> _Flock:
-    return _Flock(
+def _empty(count: int, unknowns: int, points: int) -> _Population:
+    return _Population(
         np.zeros((count, unknowns)),
         np.zeros((count, 3 * points + LIMITS)),
         np.full(count, np.inf),
@@ -363,36 +366,36 @@ def _empty(count: int, unknowns: int, points: int) -> _Flock:
     )
 
 
-def _joined(flocks: list[_Flock]) -> _Flock:
-    return _Flock(*(np.concatenate(parts) for parts in zip(*flocks, strict=True)))
+def _joined(populations: list[_Population]) -> _Population:
+    return _Population(*(np.concatenate(parts) for parts in zip(*populations, strict=True)))
 
 
-def _best(flock: _Flock, count: int) -> _Flock:
+def _best(population: _Population, count: int) -> _Population:
     """The best of them, copies."""
-    kept = np.argsort(flock.costs, kind="stable")[:count]
-    kept = kept[np.isfinite(flock.costs[kept])]
-    return _Flock._make(column[kept] for column in flock)
+    kept = np.argsort(population.costs, kind="stable")[:count]
+    kept = kept[np.isfinite(population.costs[kept])]
+    return _Population._make(column[kept] for column in population)
 
 
-def _different(flock: _Flock, count: int) -> _Flock:
+def _different(population: _Population, count: int) -> _Population:
     """Those, best first, whose cost is not that of the one before: they have not come to the same minimum."""
-    kept = np.flatnonzero(np.diff(flock.costs, prepend=-1.0) > SAME_COST * flock.costs)[:count]
-    return _Flock._make(column[kept] for column in flock)
+    kept = np.flatnonzero(np.diff(population.costs, prepend=-1.0) > SAME_COST * population.costs)[:count]
+    return _Population._make(column[kept] for column in population)
 
 
-def _descend(flock: _Flock, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
-    if not len(flock.costs):
+def _descend(population: _Population, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
+    if not len(population.costs):
         return
     multipliers = np.zeros(LIMITS + 1)
     multipliers[LIMITS] = SOFT_WEIGHT
     most = 2 * len(rows) + LIMITS
 
     def work(some: slice) -> None:
-        starts, states = flock.starts[some], flock.states[some]
-        costs, statuses = flock.costs[some], flock.statuses[some]
+        starts, states = population.starts[some], population.states[some]
+        costs, statuses = population.costs[some], population.statuses[some]
         descend_each(path_rows, starts, rows, setting, multipliers, states, most, steps, tolerance, costs, statuses)
 
-    in_portions(work, len(flock.costs), PORTION)
+    in_portions(work, len(population.costs), PORTION)
 
 
 def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:

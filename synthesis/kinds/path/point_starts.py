@@ -19,7 +19,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, LENGTHS, POINT, from_lengths, natural
-from synthesis.fit.coupler_curve import crank_range, place, two_bars, unit
+from synthesis.fit.coupler_curve import crank_range, place, rocking_range, two_bars, unit
 from synthesis.fit.demands import FAMILY, GIVEN, SIGN, WHOLE
 from synthesis.kinds.path.assignment import assign
 from synthesis.kinds.path.limits import ABSOLUTE, GROUND_LINE, ORDERED, PHASED, TIMED
@@ -190,10 +190,7 @@ def free_starts(draws: Real, along: Real, points: Real, setting: Real, starts: R
                 warp = draw[8] * (math.sin(2.0 * math.pi * s + 3.0 * draw[9]) - math.sin(3.0 * draw[9]))
                 angles[k] = begin + way * (whole * s + 0.8 * warp)
         else:
-            width = high - low if low > 0.0 else 2.0 * high
-            begin = low if low > 0.0 else -high
-            if high == math.pi:
-                begin, width = low, 2.0 * (math.pi - low)
+            begin, width = rocking_range(low, high)
             used = width * (0.2 + 0.78 * share)
             begin += (
                 0.01 * width + (0.98 * width - used) * (0.5 + 0.5 * draw[4]) if used < 0.98 * width else 0.01 * width
@@ -222,15 +219,11 @@ def reassign(x: Real, points: Real, setting: Real, angles: Real) -> float:
     count = SAMPLES
     begin, step = 0.0, 2.0 * math.pi / count
     if not crank:
-        middle = angles[n // 2]
-        if low > 0.0 and high < math.pi:
-            begin, step = low, (high - low) / count
-            if math.sin(middle) < 0.0:
-                begin = -high
-        elif low > 0.0:
-            begin, step = low, 2.0 * (math.pi - low) / count
-        else:
-            begin, step = -high, 2.0 * high / count
+        begin, width = rocking_range(low, high)
+        if low > 0.0 and high < math.pi and math.sin(angles[n // 2]) < 0.0:
+            # Two ranges, on either side of the ground line: the points are on the lower one.
+            begin = -high
+        step = width / count
         begin += 0.5 * step
     squares = np.empty((n, count))
     for j in range(count):
