@@ -79,7 +79,7 @@ def test_kinematics_knows_numpy_and_numba_only() -> None:
 
 def test_kinds_are_known_by_name_where_they_are_listed_and_drawn_only() -> None:
     """What goes over all kinds asks the registry."""
-    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/", "synthesis/proof/")
+    allowed = ("synthesis/kinds/", "synthesis/registry.py", "service/render/")
     files = [path for package in ("synthesis", "service") for path in (ROOT / package).rglob("*.py")]
     knowing = {
         place
