@@ -20,19 +20,8 @@ import numpy as np
 from kinematics.cam.motion_laws import LAWS
 from synthesis.dispatch import solve
 from synthesis.kinds.cam.motion_program import Condition, Limit
-from synthesis.kinds.cam.optimal import (
-    Best,
-    NoMotion,
-    Run,
-    best_derivative,
-    best_roller_size,
-    best_torque,
-)
-from synthesis.kinds.cam.sizing import (
-    RollerLimits,
-    oscillating_roller,
-    translating_roller,
-)
+from synthesis.kinds.cam.optimal import Best, NoMotion, Run, best_derivative, best_roller_size, best_torque
+from synthesis.kinds.cam.sizing import RollerLimits, oscillating_roller, translating_roller
 from synthesis.numerics.convex import modeling
 from synthesis.registry import KINDS, parse_problem
 from tests.synthesis.cam_sampling import first_sound, oscillating, random_program, translating

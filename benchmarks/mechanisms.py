@@ -8,13 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.linkage.fourbar.closed_form import Fourbar
-from kinematics.linkage.planar.catalogue import (
-    fourbar,
-    hart,
-    pantograph,
-    peaucellier,
-    sixbar,
-)
+from kinematics.linkage.planar.catalogue import fourbar, hart, pantograph, peaucellier, sixbar
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
 
 

@@ -19,12 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from kinematics.linkage.fourbar import (
-    OPEN,
-    Fourbar,
-    cognates,
-    positions,
-)
+from kinematics.linkage.fourbar import OPEN, Fourbar, cognates, positions
 from synthesis.dispatch import solve
 from synthesis.kinds.path.design import PathResult
 from synthesis.kinds.path.nine_point_system import ORBITS

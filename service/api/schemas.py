@@ -11,11 +11,7 @@ from service.api.errors import ProblemDetails
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
 from synthesis.model.answer import Result
-from synthesis.registry import (
-    KINDS,
-    Problem,
-    example,
-)
+from synthesis.registry import KINDS, Problem, example
 
 if TYPE_CHECKING:
     AnyResult = Result[Any]

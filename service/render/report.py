@@ -22,11 +22,7 @@ from service.render.outline import Outline, outline, with_unit, words, written
 from service.render.page.sheet import UNITS
 from service.render.page.svg import clean
 from service.units import symbols
-from synthesis.model.answer import (
-    Check,
-    Result,
-    Search,
-)
+from synthesis.model.answer import Check, Result, Search
 from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
 

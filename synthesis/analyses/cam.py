@@ -24,11 +24,7 @@ from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.cam import GivenCam
 from synthesis.model.answer import Answer
-from synthesis.model.statement import (
-    NonNegative,
-    PositiveNumber,
-    Statement,
-)
+from synthesis.model.statement import NonNegative, PositiveNumber, Statement
 
 Real = NDArray[np.float64]
 

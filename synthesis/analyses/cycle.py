@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.branches import (
-    Branch,
-    cycle,
-    most_turns,
-)
+from kinematics.linkage.planar.branches import Branch, cycle, most_turns
 from kinematics.linkage.planar.limits import branches, holding_reference
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 

@@ -19,11 +19,7 @@ from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.answer import Answer
 from synthesis.model.gear_statement import PressureAngle, ToothNumber
-from synthesis.model.statement import (
-    Number,
-    PositiveNumber,
-    Statement,
-)
+from synthesis.model.statement import Number, PositiveNumber, Statement
 
 RPM = 2.0 * math.pi / 60.0
 

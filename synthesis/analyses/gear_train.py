@@ -20,11 +20,7 @@ from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family, Turni
 from synthesis.model.answer import Answer
 from synthesis.model.gear_answer import MeshGeometry, Ratio, mesh_geometries
 from synthesis.model.gear_statement import PressureAngle, ToothNumber
-from synthesis.model.statement import (
-    Number,
-    PositiveNumber,
-    Statement,
-)
+from synthesis.model.statement import Number, PositiveNumber, Statement
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 

@@ -9,12 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from synthesis.model.statement import (
-    Count,
-    Number,
-    Sizable,
-    Statement,
-)
+from synthesis.model.statement import Count, Number, Sizable, Statement
 
 MAX_POSITIONS = 10_000
 """Positions of one analysis at most; a finer run is asked for in parts."""

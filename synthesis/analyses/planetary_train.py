@@ -16,11 +16,7 @@ from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, 
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
-from synthesis.model.statement import (
-    Flag,
-    Number,
-    Statement,
-)
+from synthesis.model.statement import Flag, Number, Statement
 
 MAX_MESHES = 8
 """The directions of power are tried mesh by mesh, 2^8 ways at worst: half a second."""

@@ -14,23 +14,11 @@ from kinematics.linkage.fourbar import barker_type
 from kinematics.linkage.fourbar.classification import BARKER
 from kinematics.linkage.planar.branches import Branch
 from kinematics.linkage.planar.closures import decompose
-from kinematics.linkage.planar.drive import (
-    MechanismMotion,
-    drive,
-    given_up,
-)
+from kinematics.linkage.planar.drive import MechanismMotion, drive, given_up
 from kinematics.linkage.planar.instant_centers import instant_centers
-from kinematics.linkage.planar.limits import (
-    holding_reference,
-    limit_positions,
-    toggles,
-)
+from kinematics.linkage.planar.limits import holding_reference, limit_positions, toggles
 from kinematics.linkage.planar.link_points import link_point
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 from kinematics.linkage.planar.program import program_of
 from synthesis.analyses.cycle import listed_branches
 from synthesis.analyses.fourbar import fourbar_of

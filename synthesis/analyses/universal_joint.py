@@ -8,22 +8,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from kinematics.linkage.universal_joint import (
-    Joint,
-    angle_of_fluctuation,
-    angle_within,
-    shaft_extremes,
-    shaft_motion,
-)
+from kinematics.linkage.universal_joint import Joint, angle_of_fluctuation, angle_within, shaft_extremes, shaft_motion
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.model.answer import Answer
-from synthesis.model.statement import (
-    ABSURD,
-    NonNegative,
-    Number,
-    Statement,
-)
+from synthesis.model.statement import ABSURD, NonNegative, Number, Statement
 
 EVEN = 1e-12
 """Fluctuation of the speed that is rounding."""

@@ -11,12 +11,7 @@ from typing import Annotated, Literal
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.model.dimension import LENGTH
-from synthesis.model.statement import (
-    Degrees,
-    NonNegative,
-    Point,
-    Statement,
-)
+from synthesis.model.statement import Degrees, NonNegative, Point, Statement
 
 AGREES = 1e-6
 """A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""

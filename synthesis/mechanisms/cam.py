@@ -16,14 +16,7 @@ from kinematics.cam.contact import Contour
 from kinematics.errors import DimensionError
 from synthesis.mechanisms.base import MechanismError
 from synthesis.model.dimension import ANGLE, LENGTH
-from synthesis.model.statement import (
-    Coordinate,
-    Degrees,
-    NonNegative,
-    PositiveLength,
-    PositiveNumber,
-    Statement,
-)
+from synthesis.model.statement import Coordinate, Degrees, NonNegative, PositiveLength, PositiveNumber, Statement
 
 MAX_POINTS = 20_000
 """Points of a given profile at most."""

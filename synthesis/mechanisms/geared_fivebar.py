@@ -17,12 +17,7 @@ from kinematics.linkage.planar.catalogue import ASSEMBLY
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.model.statement import (
-    Degrees,
-    Number,
-    PositiveLength,
-    Statement,
-)
+from synthesis.model.statement import Degrees, Number, PositiveLength, Statement
 
 Real = NDArray[np.float64]
 

@@ -10,20 +10,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    GearPair,
-    Mechanism,
-    Slide,
-)
+from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 from synthesis.mechanisms.base import AGREES, BODY, ROUNDING, MechanismError, StatedCouplerPoint, StatedLine
-from synthesis.model.statement import (
-    Degrees,
-    Number,
-    Point,
-    PositiveLength,
-    Statement,
-)
+from synthesis.model.statement import Degrees, Number, Point, PositiveLength, Statement
 
 MOST_SHOWN = 6
 """Distances that a message lists."""

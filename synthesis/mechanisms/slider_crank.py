@@ -25,14 +25,7 @@ from synthesis.mechanisms.base import (
 )
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.model.dimension import LENGTH
-from synthesis.model.statement import (
-    Coordinate,
-    Degrees,
-    NonNegative,
-    Point,
-    PositiveLength,
-    Statement,
-)
+from synthesis.model.statement import Coordinate, Degrees, NonNegative, Point, PositiveLength, Statement
 
 
 class SliderCrankLengths(Statement):

@@ -10,12 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Verification,
-    blank,
-)
+from synthesis.model.answer import Answer, Point, Verification, blank
 from synthesis.model.dimension import Angle, Length
 
 _BODY_ANGLE = Field(

@@ -4,11 +4,7 @@ import re
 
 import pytest
 
-from synthesis.registry import (
-    KINDS,
-    example,
-    examples,
-)
+from synthesis.registry import KINDS, example, examples
 from tests.browser.test_studio import PLAIN, state, stated
 
 pytestmark = pytest.mark.browser

@@ -10,11 +10,7 @@ import numpy as np
 
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import MechanismMotion
-from kinematics.linkage.planar.drive_kernels import (
-    AT_LIMIT,
-    COINCIDENT,
-    SINGULAR,
-)
+from kinematics.linkage.planar.drive_kernels import AT_LIMIT, COINCIDENT, SINGULAR
 from kinematics.linkage.planar.mechanism import GROUND
 from kinematics.linkage.planar.program import assembly_signs, unit_frame
 

@@ -9,17 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.planar.catalogue import (
-    SIXBAR_LINKS,
-    peaucellier,
-    quick_return,
-    sixbar,
-)
-from kinematics.linkage.planar.mechanism import (
-    GearPair,
-    Mechanism,
-    Slide,
-)
+from kinematics.linkage.planar.catalogue import SIXBAR_LINKS, peaucellier, quick_return, sixbar
+from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 
 Rng = np.random.Generator
 Make = Callable[[Rng, int], Mechanism]

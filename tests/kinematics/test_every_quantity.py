@@ -15,11 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.instant_centers import instant_centers
-from kinematics.linkage.planar.limits import (
-    branches,
-    holding_reference,
-    limit_positions,
-)
+from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 from tests.kinematics.mechanism_sampling import CLASS_THREE, DYADIC, EVERY, geared_fivebar, take
 

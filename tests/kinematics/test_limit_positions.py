@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinematics.linkage.planar.limits import (
-    branches,
-    holding_reference,
-    limit_positions,
-)
+from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
 from kinematics.linkage.planar.roots import find_roots
 from tests.kinematics.mechanism_sampling import fourbar, take
 

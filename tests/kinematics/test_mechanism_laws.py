@@ -11,19 +11,8 @@ import pytest
 from kinematics.errors import DimensionError, ShapeError
 from kinematics.linkage.fourbar import Fourbar, motion
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.drive import (
-    MechanismMotion,
-    decompose,
-    drive,
-    followed_to,
-)
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    GearPair,
-    Mechanism,
-    Slide,
-    TopologyError,
-)
+from kinematics.linkage.planar.drive import MechanismMotion, decompose, drive, followed_to
+from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide, TopologyError
 from tests.kinematics.mechanism_sampling import CLASS_THREE, DYADIC, EVERY, geared_fivebar, points, take
 from tests.oracles.constraints import Constraints
 from tests.oracles.differences import derivative

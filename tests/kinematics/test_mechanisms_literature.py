@@ -5,11 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
-    Fourbar,
-)
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism

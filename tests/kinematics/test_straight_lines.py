@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import (
-    CROSSED,
-    OPEN,
-    Fourbar,
-)
+from kinematics.linkage.fourbar.closed_form import CROSSED, OPEN, Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
 from tests.cases import cases

@@ -8,12 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import (
-    CROSSED,
-    OPEN,
-    Fourbar,
-    barker_type,
-)
+from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, barker_type
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.strokes import reversals, strokes
 from tests.cases import cases

@@ -8,17 +8,9 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.planar import catalogue
-from kinematics.linkage.planar.drive import (
-    decompose,
-    drive,
-    given_up,
-)
+from kinematics.linkage.planar.drive import decompose, drive, given_up
 from kinematics.linkage.planar.limits import branches, holding_reference
-from kinematics.linkage.planar.mechanism import (
-    Mechanism,
-    Slide,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
 from tests.kinematics.mechanism_sampling import CLASS_THREE, take
 from tests.oracles.constraints import Constraints, Trace
 

@@ -10,13 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.universal_joint import (
-    Joint,
-    angle_of_fluctuation,
-    angle_within,
-    shaft_extremes,
-    shaft_motion,
-)
+from kinematics.linkage.universal_joint import Joint, angle_of_fluctuation, angle_within, shaft_extremes, shaft_motion
 from tests.cases import cases
 
 RPM = math.pi / 30.0

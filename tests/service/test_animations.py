@@ -13,13 +13,7 @@ from kinematics.cam.profile import even_angles
 from service.render import exported
 from service.render.cam.animation import _spin
 from service.render.cam.scene import CamScene
-from service.render.page.animation import (
-    FRAMES,
-    PIXELS,
-    Stroke,
-    animated,
-    ring,
-)
+from service.render.page.animation import FRAMES, PIXELS, Stroke, animated, ring
 from service.render.page.svg import Box
 from synthesis.dispatch import solve
 from synthesis.registry import examples, parse_problem

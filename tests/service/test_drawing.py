@@ -13,22 +13,11 @@ import pytest
 from kinematics.linkage.fourbar import CROSSED, OPEN, Fourbar, positions
 from service.render import exported
 from service.render.linkage.fourbar import MARKED, OTHERS
-from service.render.page.svg import (
-    Box,
-    clipped,
-    clipped_polygon,
-    number,
-    shortened,
-    text_width,
-)
+from service.render.page.svg import Box, clipped, clipped_polygon, number, shortened, text_width
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_answer import (
-    LinkageDesign,
-    LinkageMetrics,
-    Target,
-)
+from synthesis.model.linkage_answer import LinkageDesign, LinkageMetrics, Target
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 
 SVG = "{http://www.w3.org/2000/svg}"

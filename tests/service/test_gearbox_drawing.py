@@ -12,12 +12,7 @@ import numpy as np
 import pytest
 
 from service.render import exported
-from service.render.gears.gearbox_layout import (
-    BoxGear,
-    BoxLayout,
-    gearbox_layout,
-    layshaft_layout,
-)
+from service.render.gears.gearbox_layout import BoxGear, BoxLayout, gearbox_layout, layshaft_layout
 from synthesis.dispatch import solve
 from synthesis.registry import example, parse_problem
 from tests.service.test_gear_drawing import assert_involute

@@ -13,11 +13,7 @@ from service.render.page.numbers import length
 from service.render.report import POLICY, Occasion, report
 from service.units import symbols
 from synthesis.dispatch import solve
-from synthesis.registry import (
-    KINDS,
-    examples,
-    parse_problem,
-)
+from synthesis.registry import KINDS, examples, parse_problem
 
 VOID = {"meta", "link", "br", "img", "input", "hr"}
 OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")

@@ -3,12 +3,7 @@
 import pytest
 
 from service.units import symbols
-from synthesis.registry import (
-    KINDS,
-    example,
-    examples,
-    parse_problem,
-)
+from synthesis.registry import KINDS, example, examples, parse_problem
 
 # Numbers without a unit: ratios, shares, residuals by the task's size, relative errors, values of a function. A number
 # that is in none of these models, or has another name, says what it measures.

@@ -7,13 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from synthesis.kinds.motion.burmester import (
-    BurmesterCurve,
-    Window,
-    branches,
-    burmester_curve,
-    cloud,
-)
+from synthesis.kinds.motion.burmester import BurmesterCurve, Window, branches, burmester_curve, cloud
 from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.sections import section
 from synthesis.kinds.motion.task import MotionTask, motion_task

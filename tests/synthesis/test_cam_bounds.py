@@ -15,13 +15,7 @@ from scipy.optimize import linprog
 from scipy.sparse import lil_matrix
 
 from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
-from synthesis.kinds.cam.optimal import (
-    Best,
-    NoMotion,
-    Run,
-    best_derivative,
-    best_flat_size,
-)
+from synthesis.kinds.cam.optimal import Best, NoMotion, Run, best_derivative, best_flat_size
 
 HONEST = 0.02
 """Share by which the motions of HiGHS, on a coarse grid, may exceed the bound: else it proves little."""

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
-from synthesis.kinds.path.verify_curve import (
-    BULGE,
-    astray,
-    followed,
-    verify_curve,
-)
+from synthesis.kinds.path.verify_curve import BULGE, astray, followed, verify_curve
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.proof.closer import least_near
 from synthesis.registry import parse_problem

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from synthesis.kinds.quick_return.drag_link import (
-    _greatest_ratio,
-    _input_angle,
-    _slow,
-    _slowest,
-)
+from synthesis.kinds.quick_return.drag_link import _greatest_ratio, _input_angle, _slow, _slowest
 
 
 def input_angle(a, c, direction):

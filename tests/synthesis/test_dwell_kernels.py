@@ -8,12 +8,7 @@ import pytest
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.outputs import CYCLE, output
-from synthesis.kinds.dwell.scoring import (
-    ROCKER,
-    SLIDER,
-    SLOT,
-    judge,
-)
+from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 LENGTH, DWELL_WAY, LEAST = 11, 0.9, math.sin(0.5)
 

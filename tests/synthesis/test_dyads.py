@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from synthesis.kinds.motion.choices import side_dyads, stated_conditions
-from synthesis.kinds.motion.dyads import (
-    DyadConditions,
-    Dyads,
-    solve_dyads,
-)
+from synthesis.kinds.motion.dyads import DyadConditions, Dyads, solve_dyads
 from synthesis.kinds.motion.problem import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.registry import parse_problem

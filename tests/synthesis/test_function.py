@@ -10,10 +10,7 @@ import numpy as np
 import pytest
 
 from kinematics.linkage import SliderCrank, slider_crank
-from kinematics.linkage.fourbar import (
-    Fourbar,
-    positions,
-)
+from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.function.approximation import _Descent
 from synthesis.kinds.function.closure import FOURBAR
 from synthesis.kinds.function.levelling import levelled

@@ -16,11 +16,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.gearbox.design import GearboxResult
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.gearbox.stages import worth_having
-from synthesis.kinds.gearbox.structures import (
-    Group,
-    formula,
-    structures,
-)
+from synthesis.kinds.gearbox.structures import Group, formula, structures
 from synthesis.kinds.gearbox.verification import verify
 from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem

@@ -9,11 +9,7 @@ from pydantic import ValidationError
 
 from synthesis.dispatch import solve
 from synthesis.model.statement import ContradictionError
-from synthesis.registry import (
-    KINDS,
-    example,
-    parse_problem,
-)
+from synthesis.registry import KINDS, example, parse_problem
 
 POSITIONS = [
     {"x": 0.0, "y": 0.0, "angle": 0.0},

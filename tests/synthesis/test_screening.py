@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from synthesis.kinds.motion.choices import side_dyads
-from synthesis.kinds.motion.screening import (
-    REASONS,
-    demands,
-    screen,
-)
+from synthesis.kinds.motion.screening import REASONS, demands, screen
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism

@@ -18,11 +18,7 @@ from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
 from synthesis.kinds.motion.sliders import Sliders, sliders
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
-from synthesis.model.linkage_answer import (
-    InvertedSliderCrankMechanism,
-    LinkageDesign,
-    SliderCrankMechanism,
-)
+from synthesis.model.linkage_answer import InvertedSliderCrankMechanism, LinkageDesign, SliderCrankMechanism
 from synthesis.registry import parse_problem
 from tests.synthesis.driving import assert_drives_through, turns_through
 from tests.synthesis.planted import inverted_images

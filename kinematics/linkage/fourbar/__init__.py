@@ -56,12 +56,7 @@ from kinematics.linkage.fourbar.coupler_curve import (
     sextic,
     sextic_coefficients,
 )
-from kinematics.linkage.fourbar.curvature import (
-    PathCurvature,
-    Pole,
-    path_curvature,
-    pole,
-)
+from kinematics.linkage.fourbar.curvature import PathCurvature, Pole, path_curvature, pole
 from kinematics.linkage.fourbar.transmission import transmission_angle, transmission_extremes
 
 __all__ = [

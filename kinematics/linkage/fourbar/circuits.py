@@ -28,12 +28,7 @@ from kinematics.linkage.batch import over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
 from kinematics.linkage.fourbar.circuit_kernels import FULL_TURN
 from kinematics.linkage.fourbar.classification import can_assemble
-from kinematics.linkage.fourbar.closed_form import (
-    Fourbar,
-    Mask,
-    Real,
-    one_shape,
-)
+from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, one_shape
 
 
 class InputLimits(NamedTuple):

@@ -15,12 +15,7 @@ from kinematics.errors import DimensionError
 from kinematics.linkage.batch import over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
 from kinematics.linkage.fourbar.circuit_kernels import CHANGE_POINT
-from kinematics.linkage.fourbar.closed_form import (
-    Fourbar,
-    Mask,
-    Real,
-    require,
-)
+from kinematics.linkage.fourbar.closed_form import Fourbar, Mask, Real, require
 
 
 class BarkerClass(NamedTuple):

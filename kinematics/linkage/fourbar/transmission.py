@@ -15,13 +15,7 @@ from numpy.typing import ArrayLike
 
 from kinematics.linkage.batch import over_designs
 from kinematics.linkage.fourbar import circuit_kernels as kernels
-from kinematics.linkage.fourbar.closed_form import (
-    Fourbar,
-    Real,
-    closes,
-    one_shape,
-    with_angle_axis,
-)
+from kinematics.linkage.fourbar.closed_form import Fourbar, Real, closes, one_shape, with_angle_axis
 
 
 def transmission_angle(linkage: Fourbar, input_angle: ArrayLike) -> Real:

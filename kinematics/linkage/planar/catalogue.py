@@ -13,18 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar.closed_form import (
-    CROSSED,
-    OPEN,
-    Fourbar,
-    positions,
-    require,
-)
-from kinematics.linkage.planar.mechanism import (
-    GearPair,
-    Mechanism,
-    Slide,
-)
+from kinematics.linkage.fourbar.closed_form import CROSSED, OPEN, Fourbar, positions, require
+from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide
 
 Complex = NDArray[np.complex128]
 

@@ -24,12 +24,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    GearPair,
-    Mechanism,
-    Slide,
-)
+from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
 
 RECENT = 8
 """Mechanisms whose order of closures is remembered: root finding asks for it dozens of times."""

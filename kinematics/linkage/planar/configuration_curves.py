@@ -34,12 +34,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.planar.closures import Decomposition, Step
 from kinematics.linkage.planar.drive import drive_one, margins_of_one
 from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
-from kinematics.linkage.planar.positive_arcs import (
-    TOUCHES,
-    Arc,
-    Domain,
-    positive_arcs,
-)
+from kinematics.linkage.planar.positive_arcs import TOUCHES, Arc, Domain, positive_arcs
 
 Real = NDArray[np.float64]
 Rows = NDArray[np.int64]

@@ -15,22 +15,9 @@ from kinematics.linkage.fourbar.closed_form import one_shape, require
 from kinematics.linkage.planar import drive_kernels as kernels
 from kinematics.linkage.planar.closures import RECENT, decompose
 from kinematics.linkage.planar.mechanism import Mechanism, Real
-from kinematics.linkage.planar.program import (
-    Frame,
-    Program,
-    Signs,
-    assembly_signs,
-    program_of,
-    unit_frame,
-)
+from kinematics.linkage.planar.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
 from kinematics.linkage.planar.triad_transmission import triad_of, triad_sine
-from kinematics.linkage.planar.triads import (
-    STALLED,
-    Loops,
-    Track,
-    loop_equations,
-    rates,
-)
+from kinematics.linkage.planar.triads import STALLED, Loops, Track, loop_equations, rates
 
 Jet = NDArray[np.complex128]
 """Complex jet, shape (n, ...) with n from 1 to 4: value, velocity, acceleration and jerk, or the first few of them."""

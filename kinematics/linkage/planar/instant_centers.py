@@ -18,12 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.drive import MechanismMotion
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Complex,
-    Mechanism,
-    Real,
-)
+from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
 
 PARALLEL = 1e-9
 """Difference of angular velocities, as a share of the fastest link's, below which two links move parallel."""

@@ -7,18 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.branches import (
-    Branch,
-    cycle,
-    dyadic_branches,
-)
+from kinematics.linkage.planar.branches import Branch, cycle, dyadic_branches
 from kinematics.linkage.planar.closures import decompose
-from kinematics.linkage.planar.drive import (
-    assembly_signs,
-    drive,
-    drive_one,
-    followed_to,
-)
+from kinematics.linkage.planar.drive import assembly_signs, drive, drive_one, followed_to
 from kinematics.linkage.planar.mechanism import Mechanism
 from kinematics.linkage.planar.other_driver import branches_by_other_driver
 from kinematics.linkage.planar.program import program_of

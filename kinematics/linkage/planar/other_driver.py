@@ -26,21 +26,9 @@ from kinematics.linkage.planar.configuration_curves import (
     configuration_curves,
     places,
 )
-from kinematics.linkage.planar.drive import (
-    MechanismMotion,
-    assembly_signs,
-    drive_one,
-)
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
-from kinematics.linkage.planar.positive_arcs import (
-    HAIR,
-    Domain,
-    positive_arcs,
-)
+from kinematics.linkage.planar.drive import MechanismMotion, assembly_signs, drive_one
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
+from kinematics.linkage.planar.positive_arcs import HAIR, Domain, positive_arcs
 from kinematics.linkage.planar.program import program_of
 
 Real = NDArray[np.float64]

@@ -15,18 +15,8 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar.closed_form import require
 from kinematics.linkage.planar import drive_kernels as kernels
-from kinematics.linkage.planar.closures import (
-    RECENT,
-    Step,
-    decompose,
-)
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    TOO_SHORT,
-    Complex,
-    Mechanism,
-    Real,
-)
+from kinematics.linkage.planar.closures import RECENT, Step, decompose
+from kinematics.linkage.planar.mechanism import GROUND, TOO_SHORT, Complex, Mechanism, Real
 
 Signs = NDArray[np.int64]
 

@@ -28,11 +28,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.mechanism import (
-    GROUND,
-    Mechanism,
-    TopologyError,
-)
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -12,11 +12,7 @@ import math
 
 import numpy as np
 
-from kinematics.linkage.slider_crank.closed_form import (
-    SliderCrank,
-    crank_limits,
-    full_rotation,
-)
+from kinematics.linkage.slider_crank.closed_form import SliderCrank, crank_limits, full_rotation
 
 
 def height_range(linkage: SliderCrank, start: float, end: float) -> tuple[float, float]:

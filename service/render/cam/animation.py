@@ -11,21 +11,9 @@ from kinematics.cam.follower import OscillatingFlat, OscillatingRoller
 from kinematics.cam.profile import even_angles
 from service.render.cam.scene import CamScene
 from service.render.cam.view import STEM
-from service.render.page.animation import (
-    FRAMES,
-    Stroke,
-    animated,
-    ring,
-)
+from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box, Points
-from service.render.page.symbols import (
-    COUPLER,
-    CURVE,
-    GREY,
-    GROUND,
-    INPUT,
-    PALE,
-)
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, PALE
 from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign
 from synthesis.kinds.cam.mechanism import points_of
 from synthesis.kinds.cam.problem import CamProblem

@@ -12,10 +12,7 @@ from numpy.typing import NDArray
 from kinematics.cam.contact import ContactMotion, Contour
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from synthesis.kinds.cam.design import CamMechanism
-from synthesis.kinds.cam.mechanism import (
-    core_follower,
-    points_of,
-)
+from synthesis.kinds.cam.mechanism import core_follower, points_of
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -12,40 +12,13 @@ from service.render.cam.view import FOOT, MARGIN, STYLES, barrel_box, barrel_pan
 from service.render.checks import checks, outcome, verdict
 from service.render.outline import entries
 from service.render.page import blocks
-from service.render.page.blocks import (
-    Block,
-)
+from service.render.page.blocks import Block
 from service.render.page.diagrams import Diagram
-from service.render.page.numbers import (
-    NONE,
-    length,
-)
+from service.render.page.numbers import NONE, length
 from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, in_columns, sheet, stacked
-from service.render.page.svg import (
-    Box,
-    Element,
-    circle,
-    clean,
-    element,
-    line,
-    text,
-    text_width,
-)
-from service.render.page.symbols import (
-    COUPLER,
-    CURVE,
-    DEMANDED,
-    GREY,
-    INK,
-    INPUT,
-    OUTPUT,
-)
-from synthesis.kinds.cam.design import (
-    BarrelCamDesign,
-    CamDesign,
-    CamFollower,
-    ProgramTable,
-)
+from service.render.page.svg import Box, Element, circle, clean, element, line, text, text_width
+from service.render.page.symbols import COUPLER, CURVE, DEMANDED, GREY, INK, INPUT, OUTPUT
+from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign, CamFollower, ProgramTable
 from synthesis.kinds.cam.problem import CamProblem
 
 DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0

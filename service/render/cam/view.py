@@ -17,16 +17,7 @@ from service.render.cam.scene import CamScene
 from service.render.page.labels import Labels
 from service.render.page.numbers import angle
 from service.render.page.sheet import framed
-from service.render.page.svg import (
-    Box,
-    Element,
-    Viewport,
-    circle,
-    element,
-    line,
-    path,
-    text,
-)
+from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, text
 from service.render.page.symbols import (
     COUPLER,
     CURVE,

@@ -19,11 +19,7 @@ from __future__ import annotations
 
 from ezdxf.document import Drawing
 
-from service.render.gears.gearbox_layout import (
-    BoxLayout,
-    gearbox_layout,
-    layshaft_layout,
-)
+from service.render.gears.gearbox_layout import BoxLayout, gearbox_layout, layshaft_layout
 from service.render.page import dxf
 from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem

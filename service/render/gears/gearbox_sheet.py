@@ -15,19 +15,8 @@ from service.render.gears.marks import COLOURS, PAPER
 from service.render.page import blocks
 from service.render.page.numbers import length
 from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
-from service.render.page.svg import (
-    Box,
-    Element,
-    circle,
-    element,
-    line,
-    text,
-    text_width,
-)
-from service.render.page.symbols import (
-    INK,
-    PALE,
-)
+from service.render.page.svg import Box, Element, circle, element, line, text, text_width
+from service.render.page.symbols import INK, PALE
 from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.kinds.layshaft_gearbox.design import LayshaftDesign

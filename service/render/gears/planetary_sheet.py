@@ -13,23 +13,8 @@ from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
 from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
-from service.render.page.svg import (
-    Box,
-    Element,
-    Viewport,
-    circle,
-    line,
-    text,
-)
-from service.render.page.symbols import (
-    COUPLER,
-    CURVE,
-    GREY,
-    GROUND,
-    INPUT,
-    OUTPUT,
-    scale_bar,
-)
+from service.render.page.svg import Box, Element, Viewport, circle, line, text
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, OUTPUT, scale_bar
 from synthesis.kinds.planetary_train.design import PlanetaryDesign
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 

@@ -10,19 +10,9 @@ import numpy as np
 from kinematics.errors import DimensionError
 from kinematics.gear.profile import outline
 from service.render.gears.train_layout import PlacedGear, placed_gears
-from service.render.page.animation import (
-    FRAMES,
-    Stroke,
-    animated,
-    ring,
-)
+from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box, Points
-from service.render.page.symbols import (
-    COUPLER,
-    GROUND,
-    INPUT,
-    OUTPUT,
-)
+from service.render.page.symbols import COUPLER, GROUND, INPUT, OUTPUT
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 

@@ -8,30 +8,13 @@ import numpy as np
 
 from service.render.checks import checks, verdict
 from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box
-from service.render.gears.train_layout import (
-    PlacedGear,
-    box_around,
-    placed_gears,
-)
+from service.render.gears.train_layout import PlacedGear, box_around, placed_gears
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
 from service.render.page.sheet import beside, fitted, framed, sheet, stacked
-from service.render.page.svg import (
-    Box,
-    Element,
-    Viewport,
-    circle,
-    line,
-    path,
-    text,
-)
-from service.render.page.symbols import (
-    GREY,
-    GROUND,
-    arrow,
-    scale_bar,
-)
+from service.render.page.svg import Box, Element, Viewport, circle, line, path, text
+from service.render.page.symbols import GREY, GROUND, arrow, scale_bar
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 

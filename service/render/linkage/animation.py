@@ -12,20 +12,9 @@ from numpy.typing import NDArray
 from kinematics.linkage.planar.mechanism import GROUND
 from service.render.linkage.drawing import Scene, around, block_corners
 from service.render.linkage.motion import DrivenLinkage
-from service.render.page.animation import (
-    FRAMES,
-    Stroke,
-    animated,
-    ring,
-)
+from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box
-from service.render.page.symbols import (
-    COUPLER,
-    CURVE,
-    INK,
-    INPUT,
-    OUTPUT,
-)
+from service.render.page.symbols import COUPLER, CURVE, INK, INPUT, OUTPUT
 from service.render.page.symbols import GROUND as GROUND_COLOUR
 
 CLOSES = 1e-6

@@ -21,17 +21,7 @@ from kinematics.linkage.planar.mechanism import GROUND, Slide
 from service.render.linkage.motion import DrivenLinkage, Real
 from service.render.page.labels import Labels
 from service.render.page.sheet import clipping, fitted
-from service.render.page.svg import (
-    Box,
-    Element,
-    Points,
-    Viewport,
-    circle,
-    element,
-    line,
-    path,
-    polygon,
-)
+from service.render.page.svg import Box, Element, Points, Viewport, circle, element, line, path, polygon
 from service.render.page.symbols import (
     COUPLER,
     CURVE,

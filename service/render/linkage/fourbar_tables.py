@@ -6,26 +6,10 @@ import math
 
 from service.render.linkage.fourbar import Scene, fourbar_of
 from service.render.page import blocks
-from service.render.page.blocks import (
-    Block,
-)
-from service.render.page.numbers import (
-    NONE,
-    angle,
-    length,
-    small,
-)
-from service.render.page.svg import (
-    Element,
-    element,
-    line,
-)
-from service.render.page.symbols import (
-    COUPLER,
-    GROUND,
-    INPUT,
-    OUTPUT,
-)
+from service.render.page.blocks import Block
+from service.render.page.numbers import NONE, angle, length, small
+from service.render.page.svg import Element, element, line
+from service.render.page.symbols import COUPLER, GROUND, INPUT, OUTPUT
 from synthesis.model.linkage_answer import LinkageDesign
 
 GRASHOF = {

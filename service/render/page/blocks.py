@@ -5,21 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from service.render.page.svg import (
-    Element,
-    clean,
-    element,
-    line,
-    shortened,
-    text,
-    text_width,
-)
-from service.render.page.symbols import (
-    GREY,
-    INK,
-    OUTPUT,
-    PALE,
-)
+from service.render.page.svg import Element, clean, element, line, shortened, text, text_width
+from service.render.page.symbols import GREY, INK, OUTPUT, PALE
 
 ROW, HEADING, GAP = 18.0, 24.0, 16.0
 """Heights of a row and of a block's heading, and the space after a block, pixels."""

@@ -11,22 +11,8 @@ from numpy.typing import NDArray
 
 from service.render.page.numbers import angle as written_angle
 from service.render.page.numbers import length
-from service.render.page.svg import (
-    Box,
-    Element,
-    Points,
-    circle,
-    element,
-    line,
-    path,
-    text,
-)
-from service.render.page.symbols import (
-    DEMANDED,
-    GREY,
-    INK,
-    PALE,
-)
+from service.render.page.svg import Box, Element, Points, circle, element, line, path, text
+from service.render.page.symbols import DEMANDED, GREY, INK, PALE
 
 Real = NDArray[np.float64]
 

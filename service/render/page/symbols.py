@@ -11,18 +11,7 @@ import math
 import numpy as np
 
 from service.render.page.numbers import length
-from service.render.page.svg import (
-    Box,
-    Element,
-    Points,
-    Viewport,
-    circle,
-    element,
-    line,
-    polygon,
-    text,
-    text_width,
-)
+from service.render.page.svg import Box, Element, Points, Viewport, circle, element, line, polygon, text, text_width
 
 INK, GREY, PALE = "#1d232b", "#76818c", "#aab3bc"
 INPUT, COUPLER, OUTPUT, GROUND = "#1f5a9e", "#b8600b", "#22734a", "#3c444d"

@@ -11,12 +11,7 @@ import numpy as np
 from kinematics.cam.dynamics import RunningCam
 from kinematics.cam.extremes import extremes
 from kinematics.cam.program import Program
-from synthesis.kinds.cam.composition import (
-    Composition,
-    arm_length,
-    follower_load,
-    root_mean_square,
-)
+from synthesis.kinds.cam.composition import Composition, arm_length, follower_load, root_mean_square
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
     CamDesign,
@@ -28,11 +23,7 @@ from synthesis.kinds.cam.design import (
     CamSegment,
     Optimality,
 )
-from synthesis.kinds.cam.problem import (
-    BarrelRoller,
-    CamProblem,
-    Move,
-)
+from synthesis.kinds.cam.problem import BarrelRoller, CamProblem, Move
 from synthesis.kinds.cam.sizing import Size
 from synthesis.outcome.sifting import Sifting
 

@@ -16,36 +16,16 @@ from numpy.typing import NDArray
 from kinematics.cam.barrel import BarrelCam
 from kinematics.cam.pieces import Motion
 from kinematics.cam.program import Program
-from synthesis.kinds.cam.answer import (
-    joints_of,
-    motion_metrics,
-    none_of,
-    optimality_of,
-    result_of,
-    segments_of,
-)
+from synthesis.kinds.cam.answer import joints_of, motion_metrics, none_of, optimality_of, result_of, segments_of
 from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barrel
 from synthesis.kinds.cam.composition import Composition, least_pitch_radius
 from synthesis.kinds.cam.critical import smallest_allowed
-from synthesis.kinds.cam.design import (
-    BarrelCamDesign,
-    BarrelCamMechanism,
-    BarrelMetrics,
-    CamResult,
-)
-from synthesis.kinds.cam.mechanism import (
-    barrel_mechanism,
-    profile_angles,
-    refined,
-)
+from synthesis.kinds.cam.design import BarrelCamDesign, BarrelCamMechanism, BarrelMetrics, CamResult
+from synthesis.kinds.cam.mechanism import barrel_mechanism, profile_angles, refined
 from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
 from synthesis.kinds.cam.reproduction import REPRODUCED, reported
 from synthesis.kinds.cam.resolution import resolved
-from synthesis.kinds.cam.sizing import (
-    MARGIN,
-    MAX_RADIUS,
-    Size,
-)
+from synthesis.kinds.cam.sizing import MARGIN, MAX_RADIUS, Size
 from synthesis.model.kind import Progress
 
 Real = NDArray[np.float64]

@@ -22,11 +22,7 @@ from kinematics.cam.pieces import Motion, Pieces
 from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import Condition as PolynomialCondition
 from kinematics.cam.segments import Segment, dwell, knot_segment, law_segment, polynomial_segment
-from synthesis.kinds.cam.joints import (
-    END_RATES,
-    State,
-    law_ends,
-)
+from synthesis.kinds.cam.joints import END_RATES, State, law_ends
 from synthesis.kinds.cam.knots import KnotMotion
 from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (

@@ -10,12 +10,7 @@ from typing import Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Result,
-    Search,
-    Verification,
-)
+from synthesis.model.answer import Answer, Result, Search, Verification
 from synthesis.model.dimension import (
     Acceleration,
     AccelerationSquared,

@@ -11,12 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field
 
-from synthesis.kinds.cam.joints import (
-    Conditions,
-    State,
-    law_ends,
-    polynomial_ends,
-)
+from synthesis.kinds.cam.joints import Conditions, State, law_ends, polynomial_ends
 from synthesis.model.dimension import (
     ACCELERATION,
     ANGLE,

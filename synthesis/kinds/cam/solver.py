@@ -13,14 +13,7 @@ from kinematics.cam import follower as core
 from kinematics.cam.profile import Cam
 from kinematics.cam.program import Program
 from kinematics.errors import DimensionError
-from synthesis.kinds.cam.answer import (
-    joints_of,
-    motion_metrics,
-    none_of,
-    optimality_of,
-    result_of,
-    segments_of,
-)
+from synthesis.kinds.cam.answer import joints_of, motion_metrics, none_of, optimality_of, result_of, segments_of
 from synthesis.kinds.cam.barrel import solve_barrel
 from synthesis.kinds.cam.composition import (
     Composition,
@@ -30,16 +23,8 @@ from synthesis.kinds.cam.composition import (
     least_pitch_radius,
     roller_radius_range,
 )
-from synthesis.kinds.cam.design import (
-    CamDesign,
-    CamMetrics,
-    CamResult,
-)
-from synthesis.kinds.cam.mechanism import (
-    cam_mechanism,
-    profile_angles,
-    refined,
-)
+from synthesis.kinds.cam.design import CamDesign, CamMetrics, CamResult
+from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles, refined
 from synthesis.kinds.cam.optimal import STEPS
 from synthesis.kinds.cam.problem import (
     BarrelRoller,
@@ -62,11 +47,7 @@ from synthesis.kinds.cam.sizing import (
     translating_flat,
     translating_roller,
 )
-from synthesis.kinds.cam.verification import (
-    MEASURED_SLACK,
-    Measured,
-    verify,
-)
+from synthesis.kinds.cam.verification import MEASURED_SLACK, Measured, verify
 from synthesis.model.kind import Progress
 from synthesis.model.statement import Contradiction, ContradictionError
 

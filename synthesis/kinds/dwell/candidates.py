@@ -17,12 +17,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.fourbar import OPEN, Fourbar, coupler_points
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.outputs import CYCLE, Kind
-from synthesis.kinds.dwell.scoring import (
-    ROCKER,
-    SLIDER,
-    SLOT,
-    judge,
-)
+from synthesis.kinds.dwell.scoring import ROCKER, SLIDER, SLOT, judge
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

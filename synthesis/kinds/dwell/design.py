@@ -6,19 +6,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-    Verification,
-)
-from synthesis.model.dimension import (
-    Angle,
-    Length,
-    Output,
-    OutputPerRadian,
-    OutputPerRadianSquared,
-)
+from synthesis.model.answer import Answer, Point, Result, Verification
+from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
 from synthesis.model.linkage_answer import CouplerPoint, MotionMetrics, Skeleton
 
 

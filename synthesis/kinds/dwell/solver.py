@@ -12,27 +12,12 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import OPEN, coupler_points, positions
 from synthesis.kinds.dwell.candidates import Start, starts
-from synthesis.kinds.dwell.design import (
-    DwellDesign,
-    DwellMechanism,
-    DwellResult,
-)
-from synthesis.kinds.dwell.outputs import (
-    RESTING,
-    Kind,
-    Task,
-    extremes,
-    fourbars,
-    judged,
-    output,
-)
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
+from synthesis.kinds.dwell.outputs import RESTING, Kind, Task, extremes, fourbars, judged, output
 from synthesis.kinds.dwell.problem import DEFAULT_CRANK, DwellProblem
 from synthesis.kinds.dwell.verification import GRID, verify_dwell
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_answer import (
-    CouplerPoint,
-    Slide,
-)
+from synthesis.model.linkage_answer import CouplerPoint, Slide
 from synthesis.model.linkages import skeleton, slide, to_point
 from synthesis.numerics.narrowing import narrowest
 from synthesis.outcome.ranking import ranked

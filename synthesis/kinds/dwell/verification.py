@@ -16,26 +16,14 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.dwell.design import (
-    DwellDesign,
-    DwellMechanism,
-    DwellMetrics,
-    Rest,
-)
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, Rest
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import extremes_of, least_angles
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import (
-    Measures,
-    barker_of,
-    diagonal,
-    fixed_pivots,
-    measured,
-    reach_of,
-)
+from synthesis.proof.measures import Measures, barker_of, diagonal, fixed_pivots, measured, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]

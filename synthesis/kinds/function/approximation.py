@@ -29,11 +29,7 @@ from scipy.optimize import minimize
 from synthesis.kinds.function.levelling import levelled
 from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.precision import family, many_exact
-from synthesis.kinds.function.structural_error import (
-    ERROR,
-    STEPS,
-    Generators,
-)
+from synthesis.kinds.function.structural_error import ERROR, STEPS, Generators
 from synthesis.kinds.function.task import FunctionTask
 from synthesis.model.kind import Progress
 from synthesis.numerics.linear_program import least

@@ -6,17 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import (
-    Answer,
-    Result,
-    Verification,
-)
+from synthesis.model.answer import Answer, Result, Verification
 from synthesis.model.dimension import Angle, Output
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    LinkageMetrics,
-    SliderCrankMechanism,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageMetrics, SliderCrankMechanism
 
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
 

@@ -10,13 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from synthesis.model.statement import (
-    Contradiction,
-    Interval,
-    Number,
-    PositiveNumber,
-    Statement,
-)
+from synthesis.model.statement import Contradiction, Interval, Number, PositiveNumber, Statement
 
 Real = NDArray[np.float64]
 

@@ -16,23 +16,10 @@ from numpy.typing import NDArray
 from synthesis.kinds.function.approximation import approximations
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.limits import GeneratorLimits
-from synthesis.kinds.function.precision import (
-    exact,
-    family,
-    many_exact,
-    polished,
-)
+from synthesis.kinds.function.precision import exact, family, many_exact, polished
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.scales import (
-    Scaling,
-    one_scale,
-    two_scales,
-)
-from synthesis.kinds.function.task import (
-    FunctionTask,
-    built,
-    function_task,
-)
+from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
+from synthesis.kinds.function.task import FunctionTask, built, function_task
 from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress
 from synthesis.outcome.ranking import ranked

@@ -18,12 +18,7 @@ from synthesis.kinds.function.design import Dials, InputDial, OutputDial
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.structural_error import Generators
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
-from synthesis.model.linkages import (
-    FourbarConfiguration,
-    fourbar_mechanism,
-    slider_crank_mechanism,
-    to_complex,
-)
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, slider_crank_mechanism, to_complex
 
 Real = NDArray[np.float64]
 ScaleRange = tuple[float, float]

@@ -18,13 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.gear_train import kernels
-from synthesis.kinds.gear_train.kernels import (
-    Floats,
-    Found,
-    Gears,
-    Integers,
-    Rule,
-)
+from synthesis.kinds.gear_train.kernels import Floats, Found, Gears, Integers, Rule
 from synthesis.kinds.gear_train.task import Task
 
 WINDOW_MARGIN = 1e-9

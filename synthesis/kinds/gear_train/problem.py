@@ -11,13 +11,7 @@ from pydantic import ConfigDict, Field, model_validator
 from synthesis.model.dimension import INVERSE_LENGTH
 from synthesis.model.gear_statement import MOST_TEETH, ExactRatio, Module, Pitch, PressureAngle, ToothNumber
 from synthesis.model.ratio_target import Target, decimal, parse_target
-from synthesis.model.statement import (
-    Contradiction,
-    Count,
-    Flag,
-    StatedProblem,
-    Statement,
-)
+from synthesis.model.statement import Contradiction, Count, Flag, StatedProblem, Statement
 
 MOST_HALVES = 10_000_000
 """Choices of the drivers (or of the driven gears) of all stages that a search holds at most; about 200 MB."""

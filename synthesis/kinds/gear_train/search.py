@@ -22,20 +22,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from synthesis.kinds.gear_train.candidates import (
-    Candidates,
-    Halves,
-    coaxial_meshes,
-    few_meshes,
-    stage_reach,
-)
-from synthesis.kinds.gear_train.kernels import (
-    MOST_STAGES,
-    NOISE,
-    WINDOW_MARGIN,
-    Found,
-    Integers,
-)
+from synthesis.kinds.gear_train.candidates import Candidates, Halves, coaxial_meshes, few_meshes, stage_reach
+from synthesis.kinds.gear_train.kernels import MOST_STAGES, NOISE, WINDOW_MARGIN, Found, Integers
 from synthesis.kinds.gear_train.problem import NEAR
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 from synthesis.model.ratio_target import Target

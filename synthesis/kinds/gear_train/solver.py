@@ -16,17 +16,8 @@ from synthesis.kinds.gear_train.design import (
     Stage,
 )
 from synthesis.kinds.gear_train.problem import GearTrainProblem
-from synthesis.kinds.gear_train.search import (
-    Outcome,
-    Train,
-    order,
-    search,
-)
-from synthesis.kinds.gear_train.task import (
-    Task,
-    gear_train_task,
-    needs_idler,
-)
+from synthesis.kinds.gear_train.search import Outcome, Train, order, search
+from synthesis.kinds.gear_train.task import Task, gear_train_task, needs_idler
 from synthesis.kinds.gear_train.verification import verify
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress

@@ -19,13 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.gearbox.stages import (
-    SAME,
-    Options,
-    Real,
-    Whole,
-    worth_having,
-)
+from synthesis.kinds.gearbox.stages import SAME, Options, Real, Whole, worth_having
 
 PARTS = (256.0, 128.0, 64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.0)
 """The runs look at the tolerated error over these."""

@@ -10,15 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 from kinematics.gear.gearbox import preferred_numbers, preferred_ratio, progression
 from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.gear_statement import MOST_TOOTH_SUM, CommonPressureAngle, Module, ToothRange, tooth_faults
-from synthesis.model.statement import (
-    Contradiction,
-    Count,
-    Flag,
-    PositiveNumber,
-    Sizable,
-    StatedProblem,
-    Statement,
-)
+from synthesis.model.statement import Contradiction, Count, Flag, PositiveNumber, Sizable, StatedProblem, Statement
 
 STRICTLY = 1e-9
 """Share by which a deviation stays below a quarter of a step, up to which alone every gearbox has a structure."""

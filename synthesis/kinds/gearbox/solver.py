@@ -18,18 +18,8 @@ from synthesis.kinds.gearbox.design import (
 )
 from synthesis.kinds.gearbox.front import Choice, best_choices
 from synthesis.kinds.gearbox.problem import GearboxProblem
-from synthesis.kinds.gearbox.stages import (
-    Options,
-    StageLimits,
-    stage_options,
-)
-from synthesis.kinds.gearbox.structures import (
-    Group,
-    Structure,
-    formula,
-    spread,
-    structures,
-)
+from synthesis.kinds.gearbox.stages import Options, StageLimits, stage_options
+from synthesis.kinds.gearbox.structures import Group, Structure, formula, spread, structures
 from synthesis.kinds.gearbox.verification import measure, verify
 from synthesis.model.gear_answer import GearPairTeeth
 from synthesis.model.kind import Progress

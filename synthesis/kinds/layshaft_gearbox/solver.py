@@ -25,11 +25,7 @@ from synthesis.kinds.layshaft_gearbox.design import (
     ReverseGear,
 )
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
-from synthesis.kinds.layshaft_gearbox.verification import (
-    PASSING,
-    measure,
-    verify,
-)
+from synthesis.kinds.layshaft_gearbox.verification import PASSING, measure, verify
 from synthesis.model.gear_answer import GearPairTeeth, Ratio
 from synthesis.model.kind import Progress
 from synthesis.model.mesh_limits import external_sound

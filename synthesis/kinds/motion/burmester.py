@@ -37,17 +37,8 @@ from typing import NamedTuple
 import numpy as np
 
 from synthesis.kinds.motion.dyads import DyadConditions, Dyads
-from synthesis.kinds.motion.sections import (
-    VARIETY,
-    condition_rows,
-    null_space,
-    pose_rows,
-)
-from synthesis.kinds.motion.task import (
-    Complex,
-    MotionTask,
-    Real,
-)
+from synthesis.kinds.motion.sections import VARIETY, condition_rows, null_space, pose_rows
+from synthesis.kinds.motion.task import Complex, MotionTask, Real
 
 COARSE = 512
 """Samples of a loop before they are spread evenly."""

@@ -6,12 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from synthesis.kinds.motion.demanded import (
-    HELD_WEIGHT,
-    Complex,
-    Demanded,
-    Real,
-)
+from synthesis.kinds.motion.demanded import HELD_WEIGHT, Complex, Demanded, Real
 
 GRID = 720
 """Steps of the first grid: half a degree of a full turn."""

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-)
+from synthesis.model.answer import Answer, Point, Result
 from synthesis.model.linkage_answer import LinkageDesign
 
 

@@ -25,19 +25,11 @@ from numpy.typing import NDArray
 from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.coupler_driver import coupler_drivers
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.driver_joints import (
-    ROOM,
-    diagonal,
-    rocker_driven,
-)
+from synthesis.kinds.motion.driver_joints import ROOM, diagonal, rocker_driven
 from synthesis.kinds.motion.problem import DriverDyad, MotionProblem
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    LinkageDesign,
-    SixbarMechanism,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting, reported

@@ -8,12 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    Link,
-    SixbarMechanism,
-    Skeleton,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, Link, SixbarMechanism, Skeleton
 from synthesis.model.linkages import to_complex, to_point
 
 ROOM = 2.0

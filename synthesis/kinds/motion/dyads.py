@@ -29,11 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.motion.task import (
-    Complex,
-    MotionTask,
-    Real,
-)
+from synthesis.kinds.motion.task import Complex, MotionTask, Real
 
 NEWTON_STEPS = 40
 """Steps at most; linear conditions need two, the others converge quadratically after a few."""

@@ -15,11 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.motion.constraint_manifold import (
-    NUMBERS,
-    Surface,
-    of_pivots,
-)
+from synthesis.kinds.motion.constraint_manifold import NUMBERS, Surface, of_pivots
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
 from synthesis.kinds.motion.pose_fit import Mask, PoseDemands
 from synthesis.kinds.motion.problem import DyadChoices

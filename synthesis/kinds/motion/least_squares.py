@@ -19,17 +19,8 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.constraint_manifold import line_of, pivots_of
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads import Dyads
-from synthesis.kinds.motion.fit_starts import (
-    REACH,
-    Start,
-    as_slider,
-    starts,
-)
-from synthesis.kinds.motion.pose_fit import (
-    PoseDemands,
-    PoseFit,
-    surface_fit,
-)
+from synthesis.kinds.motion.fit_starts import REACH, Start, as_slider, starts
+from synthesis.kinds.motion.pose_fit import PoseDemands, PoseFit, surface_fit
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.screening import SOUND, screen
 from synthesis.kinds.motion.screening import demands as screening_demands

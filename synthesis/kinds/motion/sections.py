@@ -34,13 +34,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from synthesis.kinds.motion.dyads import (
-    DEPENDENT,
-    FAR,
-    DyadConditions,
-    Dyads,
-    directions_hold,
-)
+from synthesis.kinds.motion.dyads import DEPENDENT, FAR, DyadConditions, Dyads, directions_hold
 from synthesis.kinds.motion.task import MotionTask, Real
 from synthesis.numerics.quadrics import common_points
 

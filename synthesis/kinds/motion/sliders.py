@@ -22,12 +22,7 @@ import numpy as np
 
 from synthesis.kinds.motion.draws import distances, points_around
 from synthesis.kinds.motion.problem import DyadChoices
-from synthesis.kinds.motion.task import (
-    Complex,
-    MotionTask,
-    Real,
-    stated_pivot,
-)
+from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 
 IN_LINE = 1e-9
 """Distance of images from their line, in task sizes, below which they count as on it: as for residuals of targets."""

@@ -15,11 +15,7 @@ from functools import partial
 
 import numpy as np
 
-from synthesis.kinds.motion.burmester import (
-    Window,
-    branches,
-    burmester_curve,
-)
+from synthesis.kinds.motion.burmester import Window, branches, burmester_curve
 from synthesis.kinds.motion.choices import Cloud
 from synthesis.kinds.motion.demanded import demanded
 from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
@@ -28,11 +24,7 @@ from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.least_squares import solve_least_squares
 from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.slider_search import (
-    beside_sliders,
-    solve_sliders,
-    with_sliders,
-)
+from synthesis.kinds.motion.slider_search import beside_sliders, solve_sliders, with_sliders
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of

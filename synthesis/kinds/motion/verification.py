@@ -10,11 +10,7 @@ from synthesis.kinds.motion.demanded import Demanded, demanded
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.verify_fourbar import verify_fourbar
 from synthesis.kinds.motion.verify_mechanism import verify_mechanism
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    LinkageDesign,
-    LinkageMechanism,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMechanism
 
 __all__ = ["Demanded", "demanded", "verify"]
 

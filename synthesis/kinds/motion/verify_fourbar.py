@@ -16,28 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import (
-    BARKER,
-    Fourbar,
-    barker_type,
-    positions,
-    transmission_extremes,
-    traverse,
-)
+from kinematics.linkage.fourbar import BARKER, Fourbar, barker_type, positions, transmission_extremes, traverse
 from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import Motion, closest_inputs
-from synthesis.kinds.motion.demanded import (
-    Complex,
-    Demanded,
-    Real,
-)
+from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
-from synthesis.model.linkages import (
-    DrivenFourbar,
-    body_shift,
-    driven_fourbar,
-)
+from synthesis.model.linkages import DrivenFourbar, body_shift, driven_fourbar
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5

@@ -17,19 +17,11 @@ from numpy.typing import NDArray
 from kinematics.errors import MechanismError
 from kinematics.linkage.planar.branches import Branch, cycle
 from kinematics.linkage.planar.drive import drive
-from kinematics.linkage.planar.limits import (
-    branches,
-    holding_reference,
-    limit_positions,
-)
+from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.motion.checks import Driven, Side, linkage_design
 from synthesis.kinds.motion.closest import closest_inputs
-from synthesis.kinds.motion.demanded import (
-    Complex,
-    Demanded,
-    Real,
-)
+from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check
 from synthesis.model.linkage_answer import (

@@ -6,19 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-    Verification,
-)
+from synthesis.model.answer import Answer, Point, Result, Verification
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import (
-    CouplerPoint,
-    LinkageMetrics,
-    Skeleton,
-    Target,
-)
+from synthesis.model.linkage_answer import CouplerPoint, LinkageMetrics, Skeleton, Target
 
 
 class ParallelMotionMechanism(Answer):

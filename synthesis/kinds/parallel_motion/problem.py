@@ -10,14 +10,7 @@ from pydantic import ConfigDict, Field
 
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import (
-    ROUNDED_OFF,
-    Contradiction,
-    Degrees,
-    Point,
-    PositiveLength,
-    Statement,
-)
+from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Point, PositiveLength, Statement
 
 AT_PIN = 1e-6
 """P this near to A or B, as a share of the coupler, is on it: there is no cognate, and P runs on a circle."""

@@ -8,32 +8,15 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Literal, NamedTuple
 
-from kinematics.linkage.fourbar import (
-    Fourbar,
-    cognates,
-    parallel_motion,
-    positions,
-)
-from synthesis.kinds.parallel_motion.design import (
-    ParallelMotionDesign,
-    ParallelMotionMechanism,
-    ParallelMotionResult,
-)
+from kinematics.linkage.fourbar import Fourbar, cognates, parallel_motion, positions
+from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionResult
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
 from synthesis.kinds.parallel_motion.verification import verify_parallel_motion
 from synthesis.kinds.path.solver import solve_path
 from synthesis.mechanisms import GivenFourbar, MechanismError
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-)
-from synthesis.model.linkages import (
-    FourbarConfiguration,
-    coupler_point,
-    driven_fourbar,
-    skeleton,
-    to_point,
-)
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import FourbarConfiguration, coupler_point, driven_fourbar, skeleton, to_point
 from synthesis.model.statement import Contradiction, ContradictionError
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import Sifting, reported

@@ -16,11 +16,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.cycle import cycle_of
-from synthesis.kinds.parallel_motion.design import (
-    ParallelMotionDesign,
-    ParallelMotionMechanism,
-    ParallelMotionMetrics,
-)
+from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionMechanism, ParallelMotionMetrics
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem, SourceLinkage
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.answer import Check, Verification
@@ -29,15 +25,7 @@ from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles, turn_from
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import (
-    TURNS_THROUGH,
-    barker_of,
-    diagonal,
-    fixed_pivots,
-    link_lengths,
-    measured,
-    reach_of,
-)
+from synthesis.proof.measures import TURNS_THROUGH, barker_of, diagonal, fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]

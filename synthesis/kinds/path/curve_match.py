@@ -28,31 +28,13 @@ from synthesis.fit.coupler_curve import place
 from synthesis.fit.demands import LINKS
 from synthesis.kinds.path.curve_descent import Descent, descend
 from synthesis.kinds.path.curve_families import families_of, joints_of
-from synthesis.kinds.path.curve_limits import (
-    curve_setting,
-    descend_within,
-    lengths_kept,
-    usable,
-)
-from synthesis.kinds.path.curve_placement import (
-    moved,
-    placement_of,
-    searched,
-    stated,
-)
+from synthesis.kinds.path.curve_limits import curve_setting, descend_within, lengths_kept, usable
+from synthesis.kinds.path.curve_placement import moved, placement_of, searched, stated
 from synthesis.kinds.path.curve_shapes import Starts, alike
 from synthesis.kinds.path.curve_target import SHAPE_POINTS, Target
-from synthesis.kinds.path.design import (
-    CurveSweep,
-    PathDesign,
-    PathResult,
-)
+from synthesis.kinds.path.design import CurveSweep, PathDesign, PathResult
 from synthesis.kinds.path.harvest import that_differ
-from synthesis.kinds.path.point_fit import (
-    configuration_of,
-    fitted,
-    point_task,
-)
+from synthesis.kinds.path.point_fit import configuration_of, fitted, point_task
 from synthesis.kinds.path.problem import PathPoint, PathProblem
 from synthesis.kinds.path.verify_curve import distances, verify_curve
 from synthesis.model.kind import Progress, part_of

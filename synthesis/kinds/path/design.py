@@ -6,17 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-)
+from synthesis.model.answer import Answer, Point, Result
 from synthesis.model.dimension import Angle, Area, Length
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-    LinkageDesign,
-    LinkageMetrics,
-)
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMetrics
 
 
 def nothing(value: object) -> bool:

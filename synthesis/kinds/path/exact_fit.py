@@ -14,11 +14,7 @@ import numpy as np
 
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.limits import Usable
-from synthesis.kinds.path.point_fit import (
-    fitted,
-    mechanism_of,
-    point_task,
-)
+from synthesis.kinds.path.point_fit import fitted, mechanism_of, point_task
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress, part_of

@@ -18,11 +18,7 @@ from synthesis.kinds.path.curve_families import families_of, joints_of
 from synthesis.kinds.path.curve_limits import pivot_limits
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
-from synthesis.kinds.path.design import (
-    FamilySearch,
-    PathDesign,
-    PathResult,
-)
+from synthesis.kinds.path.design import FamilySearch, PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress

@@ -25,11 +25,7 @@ from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_candidates import cycle_of
 from synthesis.kinds.path.curve_descent import descend
 from synthesis.kinds.path.curve_limits import pivot_limits
-from synthesis.kinds.path.curve_match import (
-    ranked_by_nearness,
-    solve_curve_match,
-    with_cognates,
-)
+from synthesis.kinds.path.curve_match import ranked_by_nearness, solve_curve_match, with_cognates
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
@@ -44,13 +40,7 @@ from synthesis.model.linkage_answer import (
     GearPair,
     SliderCrankMechanism,
 )
-from synthesis.model.linkages import (
-    FourbarConfiguration,
-    skeleton,
-    slider_crank_mechanism,
-    to_complex,
-    to_point,
-)
+from synthesis.model.linkages import FourbarConfiguration, skeleton, slider_crank_mechanism, to_complex, to_point
 from synthesis.outcome.ranking import distinct, ranked
 from synthesis.outcome.sifting import Sifting, reported
 

@@ -16,14 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.fit.chart import (
-    CRANK_ROCKER,
-    DOUBLE_CRANK,
-    DOUBLE_ROCKER,
-    FOURBAR,
-    UNKNOWNS,
-    natural,
-)
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS, natural
 from synthesis.fit.coupler_curve import place
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
 from synthesis.kinds.path.design import PathDesign, PathResult

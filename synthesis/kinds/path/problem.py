@@ -10,11 +10,7 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import LENGTH
-from synthesis.model.linkage_statement import (
-    Constraints,
-    LinkageProblem,
-    Region,
-)
+from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,

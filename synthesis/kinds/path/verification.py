@@ -22,13 +22,7 @@ from kinematics.linkage.fourbar import (
     traverse,
 )
 from synthesis.kinds.path.design import PathDesign, PathMetrics
-from synthesis.kinds.path.passages import (
-    Passages,
-    at_angles,
-    at_points,
-    in_order,
-    nearest,
-)
+from synthesis.kinds.path.passages import Passages, at_angles, at_points, in_order, nearest
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH

@@ -12,22 +12,10 @@ from typing import Literal
 import numpy as np
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.fourbar import (
-    Cognate,
-    barker_class,
-    cognates,
-    positions,
-    transmission_extremes,
-    traverse,
-)
+from kinematics.linkage.fourbar import Cognate, barker_class, cognates, positions, transmission_extremes, traverse
 from synthesis.kinds.path.design import PathCognate, PathDesign
 from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import (
-    DrivenFourbar,
-    FourbarConfiguration,
-    driven_fourbar,
-    fourbar_mechanism,
-)
+from synthesis.model.linkages import DrivenFourbar, FourbarConfiguration, driven_fourbar, fourbar_mechanism
 
 ALIKE = 0.05
 """Transmission angles that differ by less, in degrees, are not told apart."""

@@ -18,10 +18,7 @@ from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import AtPoints, path_design
 from synthesis.kinds.path.verify_curve import astray
-from synthesis.model.linkage_answer import (
-    GearedFivebarMechanism,
-    SliderCrankMechanism,
-)
+from synthesis.model.linkage_answer import GearedFivebarMechanism, SliderCrankMechanism
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch

@@ -6,11 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import (
-    Answer,
-    Result,
-    Verification,
-)
+from synthesis.model.answer import Answer, Result, Verification
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.gear_answer import Ratio
 

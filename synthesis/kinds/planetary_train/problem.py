@@ -11,13 +11,7 @@ from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_statement import CommonPressureAngle, ExactRatio, Module, RangedTeeth, ToothRange
 from synthesis.model.ratio_target import parse_target
-from synthesis.model.statement import (
-    Contradiction,
-    Count,
-    PositiveLength,
-    StatedProblem,
-    Statement,
-)
+from synthesis.model.statement import Contradiction, Count, PositiveLength, StatedProblem, Statement
 
 MOST_COMBINATIONS = 2 * 10**8
 """Combinations of independent tooth numbers in one planet set at most: what a search of minutes covers."""

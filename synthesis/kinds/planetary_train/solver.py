@@ -21,19 +21,9 @@ from synthesis.kinds.planetary_train.design import (
     PlanetaryResult,
     PlanetPlaces,
 )
-from synthesis.kinds.planetary_train.nearest import (
-    Candidate,
-    Nearest,
-    SetTable,
-    nearest,
-    train_value,
-)
+from synthesis.kinds.planetary_train.nearest import Candidate, Nearest, SetTable, nearest, train_value
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.kinds.planetary_train.tooth_numbers import (
-    Demands,
-    ToothNumbers,
-    divisions,
-)
+from synthesis.kinds.planetary_train.tooth_numbers import Demands, ToothNumbers, divisions
 from synthesis.kinds.planetary_train.verification import SIZE_SLACK, measure, verify
 from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio

@@ -44,12 +44,7 @@ from synthesis.kinds.quick_return.alternatives import (
 )
 from synthesis.kinds.quick_return.design import RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
-from synthesis.model.linkage_answer import (
-    CouplerPoint,
-    FixedPivots,
-    FourbarLinks,
-    FourbarMechanism,
-)
+from synthesis.model.linkage_answer import CouplerPoint, FixedPivots, FourbarLinks, FourbarMechanism
 from synthesis.model.linkages import skeleton, to_point
 
 NEAR_BEST = math.radians(0.005)

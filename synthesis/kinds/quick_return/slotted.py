@@ -20,16 +20,9 @@ import math
 
 from kinematics.linkage.planar.catalogue import quick_return
 from synthesis.kinds.quick_return.alternatives import LIMIT_TOLERANCE
-from synthesis.kinds.quick_return.design import (
-    QuickReturnLinks,
-    QuickReturnMechanism,
-    RatioRange,
-)
+from synthesis.kinds.quick_return.design import QuickReturnLinks, QuickReturnMechanism, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem, stroke_imbalance
-from synthesis.model.linkage_answer import (
-    FixedPivots,
-    Line,
-)
+from synthesis.model.linkage_answer import FixedPivots, Line
 from synthesis.model.linkages import skeleton, slide, to_point
 
 REACH = 0.9

@@ -11,18 +11,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from synthesis.kinds.quick_return import (
-    crank_rocker,
-    drag_link,
-    offset_slider,
-    slotted,
-)
-from synthesis.kinds.quick_return.design import (
-    QuickReturnDesign,
-    QuickReturnMechanisms,
-    QuickReturnResult,
-    RatioRange,
-)
+from synthesis.kinds.quick_return import crank_rocker, drag_link, offset_slider, slotted
+from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMechanisms, QuickReturnResult, RatioRange
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
 from synthesis.model.kind import Progress

@@ -6,13 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-    Verification,
-    blank,
-)
+from synthesis.model.answer import Answer, Point, Result, Verification, blank
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, Skeleton
 

@@ -8,12 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import (
-    Contradiction,
-    PositiveLength,
-    Sizable,
-    Statement,
-)
+from synthesis.model.statement import Contradiction, PositiveLength, Sizable, Statement
 
 ARM = (0.1, 0.25)
 """Least and greatest length of the steering arms where none is stated, in distances of the kingpins."""

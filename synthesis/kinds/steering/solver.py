@@ -6,11 +6,7 @@ from functools import partial
 
 from synthesis.kinds.steering.ackermann import ackermann_linkages
 from synthesis.kinds.steering.davis import davis_gears
-from synthesis.kinds.steering.design import (
-    SteeringDesign,
-    SteeringMechanisms,
-    SteeringResult,
-)
+from synthesis.kinds.steering.design import SteeringDesign, SteeringMechanisms, SteeringResult
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.steering.verification import verify_steering
 from synthesis.model.kind import Progress

@@ -7,13 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field
 
 from synthesis.kinds.straight_line.problem import LineMechanism
-from synthesis.model.answer import (
-    Answer,
-    Point,
-    Result,
-    Verification,
-    blank,
-)
+from synthesis.model.answer import Answer, Point, Result, Verification, blank
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
 from synthesis.model.linkage_answer import FourbarMechanism, MotionMetrics, Skeleton
 

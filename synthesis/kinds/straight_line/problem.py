@@ -8,14 +8,7 @@ from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE, PERCENT
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import (
-    ROUNDED_OFF,
-    Contradiction,
-    Degrees,
-    Point,
-    PositiveLength,
-    PositiveNumber,
-)
+from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Point, PositiveLength, PositiveNumber
 
 LineMechanism = Literal["hoeken", "chebyshev", "watt", "roberts", "evans", "peaucellier", "hart", "scott_russell"]
 """Types of straight-line mechanism."""

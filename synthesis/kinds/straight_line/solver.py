@@ -11,17 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.linkage.planar.mechanism import GROUND
-from synthesis.kinds.straight_line.design import (
-    ExactLineMechanism,
-    StraightLineDesign,
-    StraightLineResult,
-)
-from synthesis.kinds.straight_line.exact import (
-    ExactLine,
-    hart,
-    peaucellier,
-    scott_russell,
-)
+from synthesis.kinds.straight_line.design import ExactLineMechanism, StraightLineDesign, StraightLineResult
+from synthesis.kinds.straight_line.exact import ExactLine, hart, peaucellier, scott_russell
 from synthesis.kinds.straight_line.families import (
     FOURBARS,
     NORTON,
@@ -35,16 +26,8 @@ from synthesis.kinds.straight_line.families import (
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.kinds.straight_line.verification import verify_straight_line
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_answer import (
-    FourbarMechanism,
-)
-from synthesis.model.linkages import (
-    FourbarConfiguration,
-    fourbar_mechanism,
-    skeleton,
-    slide,
-    to_point,
-)
+from synthesis.model.linkage_answer import FourbarMechanism
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, skeleton, slide, to_point
 from synthesis.numerics.narrowing import merits, narrowest
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import Sifting

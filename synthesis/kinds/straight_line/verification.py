@@ -17,12 +17,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.kinds.straight_line.design import (
-    ExactLineMechanism,
-    LinePoint,
-    StraightLineDesign,
-    StraightLineMetrics,
-)
+from synthesis.kinds.straight_line.design import ExactLineMechanism, LinePoint, StraightLineDesign, StraightLineMetrics
 from synthesis.kinds.straight_line.problem import LineMechanism, StraightLineProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, PERCENT
