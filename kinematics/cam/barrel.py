@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.cam.extremes import Extremes, extremes
+from kinematics.cam.extremes import extremes
 from kinematics.cam.pieces import Motion
 from kinematics.cam.program import Program
 from kinematics.errors import DimensionError
@@ -60,11 +60,6 @@ class BarrelCam:
         theta = np.asarray(angle, dtype=np.float64)
         tangent = self.radius + 1j * self.program.motion(theta).v
         return np.asarray(self.pitch_curve(theta) + side * self.roller_radius * 1j * tangent / np.abs(tangent))
-
-    @cached_property
-    def pressure_angle_extremes(self) -> Extremes:
-        """Exact extremes of the pressure angle."""
-        return extremes(lambda angle: np.arctan(self.program.pieces.motion(angle).v / self.radius), self.program.breaks)
 
     @cached_property
     def least_radius(self) -> float:

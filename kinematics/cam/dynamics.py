@@ -76,12 +76,6 @@ class FollowerLoad:
         """√(k/m), radians per unit of time; 0 without a spring."""
         return math.sqrt(self.spring_rate / self.mass)
 
-    @property
-    def damped_frequency(self) -> float:
-        """ω_n √(1 − ζ²); 0 where the damping is critical or more."""
-        square = self.natural_frequency**2 - (0.5 * self.damping / self.mass) ** 2
-        return math.sqrt(max(square, 0.0))
-
     def force(self, motion: Motion, speed: float) -> Real:
         """F at a program's s, v, a."""
         inertia = self.mass * speed**2 * motion.a
@@ -131,11 +125,6 @@ class RunningCam:
     def torque_extremes(self) -> Extremes:
         """Exact extremes of the torque."""
         return extremes(self.torque, self.program.breaks)
-
-    @property
-    def jumps(self) -> bool:
-        """Whether the follower leaves the cam somewhere."""
-        return self.force_extremes.least <= 0.0
 
     def reversals(self) -> Real:
         """Angles where F changes sign: a form-closed follower crosses to the other wall there.

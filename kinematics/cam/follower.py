@@ -201,10 +201,6 @@ class TranslatingFlat:
         h = self.base_radius + motion.s
         return Face(np.zeros_like(h), h, motion.v, h + motion.a)
 
-    def reach(self, motion: Motion) -> Real:
-        """Where on the face the contact is: v from the line through the cam's centre, positive in a rise."""
-        return motion.v
-
     def pressure_angle(self, motion: Motion) -> Real:
         """Zero."""
         return np.zeros_like(motion.s)

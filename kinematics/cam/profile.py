@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from kinematics.cam.extremes import Extremes, extremes
 from kinematics.cam.follower import (
-    Flat,
     Follower,
     OscillatingFlat,
     OscillatingRoller,
@@ -120,21 +119,6 @@ class Cam:
             return _inverse(follower.face(motion).radius)
         return follower.pitch_curvature(motion)
 
-    def profile_radius(self, angle: ArrayLike) -> Real:
-        """Radius of curvature of the profile: positive convex, negative concave, infinite at an inflection.
-
-        Under a roller it is ρ − roller_radius with ρ of the pitch curve; where ρ is positive and that is not, the
-        profile is undercut.
-        """
-        return _inverse(self.pitch_curvature(angle)) - self.roller_radius
-
-    @cached_property
-    def pressure_angle_extremes(self) -> Extremes:
-        """Exact extremes of the pressure angle, radians."""
-        return extremes(
-            lambda angle: self.follower.pressure_angle(self.program.pieces.motion(angle)), self.program.breaks
-        )
-
     @cached_property
     def pitch_curvature_extremes(self) -> Extremes:
         """Exact extremes of a roller's pitch curvature: the greatest belongs to the least convex radius."""
@@ -146,14 +130,10 @@ class Cam:
     @cached_property
     def radius_extremes(self) -> Extremes:
         """Exact extremes of the profile's radius of curvature under a flat face; not above zero is undercut."""
-        flat = self._flat()
+        flat = self.follower
+        if not isinstance(flat, TranslatingFlat | OscillatingFlat):
+            raise DimensionError("follower", "flat-faced", type(flat).__name__)
         return extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
-
-    @cached_property
-    def reach_extremes(self) -> Extremes:
-        """Exact extremes of the contact's place on a flat face: its width is their difference."""
-        flat = self._flat()
-        return extremes(lambda angle: flat.reach(self.program.pieces.motion(angle)), self.program.breaks)
 
     @cached_property
     def least_convex_radius(self) -> float:
@@ -170,19 +150,6 @@ class Cam:
     def undercut(self) -> bool:
         """Whether the profile has a cusp or runs back on itself somewhere: no cam can give this motion."""
         return self.least_convex_radius <= self.roller_radius * (1.0 + POINTED)
-
-    @cached_property
-    def largest_cutter(self) -> float:
-        """Radius of the largest cutter that reaches every concave part; infinite where the profile is convex."""
-        if isinstance(self.follower, TranslatingFlat | OscillatingFlat):
-            return math.inf
-        least = self.pitch_curvature_extremes.least
-        return -1.0 / least + self.roller_radius if least < 0.0 else math.inf
-
-    def _flat(self) -> Flat:
-        if not isinstance(self.follower, TranslatingFlat | OscillatingFlat):
-            raise DimensionError("follower", "flat-faced", type(self.follower).__name__)
-        return self.follower
 
     def _curve(self, theta: Real) -> tuple[Complex, Complex]:
         """Trace or contact points and outward normals, for a cam that turns clockwise."""

@@ -98,12 +98,6 @@ class BevelPair:
         return 0.5 * self.pinion / self.diametral_pitch, 0.5 * self.gear / self.diametral_pitch
 
     @property
-    def equivalent_radii(self) -> tuple[float, float]:
-        """Pitch radii of the spur gears that the back cones roll out to, r / cos γ (Tredgold)."""
-        (first, second), (one, other) = self.pitch_radii, self.cones
-        return first / math.cos(one), second / math.cos(other)
-
-    @property
     def cone_distance(self) -> float:
         """From the apex to the large end."""
         return math.hypot(*self.pitch_radii)

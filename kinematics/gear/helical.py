@@ -79,17 +79,3 @@ class HelicalGear:
     def least_face_width(self, overlap: float = OVERLAP) -> float:
         """Face over which a tooth advances by ``overlap`` transverse pitches: overlap × axial pitch."""
         return overlap * self.axial_pitch
-
-
-def helix_angle_for_distance(teeth: int, other: int, normal_module: float, distance: float) -> float:
-    """Helix angle of two gears on parallel shafts at a distance: cos ψ = m_n (z₁ + z₂) / 2 C.
-
-    Raises
-    ------
-    DimensionError
-        Where even spur teeth are too large for the distance.
-    """
-    cosine = 0.5 * normal_module * (teeth + other) / distance
-    if not 0.0 < cosine <= 1.0:
-        raise DimensionError("distance", f"at least {0.5 * normal_module * (teeth + other):.6g}", distance)
-    return math.acos(cosine)

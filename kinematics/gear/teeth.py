@@ -254,11 +254,6 @@ class Mesh:
         return self.approach + self.recess
 
     @property
-    def arc_of_contact(self) -> float:
-        """Path of contact over cos φ_w: the way a point of the working pitch circle goes while two teeth touch."""
-        return self.path_of_contact / math.cos(self.pressure_angle)
-
-    @property
     def contact_ratio(self) -> float:
         """m_p = Z / p_b (Norton, eq. 9.7a): the mean number of pairs of teeth in contact."""
         return self.path_of_contact / self.pinion.base_pitch
@@ -322,14 +317,6 @@ class Mesh:
         return min(distance - one.tip_radius - two.root_radius, distance - two.tip_radius - one.root_radius)
 
     @property
-    def backlash(self) -> float:
-        """Play on the working pitch circles: 0 at the distance of a tight mesh."""
-        wide = math.cos(self.pinion.pressure_angle) / math.cos(self.pressure_angle)
-        radii = self.pinion.pitch_radius * wide, self.gear.pitch_radius * wide
-        pitch = 2.0 * math.pi * radii[0] / self.pinion.teeth
-        return pitch - self.pinion.thickness_at(radii[0]) - self.gear.thickness_at(radii[1])
-
-    @property
     def loss_factor(self) -> float:
         """Power lost per unit of friction coefficient, averaged over the mesh cycle.
 
@@ -339,11 +326,6 @@ class Mesh:
         teeth = 1.0 / self.pinion.teeth + self._side / self.gear.teeth
         recess, approach = (part / self.pinion.base_pitch for part in (self.recess, self.approach))
         return math.pi * teeth * (1.0 - self.contact_ratio + recess**2 + approach**2)
-
-
-def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
-    """Whether a rack of this addendum (a length) reaches below the gear's base tangent: a > r sin² φ."""
-    return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + ON_LIMIT)
 
 
 def least_teeth_with_rack(pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> int:

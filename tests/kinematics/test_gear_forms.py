@@ -10,14 +10,16 @@ from hypothesis import strategies as st
 
 from kinematics.errors import DimensionError
 from kinematics.gear.bevel import GLEASON_TEETH, BevelPair, cone_angles
-from kinematics.gear.helical import HelicalGear, helix_angle_for_distance
+from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Mesh
 from kinematics.gear.worm import WormSet
 from tests.cases import Case, cases
 from tests.oracles.gear_formulas import (
     crossed_at_distance,
     crossed_by_diameters,
+    equivalent_radii,
     helical_replacement,
+    helix_angle_for_distance,
     helix_angle_for_face,
     least_crossed_distance,
     smallest_worm,
@@ -138,8 +140,8 @@ def test_bevel_pair(case: Case) -> None:
         gamma3=deg(pair.cones[1]),
         r2=pair.pitch_radii[0],
         r3=pair.pitch_radii[1],
-        re2=pair.equivalent_radii[0],
-        re3=pair.equivalent_radii[1],
+        re2=equivalent_radii(pair)[0],
+        re3=equivalent_radii(pair)[1],
     )
     assert pair.cone_distance * math.sin(pair.cones[0]) == pytest.approx(pair.pitch_radii[0])
 

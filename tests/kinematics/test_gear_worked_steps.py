@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 from kinematics.gear.gearbox import spindle_speeds
-from kinematics.gear.helical import HelicalGear, helix_angle_for_distance
+from kinematics.gear.helical import HelicalGear
 from kinematics.gear.teeth import Gear
 from tests.cases import Case, cases, load
+from tests.oracles.gear_formulas import helix_angle_for_distance
 
 STUDIED = 24
 """Teeth of the gears where a row states a radius or a pitch alone: the result must not depend on them."""

