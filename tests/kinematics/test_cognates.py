@@ -24,12 +24,12 @@ from kinematics.linkage.fourbar import (
 from kinematics.linkage.fourbar.cognates import (
     Cognate,
     cognates,
-    driven_at_output,
     geared_fivebar_cognate,
     parallel_motion,
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
+from tests.oracles.output_drive import cognate_driven_at_output, driven_at_output
 from tests.oracles.positions import meet
 
 BATCH = 10_000
@@ -74,7 +74,7 @@ def stand(cognate: Cognate, theta: NDArray[np.float64], assembly: NDArray[np.int
 
 def four_drives(linkage: Fourbar) -> list[Cognate]:
     pair = cognates(linkage)
-    return [*pair, *(cognate.driven_at_output() for cognate in pair)]
+    return [*pair, *(cognate_driven_at_output(cognate) for cognate in pair)]
 
 
 def same_direction(one, other) -> NDArray[np.float64]:
@@ -89,7 +89,7 @@ def test_cognates_of_a_printed_linkage(case: Case) -> None:
     """The cranks of both stand on the pivots of the source."""
     pair = cognates(linkage_of(case))
     found = {}
-    for side, linkage in (("left", pair.left.linkage), ("right", pair.right.driven_at_output().linkage)):
+    for side, linkage in (("left", pair.left.linkage), ("right", cognate_driven_at_output(pair.right).linkage)):
         found |= {
             f"{side}_ground": linkage.ground,
             f"{side}_crank": linkage.input,
@@ -225,9 +225,9 @@ def test_cognates_of_cognates_are_the_three() -> None:
     linkage = random_fourbars(np.random.default_rng(17), BATCH)
     pair = cognates(linkage)
     back = cognates(pair.left.linkage).left.linkage
-    around = driven_at_output(cognates(pair.right.driven_at_output().linkage).left.linkage)
+    around = driven_at_output(cognates(cognate_driven_at_output(pair.right).linkage).left.linkage)
     same = cognates(pair.left.linkage).right.linkage
-    for found, expected in ((back, linkage), (around, linkage), (same, pair.right.driven_at_output().linkage)):
+    for found, expected in ((back, linkage), (around, linkage), (same, cognate_driven_at_output(pair.right).linkage)):
         scale = np.abs(linkage.coupler_point / linkage.coupler) + 1.0
         for name in FIELDS:
             error = np.abs(getattr(found, name) - getattr(expected, name))
@@ -245,7 +245,7 @@ def test_driving_at_the_other_end_is_the_same_mechanism() -> None:
     error = np.minimum(*(np.abs(x.p - at.p) + np.abs(x.a - at.b) + np.abs(x.b - at.a) for x in found))
     assert np.quantile(error / size_of(linkage), 0.999) < 1e-9
     cognate = cognates(linkage).left
-    again = cognate.driven_at_output().driven_at_output()
+    again = cognate_driven_at_output(cognate_driven_at_output(cognate))
     assert again.turns_with == cognate.turns_with
     assert same_direction(again.offset, cognate.offset).max() < 1e-12
 

@@ -16,11 +16,11 @@ from kinematics.linkage.fourbar.coupler_curve import (
     coupler_curve_degree,
     curve_unit,
     double_points,
-    sextic,
     sextic_coefficients,
 )
 from tests.cases import Case, cases
 from tests.kinematics.sampling import assembled_angles, random_fourbars, signs, take
+from tests.oracles.coupler_sextic import sextic
 from tests.oracles.curve_crossings import line_crossings
 from tests.oracles.differences import derivative
 from tests.oracles.positions import meet

@@ -40,7 +40,6 @@ from kinematics.linkage.fourbar.cognates import (
     GearedFivebarCognate,
     ParallelMotion,
     cognates,
-    driven_at_output,
     geared_fivebar_cognate,
     parallel_motion,
 )
@@ -49,11 +48,9 @@ from kinematics.linkage.fourbar.coupler_curve import (
     CRUNODE,
     CUSP,
     DoublePoints,
-    Sextic,
     coupler_curve_degree,
     curve_unit,
     double_points,
-    sextic,
     sextic_coefficients,
 )
 from kinematics.linkage.fourbar.curvature import PathCurvature, Pole, path_curvature, pole
@@ -82,7 +79,6 @@ __all__ = [
     "PathCurvature",
     "Pole",
     "Positions",
-    "Sextic",
     "Traversal",
     "barker_class",
     "barker_type",
@@ -93,7 +89,6 @@ __all__ = [
     "coupler_points",
     "curve_unit",
     "double_points",
-    "driven_at_output",
     "full_rotation",
     "geared_fivebar_cognate",
     "grashof_class",
@@ -105,7 +100,6 @@ __all__ = [
     "pole",
     "positions",
     "same_circuit",
-    "sextic",
     "sextic_coefficients",
     "stays_on_branch",
     "toggle_angles",

@@ -105,12 +105,6 @@ class Cognate:
         angle = np.where(at.valid, np.angle(own_input), np.nan)
         return Configuration(at.valid, angle, np.where(side < 0.0, CROSSED, OPEN))
 
-    def driven_at_output(self) -> Cognate:
-        """The same cognate with its output link as the input."""
-        first, middle, last = self.turns_with
-        offset = self.offset[..., ::-1] + np.array([0.0, np.pi, 0.0])
-        return Cognate(driven_at_output(self.linkage), self.source, (last, middle, first), _wrapped(offset))
-
 
 class Cognates(NamedTuple):
     """Both cognates: ``left`` on O2 (its input) and OC, ``right`` on OC (its input) and O4.
@@ -158,18 +152,6 @@ class ParallelMotion:
     crank_point: Complex
     guide: Real
     translation: Complex
-
-
-def driven_at_output(linkage: Fourbar) -> Fourbar:
-    """The same mechanism with its output link as the input: O2 with O4, A with B, a with c exchanged."""
-    return Fourbar(
-        linkage.output_pivot,
-        linkage.input_pivot,
-        linkage.output,
-        linkage.coupler,
-        linkage.input,
-        linkage.coupler - linkage.coupler_point,
-    )
 
 
 def cognates(linkage: Fourbar) -> Cognates:

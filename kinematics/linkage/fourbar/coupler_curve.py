@@ -12,9 +12,8 @@ Two linear equations for e; |e| = 1 leaves the curve
 
     F = |N|² − D² = 0,   N = k1 m2 − k2 m1,   D = Im(m̄1 m2).
 
-F is used in this form, not expanded: its gradient follows from the factors, and no powers of p cancel. Its highest
-term is b²/4 · (x² + y²)³; divided by b²/4 and with lengths in units of :func:`curve_unit` it is the *monic* sextic of
-this module. In p and p̄ it has degree three in each (three times through the circular points).
+Its highest term is b²/4 · (x² + y²)³; divided by b²/4 and with lengths in units of :func:`curve_unit` it is the
+*monic* sextic of this module. In p and p̄ it has degree three in each (three times through the circular points).
 
 Double points. N = 0 and D = 0 together, where the two equations for e become one and have two solutions. D = 0 is
 the circle of the singular foci, through O2, O4 and the third fixed pivot of the cognates (the line O2 O4 if P is on
@@ -35,18 +34,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.fourbar.closed_form import (
     CROSSED,
     OPEN,
-    AngleAxis,
     Complex,
     Fourbar,
     Mask,
     Real,
-    one_shape,
     require,
 )
 from kinematics.linkage.fourbar.cognates import AT_PIVOT
@@ -61,16 +58,6 @@ and its size goes with the cube of that, below 1e-12 of the linkage."""
 REAL_ROOT = 1e-7
 """Imaginary part, relative to 1 + |root|, up to which a root is real: rounding splits a double root by √eps, and a
 pair split by so little meets the real equation to the square of this."""
-
-
-class Sextic(NamedTuple):
-    """Monic sextic in units of the linkage's size: its value, and its gradient ∂/∂x + i ∂/∂y per unit of length.
-
-    ``value / |gradient|`` is the distance from the curve to first order.
-    """
-
-    value: Real
-    gradient: Complex
 
 
 class DoublePoints(NamedTuple):
@@ -109,38 +96,6 @@ def coupler_curve_degree(links: int) -> int:
 def curve_unit(linkage: Fourbar) -> Real:
     """Unit of length of the monic sextic: a + b + c + d + |AP|, which no part of the linkage exceeds; shape designs."""
     return np.asarray(linkage.lengths.sum(axis=-1) + np.abs(linkage.coupler_point))
-
-
-def sextic(linkage: Fourbar, point: ArrayLike) -> Sextic:
-    """The sextic at any points of the plane, by its factors; zero on the curve.
-
-    Parameters
-    ----------
-    linkage : Fourbar
-        Designs of shape S. A coupler point at A or B makes the sextic a double circle with two isotropic lines.
-    point : complex
-        Shape (N,) for the same points in every design, or S + (N,). For a single design a scalar gives scalars.
-
-    Raises
-    ------
-    ShapeError
-        For points that do not broadcast with the designs.
-    """
-    p = np.asarray(point, np.complex128)
-    axis: AngleAxis = (...,) if p.ndim == 0 and linkage.input.shape == () else (..., None)
-    one_shape(designs=linkage.input[axis].shape, point=p.shape)
-    scaled = _scaled(linkage)
-    unit, a, b, c = scaled.unit[axis], scaled.a[axis], scaled.b[axis], scaled.c[axis]
-    z, rest = scaled.z[axis], scaled.rest[axis]
-    q2, q4 = (p - linkage.input_pivot[axis]) / unit, (p - linkage.output_pivot[axis]) / unit
-    k1, k2 = 0.5 * (_square(q2) + _square(z) - a * a), 0.5 * (_square(q4) + _square(rest) - c * c)
-    m1, m2 = q2.conj() * z, q4.conj() * rest
-    cubic, circle = k1 * m2 - k2 * m1, (m1.conj() * m2).imag
-    cubic_conj, cubic_p = 0.5 * (q2 * m2 - q4 * m1) + k1 * rest - k2 * z, 0.5 * (q2.conj() * m2 - q4.conj() * m1)
-    circle_conj = -0.5j * (q2 * z.conj() * rest - q4 * z * rest.conj())
-    slope = cubic_conj * cubic.conj() + cubic * cubic_p.conj() - 2.0 * circle * circle_conj
-    lead = 4.0 / (b * b)
-    return Sextic(lead * (_square(cubic) - circle * circle), lead * 2.0 * slope / unit)
 
 
 def sextic_coefficients(linkage: Fourbar) -> Complex:
