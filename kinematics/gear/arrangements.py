@@ -140,6 +140,15 @@ def _planet(name: str, *planes: int, body: str | None = None) -> GearPlace:
     return GearPlace(name, body or name, planes or (1,))
 
 
+def _stepped(name: str, description: str, first: GearPlace, second: GearPlace) -> Arrangement:
+    """Planets of two steps on one carrier, between a sun or ring in the first plane and another in the second."""
+    planets = _planet("planet_1", 1, body="planet"), _planet("planet_2", 2, body="planet")
+    near = ("planet_1", first.name) if first.internal else (first.name, "planet_1")
+    return Arrangement(
+        name, description, (first, *planets, second), (near, ("planet_2", second.name)), {"planet": "carrier"}
+    )
+
+
 ARRANGEMENTS: dict[str, Arrangement] = {
     row.name: row
     for row in (
@@ -157,42 +166,9 @@ ARRANGEMENTS: dict[str, Arrangement] = {
             (("sun", "planet_1"), ("planet_1", "planet_2"), ("planet_2", "ring")),
             {"planet_1": "carrier", "planet_2": "carrier"},
         ),
-        Arrangement(
-            "stepped",
-            "stepped planets between a sun and a ring",
-            (
-                _sun("sun"),
-                _planet("planet_1", 1, body="planet"),
-                _planet("planet_2", 2, body="planet"),
-                _ring("ring", 2),
-            ),
-            (("sun", "planet_1"), ("planet_2", "ring")),
-            {"planet": "carrier"},
-        ),
-        Arrangement(
-            "stepped_suns",
-            "stepped planets between two suns",
-            (
-                _sun("sun_1"),
-                _planet("planet_1", 1, body="planet"),
-                _planet("planet_2", 2, body="planet"),
-                _sun("sun_2", 2),
-            ),
-            (("sun_1", "planet_1"), ("planet_2", "sun_2")),
-            {"planet": "carrier"},
-        ),
-        Arrangement(
-            "stepped_rings",
-            "stepped planets between two rings",
-            (
-                _ring("ring_1"),
-                _planet("planet_1", 1, body="planet"),
-                _planet("planet_2", 2, body="planet"),
-                _ring("ring_2", 2),
-            ),
-            (("planet_1", "ring_1"), ("planet_2", "ring_2")),
-            {"planet": "carrier"},
-        ),
+        _stepped("stepped", "stepped planets between a sun and a ring", _sun("sun"), _ring("ring", 2)),
+        _stepped("stepped_suns", "stepped planets between two suns", _sun("sun_1"), _sun("sun_2", 2)),
+        _stepped("stepped_rings", "stepped planets between two rings", _ring("ring_1"), _ring("ring_2", 2)),
         Arrangement(
             "wolfrom",
             "a simple set whose planets are stepped to drive a second ring; the carrier is free",

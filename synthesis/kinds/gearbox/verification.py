@@ -23,6 +23,7 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
     every = [pair for pairs in stages for pair in pairs]
     low, high = problem.teeth.min, problem.teeth.max
     ratios = [Fraction(*pair) for pair in every]
+    meshes = (Mesh.standard(pair, mechanism.module, math.radians(mechanism.pressure_angle)) for pair in every)
     least, most = problem.stage_ratio.min, problem.stage_ratio.max
     counts = [len(pairs) for pairs in stages]
     checks = [
@@ -45,7 +46,7 @@ def verify(problem: GearboxProblem, mechanism: GearboxMechanism) -> Verification
             passed=all(least * (1.0 - ROUNDING) <= float(r) <= most * (1.0 + ROUNDING) for r in ratios),
         ),
         Check(name="structure", passed=problem.structure is None or counts == problem.structure),
-        Check(name="interference", passed=not any(_mesh(mechanism, pair).interferes for pair in every)),
+        Check(name="interference", passed=not any(mesh.interferes for mesh in meshes)),
     ]
     if problem.cluster_difference:
         steps = [sorted(driver for driver, _ in pairs)[-2:] for pairs in stages if len(pairs) > 2]
@@ -100,7 +101,3 @@ def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]
     return [
         abs(math.log(float(own.speed) / wanted)) for own, wanted in zip(speeds, problem.speeds.nominal, strict=True)
     ]
-
-
-def _mesh(mechanism: GearboxMechanism, pair: tuple[int, int]) -> Mesh:
-    return Mesh.standard(pair, mechanism.module, math.radians(mechanism.pressure_angle))

@@ -200,11 +200,8 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
         far *= 2.0
         if far > FARTHEST * size:
             return None
-    low, high = 0.0, far
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if float(arm("left_arm", np.array([middle]))[0]) < lock else (low, middle)
-    travel = np.linspace(-high, high, SAMPLES)
+    _, locked = _narrowed(lambda bar: not float(arm("left_arm", np.array([bar]))[0]) < lock, 0.0, far)
+    travel = np.linspace(-locked, locked, SAMPLES)
     motion = drive(mechanism, straight + sense * travel, order=1)
     left, right = arm("left_arm", travel), arm("right_arm", travel)
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
@@ -218,12 +215,15 @@ def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | No
     # The right wheel is the inner one there and turns farther; beyond its lock it may have no position at all.
     if float(right(np.array([low]))[0]) > -lock:
         return None
-    high = 0.0
+    return _narrowed(lambda left: not float(right(np.array([left]))[0]) > -lock, 0.0, low)[0]
+
+
+def _narrowed(beyond: Callable[[float], bool], inside: float, outside: float) -> tuple[float, float]:
+    """The last input before a lock and the first beyond it, by bisection between one on either side."""
     for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        beyond = not float(right(np.array([middle]))[0]) > -lock
-        low, high = (middle, high) if beyond else (low, middle)
-    return high
+        middle = 0.5 * (inside + outside)
+        inside, outside = (inside, middle) if beyond(middle) else (middle, outside)
+    return inside, outside
 
 
 def _changes(inner: Real, error: Real) -> list[float]:
