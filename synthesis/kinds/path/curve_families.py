@@ -27,11 +27,12 @@ def families_of(problem: PathProblem) -> list[int]:
     return [FOURBAR] if grashof in ("double_rocker", "non_grashof") else [CRANK_ROCKER, FOURBAR]
 
 
-def joints_of(family: int, x: Real, sign: float, theta: float) -> FourbarConfiguration:
-    """The joints of a member at the first point, where the crank stands at ``theta``, in the unit of ``x``."""
+def joints_of(family: int, x: Real, sign: float, theta: float) -> tuple[bool, FourbarConfiguration]:
+    """Whether a member closes, away from a toggle, where the crank stands at ``theta``; and its joints there."""
     lengths, chart = np.zeros(4), np.zeros((4, 4))
     natural(family, x, lengths, chart)
-    _, p, unit = place(family, x, lengths, sign, 0.0, theta)
+    closes, p, unit = place(family, x, lengths, sign, 0.0, theta)
     o2 = complex(x[0], x[1])
     a = o2 + cmath.rect(float(lengths[1]), theta)
-    return FourbarConfiguration(o2, a, a + lengths[2] * unit, o2 + cmath.rect(float(lengths[0]), float(x[2])), p)
+    o4 = o2 + cmath.rect(float(lengths[0]), float(x[2]))
+    return closes, FourbarConfiguration(o2, a, a + lengths[2] * unit, o4, p)

@@ -323,7 +323,7 @@ def _running(candidates: list[_Candidate]) -> list[_Candidate]:
 
 
 def _joints(candidate: _Candidate) -> FourbarConfiguration:
-    return joints_of(candidate.family, candidate.x, candidate.sign, candidate.theta)
+    return joints_of(candidate.family, candidate.x, candidate.sign, candidate.theta)[1]
 
 
 def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:

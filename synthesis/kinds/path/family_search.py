@@ -78,7 +78,7 @@ def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
                 family, starts.x, starts.sign, theta, points, longest=longest, within=within, iterations=MAX_STEPS
             )
             for k in np.flatnonzero(ends.cost <= COST_TOLERANCE):
-                joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
+                _, joints = joints_of(family, ends.x[k], float(starts.sign[k]), float(ends.theta[k, 0]))
                 members.append(FourbarConfiguration(*(centre + size * joint for joint in joints)))
     return _answer(problem, members, brought, progress)
 

@@ -8,7 +8,6 @@ driven and verified like any other linkage. The Grashof class holds by the choic
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -16,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS, natural
-from synthesis.fit.coupler_curve import place
+from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
+from synthesis.kinds.path.curve_families import joints_of
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.limits import LIMIT_WEIGHT, Usable, setting_of
@@ -398,16 +397,10 @@ def _distinct(pool: list[Candidate], count: int) -> list[Candidate]:
 
 def _joints(candidate: Candidate) -> Complex:
     """O2, A, B, O4 and P at the first point, in task coordinates; NaN beyond a toggle."""
-    lengths = np.empty(4)
-    x, sign = candidate.x, float(candidate.setting[SIGN])
-    natural(int(candidate.setting[FAMILY]), x, lengths, np.empty((4, 4)))
+    x, setting = candidate.x, candidate.setting
     theta = float(candidate.state[0] + x[2])
-    good, point, coupler = place(FOURBAR, x, lengths, sign, 0.0, theta)
-    if not good:
-        return np.full(5, np.nan + 0j)
-    o2 = complex(x[0], x[1])
-    pin = o2 + cmath.rect(lengths[1], theta)
-    return np.array([o2, pin, pin + lengths[2] * coupler, o2 + cmath.rect(lengths[0], x[2]), point])
+    closes, joints = joints_of(int(setting[FAMILY]), x, float(setting[SIGN]), theta)
+    return np.array(joints) if closes else np.full(5, np.nan + 0j)
 
 
 def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidate | None:
