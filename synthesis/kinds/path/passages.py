@@ -9,7 +9,7 @@ the first target's circuit counts.
 
 *Nearest, in order*, where points are fitted and timing is free: the input is looked for at which P comes nearest to
 each point, all in the order of the points within one turn of the input. On a grid this is a monotone assignment, for
-which dynamic programming finds the least sum of squares; closer and closer looks then do the rest.
+which dynamic programming finds the least sum of squares; the grid is then refined around the best run, again and again.
 """
 
 from __future__ import annotations
@@ -39,19 +39,19 @@ POLISHED, DIFFERENCE = 4, 1e-7
 """Steps by which such inputs are polished, and the difference, radians, that their slope is measured over."""
 
 GRID = 360
-"""Inputs that are looked at first: one degree of a full turn."""
+"""Inputs of the first pass in a full turn: one degree."""
 
 STRIDE = 5
-"""A crank's first input is tried at every so many of the grid's: the closer looks move it by more than that."""
+"""A crank's first input is tried at every fifth input of the grid: the refinements move it by more than that."""
 
 SPREAD = 17
-"""Inputs in each closer look at a target, over the two steps around the best of the last."""
+"""Inputs for each target in one refinement, over the two steps around the best of the last."""
 
-CLOSER = 0.25
-"""Each closer look's step as a share of the last's: targets that settle against each other may move on together."""
+REFINEMENT = 0.25
+"""Step of a refinement as a share of the last: so coarse that targets that hold each other back can move together."""
 
-LOOKS = 24
-"""Closer looks: 4²⁴ times finer than the grid, 1e-16 of a turn."""
+REFINEMENTS = 24
+"""Number of refinements: 4²⁴ times finer than the grid, 1e-17 of a turn."""
 
 OUT_OF_REACH = 1e30
 """A squared distance where there is no position: never taken where there is another."""
@@ -171,7 +171,7 @@ def nearest(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
     path = np.where(at.valid, at.p, np.inf)
     inputs = np.array([grid[np.abs(path - point).argmin()] for point in points])
     spread = np.linspace(-1.0, 1.0, SPREAD)
-    for _ in range(LOOKS):
+    for _ in range(REFINEMENTS):
         tried = np.clip(inputs[:, None] + step * spread, low, high)
         squares = _squares(fourbar, points, tried)
         inputs = tried[np.arange(len(points)), squares.argmin(axis=1)]
@@ -239,24 +239,24 @@ def ordered_run(
     path = place(grid)
     squares = np.minimum(_gaps(path[None], points), OUT_OF_REACH)
     if period is None:
-        found = [(way, *_along(ways.copy())) for way, ways in ((1.0, squares), (-1.0, squares[:, ::-1]))]
+        directions = [(way, *_along(ways.copy())) for way, ways in ((1.0, squares), (-1.0, squares[:, ::-1]))]
     else:
-        # A run that is taken to the grid, and to one of the starts tried there, has its places moved by so many steps
-        # at most: by so much may the looks shorten the one way until it is less than the other.
+        # Every run lies within STRIDE + 1 steps of one that begins at a trial start of the grid, so refinement lowers
+        # the root of a sum of squares by at most ``moved``. A direction that is above the other by more is dropped.
         moved = math.sqrt(len(points)) * (STRIDE + 1) * float(np.abs(np.diff(path)).max())
         columns, least = _round(squares[:, :-1].copy(), math.inf)
         back = _round(squares[:, :0:-1].copy(), (math.sqrt(least) + moved) ** 2)
-        found = [(1.0, columns, least), (-1.0, *back)]
+        directions = [(1.0, columns, least), (-1.0, *back)]
     runs = []
-    for way, columns, least in found:
+    for way, columns, least in directions:
         if math.isfinite(least):
             start = low if way > 0.0 else high
             run = np.asarray(start + way * (high - low) / count * columns, np.float64)
-            runs.append(_looked_at(place, points, low, high, period, way, run))
+            runs.append(_refined(place, points, low, high, period, way, run))
     return min(runs, key=lambda pair: pair[1])[0]
 
 
-def _looked_at(
+def _refined(
     place: Callable[[Real], Complex],
     points: Complex,
     low: float,
@@ -265,16 +265,16 @@ def _looked_at(
     way: float,
     run: Real,
 ) -> tuple[Real, float]:
-    """A run on the grid by closer and closer looks, and its sum of squared distances."""
+    """A run on the grid, refined, and its sum of squared distances."""
     step = (high - low) / (GRID * max(1, round((high - low) / math.tau)))
     longest = math.inf if period is None else period
-    for _ in range(LOOKS):
+    for _ in range(REFINEMENTS):
         tried: Real = run[:, None] + way * step * np.linspace(-1.0, 1.0, SPREAD)
         if period is None:
             tried = np.clip(tried, low, high)
-        found = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
-        run = way * _chosen(found, way * tried, longest)
-        step *= CLOSER
+        squares = np.minimum(_gaps(place(tried), points), OUT_OF_REACH)
+        run = way * _chosen(squares, way * tried, longest)
+        step *= REFINEMENT
     return run, float(_gaps(place(run[:, None]), points).sum())
 
 
