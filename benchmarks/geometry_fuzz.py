@@ -140,7 +140,7 @@ def _not_finite(value: Any, path: str = "") -> str:
 def _drawn(design: Any, problem: Any, animated: bool) -> str:
     from service import render
 
-    for form in render.forms(problem.kind, design.mechanism.type):
+    for form in render.forms(design.mechanism.type):
         if form == "gif" and not animated:
             continue
         try:

@@ -14,7 +14,7 @@ from service.render.page.numbers import length
 from service.render.report import Occasion, report
 from service.units import symbols
 from synthesis.dispatch import solve
-from synthesis.model.dimension import ANGLE, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
+from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
 from synthesis.registry import KINDS, examples, parse_problem
 
 OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
@@ -44,7 +44,11 @@ MEASURING = {
     "hub_radius": LENGTH,
     "size": LENGTH,
     "peak_velocity": VELOCITY,
+    "peak_acceleration": ACCELERATION,
+    "peak_jerk": JERK,
     "table_velocity": VELOCITY,
+    "table_acceleration": ACCELERATION,
+    "table_jerk": JERK,
 }
 
 
