@@ -29,8 +29,6 @@ Complex = NDArray[np.complex128]
 
 Kind = Literal["rocker", "slider", "slot"]
 
-DIMENSIONS: dict[Kind, int] = {"rocker": 9, "slider": 8, "slot": 7}
-"""Numbers of a shape before the dwells' angles."""
 
 CYCLE = 72
 """Crank angles of the turn at which the output is looked at."""
