@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.cam.extremes import extremes
-from kinematics.cam.pieces import Motion
 from kinematics.cam.program import Program
 from kinematics.errors import DimensionError
 
@@ -60,17 +57,3 @@ class BarrelCam:
         theta = np.asarray(angle, dtype=np.float64)
         tangent = self.radius + 1j * self.program.motion(theta).v
         return np.asarray(self.pitch_curve(theta) + side * self.roller_radius * 1j * tangent / np.abs(tangent))
-
-    @cached_property
-    def least_radius(self) -> float:
-        """Smallest radius of curvature of the unrolled pitch curve; infinite for a straight one."""
-        worst = extremes(lambda angle: self._curvature(self.program.pieces.motion(angle)), self.program.breaks).largest
-        return 1.0 / worst if worst > 0.0 else math.inf
-
-    @property
-    def undercut(self) -> bool:
-        """Whether a wall of the groove has a cusp: the roller is as large as the least radius."""
-        return self.least_radius <= self.roller_radius
-
-    def _curvature(self, motion: Motion) -> Real:
-        return np.asarray(motion.a * self.radius / np.hypot(self.radius, motion.v) ** 3)

@@ -8,7 +8,6 @@ has a cusp or is undercut (Norton §8.7); a flat face asks for ρ = h + d²h/dα
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -100,10 +99,6 @@ class Cam:
         """The other wall of the groove of a form-closed cam, on the far side of the roller."""
         return self.offset_curve(angle, self.roller_radius)
 
-    def cutter_path(self, angle: ArrayLike, cutter_radius: float) -> Complex:
-        """Centres of a cutter or grinding wheel that touches the profile where the follower does."""
-        return self.offset_curve(angle, cutter_radius - self.roller_radius)
-
     def normal(self, angle: ArrayLike) -> Complex:
         """Outward unit normals at the contact points."""
         return self._mirrored(self._curve(np.asarray(angle, dtype=np.float64))[1])
@@ -135,22 +130,6 @@ class Cam:
             raise DimensionError("follower", "flat-faced", type(flat).__name__)
         return extremes(lambda angle: flat.face(self.program.pieces.motion(angle)).radius, self.program.breaks)
 
-    @cached_property
-    def least_convex_radius(self) -> float:
-        """Smallest radius of curvature of the convex parts: of the pitch curve, or of a flat face's profile.
-
-        Infinite where a roller's pitch curve is nowhere convex, which no closed one is.
-        """
-        if isinstance(self.follower, TranslatingFlat | OscillatingFlat):
-            return self.radius_extremes.least
-        greatest = self.pitch_curvature_extremes.greatest
-        return 1.0 / greatest if greatest > 0.0 else math.inf
-
-    @property
-    def undercut(self) -> bool:
-        """Whether the profile has a cusp or runs back on itself somewhere: no cam can give this motion."""
-        return self.least_convex_radius <= self.roller_radius * (1.0 + POINTED)
-
     def _curve(self, theta: Real) -> tuple[Complex, Complex]:
         """Trace or contact points and outward normals, for a cam that turns clockwise."""
         motion, follower = self.program.motion(theta), self.follower
@@ -164,10 +143,6 @@ class Cam:
 
     def _mirrored(self, points: Complex) -> Complex:
         return np.conj(points) if self.rotation == "ccw" else points
-
-
-POINTED = 1e-9
-"""Share of the roller radius by which the pitch curve's must be larger: at equality the profile has a cusp."""
 
 
 def even_angles(count: int) -> Real:

@@ -7,10 +7,14 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinematics.cam.barrel import BarrelCam
 from kinematics.cam.dynamics import FollowerLoad
 from kinematics.cam.extremes import Extremes, extremes
 from kinematics.cam.follower import OscillatingFlat, TranslatingFlat
 from kinematics.cam.profile import Cam
+
+POINTED = 1e-9
+"""Share of the roller radius by which the pitch curve's must be larger: at equality the profile has a cusp."""
 
 
 def profile_radius(cam: Cam, angle: ArrayLike) -> NDArray[np.float64]:
@@ -47,6 +51,41 @@ def largest_cutter(cam: Cam) -> float:
     """Radius of the largest cutter that reaches every concave part under a roller; infinite without such a part."""
     least = cam.pitch_curvature_extremes.least
     return -1.0 / least + cam.roller_radius if least < 0.0 else math.inf
+
+
+def cutter_path(cam: Cam, angle: ArrayLike, cutter_radius: float) -> NDArray[np.complex128]:
+    """Centres of a cutter or grinding wheel that touches the profile where the follower does."""
+    return cam.offset_curve(angle, cutter_radius - cam.roller_radius)
+
+
+def least_convex_radius(cam: Cam) -> float:
+    """Smallest radius of curvature of the convex parts: of the pitch curve, or of a flat face's profile.
+
+    Infinite where a roller's pitch curve is nowhere convex, which no closed one is.
+    """
+    if isinstance(cam.follower, TranslatingFlat | OscillatingFlat):
+        return cam.radius_extremes.least
+    greatest = cam.pitch_curvature_extremes.greatest
+    return 1.0 / greatest if greatest > 0.0 else math.inf
+
+
+def undercut(cam: Cam) -> bool:
+    """Whether the profile has a cusp or runs back on itself somewhere: no cam gives this motion (Norton §8.7)."""
+    return least_convex_radius(cam) <= cam.roller_radius * (1.0 + POINTED)
+
+
+def least_groove_radius(cam: BarrelCam) -> float:
+    """Smallest radius of curvature of a barrel's unrolled pitch curve; infinite for a straight one.
+
+    A wall of the groove has a cusp where the roller is as large.
+    """
+
+    def curvature(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+        motion = cam.program.pieces.motion(angle)
+        return np.asarray(motion.a * cam.radius / np.hypot(cam.radius, motion.v) ** 3)
+
+    worst = extremes(curvature, cam.program.breaks).largest
+    return 1.0 / worst if worst > 0.0 else math.inf
 
 
 def damped_frequency(load: FollowerLoad) -> float:

@@ -18,7 +18,6 @@ from service.render.page.numbers import angle, length
 from service.render.page.sheet import EDGE, FULL, GUTTER, UNITS, beside, in_columns, sheet, stacked
 from service.render.page.svg import Box
 
-
 APART = 8.0, 10.0
 """Space above a diagram, and above tables that stand below the picture, pixels."""
 

@@ -11,7 +11,7 @@ from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.profile import Cam
 from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import Segment, dwell, law_segment
-from tests.oracles.cam_formulas import pressure_angle_extremes
+from tests.oracles.cam_formulas import pressure_angle_extremes, undercut
 
 SMOOTH_LAWS = ("cycloidal", "modified_trapezoid", "modified_sine", "polynomial_345", "polynomial_4567")
 FOLLOWERS = ("translating_roller", "offset_roller", "oscillating_roller", "translating_flat", "oscillating_flat")
@@ -55,6 +55,6 @@ def sound_cam(rng: np.random.Generator, kind: str) -> Cam:
         if kind == "oscillating_flat" and max(abs(program.peaks[1].least), program.peaks[1].greatest) > 0.8:
             continue
         cam = Cam(program, follower, rotation)
-        if not cam.undercut and pressure_angle_extremes(cam).largest < math.radians(50.0):
+        if not undercut(cam) and pressure_angle_extremes(cam).largest < math.radians(50.0):
             return cam
     raise AssertionError(f"no sound cam of kind {kind} found")

@@ -14,7 +14,15 @@ from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from kinematics.errors import DimensionError
 from tests.kinematics.cam.sampling import FOLLOWERS, sound_cam
-from tests.oracles.cam_formulas import largest_cutter, pressure_angle_extremes, profile_radius, reach_extremes
+from tests.oracles.cam_formulas import (
+    cutter_path,
+    largest_cutter,
+    least_convex_radius,
+    pressure_angle_extremes,
+    profile_radius,
+    reach_extremes,
+    undercut,
+)
 from tests.oracles.differences import derivative
 
 ROLLERS = ("translating_roller", "offset_roller", "oscillating_roller")
@@ -128,8 +136,8 @@ def test_worst_points_bound_a_fine_grid(kind: str) -> None:
         assert worst.greatest >= found.max() - 1e-12
         assert worst.largest == pytest.approx(np.abs(found).max(), abs=1e-5)
         curvature = cam.pitch_curvature(grid)
-        assert 1.0 / cam.least_convex_radius >= curvature.max() * (1.0 - 1e-12)
-        assert 1.0 / cam.least_convex_radius == pytest.approx(curvature.max(), rel=1e-4)
+        assert 1.0 / least_convex_radius(cam) >= curvature.max() * (1.0 - 1e-12)
+        assert 1.0 / least_convex_radius(cam) == pytest.approx(curvature.max(), rel=1e-4)
 
 
 def test_face_width_of_a_translating_face_is_the_range_of_the_velocity() -> None:
@@ -151,7 +159,7 @@ def test_cutters_touch_where_the_roller_does() -> None:
     cam = sound_cam(np.random.default_rng(6), "offset_roller")
     angles = even_angles(12)
     for radius in (0.1, 0.3, 2.0):
-        assert np.abs(cam.cutter_path(angles, radius) - cam.profile(angles)) == pytest.approx(np.full(12, radius))
+        assert np.abs(cutter_path(cam, angles, radius) - cam.profile(angles)) == pytest.approx(np.full(12, radius))
     assert np.abs(cam.outer_wall(angles) - cam.profile(angles)) == pytest.approx(np.full(12, 2.0 * cam.roller_radius))
 
 
@@ -168,25 +176,25 @@ def test_largest_cutter_just_fits_the_hollow() -> None:
     where = cam.pitch_curvature_extremes.at_least
     near = cam.profile(where + np.linspace(-0.05, 0.05, 401))
     for scale, clear in ((0.98, True), (1.02, False)):
-        centre = cam.cutter_path(where, scale * radius)
+        centre = cutter_path(cam, where, scale * radius)
         assert bool((np.abs(near - centre) >= scale * radius * (1.0 - 1e-9)).all()) is clear
 
 
 def test_undercut_begins_where_the_pitch_curve_is_as_sharp_as_the_roller() -> None:
     program = double_dwell(1.0)
-    radius = Cam(program, TranslatingRoller(1.5, 0.0)).least_convex_radius
-    assert not Cam(program, TranslatingRoller(1.5, radius * (1.0 - 1e-6))).undercut
-    assert Cam(program, TranslatingRoller(1.5, radius)).undercut
+    radius = least_convex_radius(Cam(program, TranslatingRoller(1.5, 0.0)))
+    assert not undercut(Cam(program, TranslatingRoller(1.5, radius * (1.0 - 1e-6))))
+    assert undercut(Cam(program, TranslatingRoller(1.5, radius)))
     curve = program.peaks[2].least
-    assert Cam(program, TranslatingFlat(0.5)).undercut
-    assert not Cam(program, TranslatingFlat(1.0 - curve)).undercut
+    assert undercut(Cam(program, TranslatingFlat(0.5)))
+    assert not undercut(Cam(program, TranslatingFlat(1.0 - curve)))
 
 
 def test_dwell_alone_is_a_circle() -> None:
     cam = Cam(Program([dwell(TURN, 0.0)]), TranslatingRoller(2.0, 0.5, offset=0.3))
     assert np.abs(cam.profile(even_angles(7))) == pytest.approx(np.full(7, 1.5))
-    assert not cam.undercut
-    assert cam.least_convex_radius == pytest.approx(2.0)
+    assert not undercut(cam)
+    assert least_convex_radius(cam) == pytest.approx(2.0)
     assert largest_cutter(cam) == math.inf
     flat = Cam(Program([dwell(TURN, 0.0)]), TranslatingFlat(2.0))
     assert reach_extremes(flat).largest == 0.0

@@ -15,7 +15,7 @@ from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from tests.cases import Case, cases
 from tests.kinematics.cam.stating import NAMES, program_of, segment_of
-from tests.oracles.cam_formulas import pressure_angle_extremes, reach_extremes
+from tests.oracles.cam_formulas import pressure_angle_extremes, reach_extremes, undercut
 
 DEGREE = math.pi / 180.0
 
@@ -38,7 +38,7 @@ def test_roller_followers(case: Case) -> None:
         phi_abs=angle.largest / DEGREE,
         within_limit=angle.largest / DEGREE <= x.get("phi_limit_deg", 90.0),
         rho_min_abs=1.0 / curvature.largest,
-        undercut=cam.undercut,
+        undercut=undercut(cam),
     )
 
 
