@@ -172,7 +172,7 @@ class JobStore:
                 broken = broken or getattr(error, "connection_invalidated", False)
                 if asked_at is None or not (broken and unreachable(error)) or time.monotonic() > asked_at + SETTLE_S:
                     raise
-                time.sleep(_SETTLE_PERIOD_S)
+                time.sleep(_SETTLE_PERIOD_S)  # the database is being started again
 
     def _made_by(self, tenant: str, repeatable: Repeatable) -> JobRow | None:
         query = select(*WHOLE, jobs.c.request_hash).where(

@@ -205,7 +205,7 @@ def import_core_only():
 
     def load():
         with IMPORTS:
-            import synthesis.analyses  # noqa: F401
+            import synthesis.analyses  # noqa: F401  (for its loading alone)
 
     analyst.warm_up = load
 
