@@ -8,7 +8,7 @@ from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
-from synthesis.registry import KINDS, parse_problem
+from synthesis.registry import KINDS
 
 __all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
 
@@ -40,7 +40,8 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
 
 def warm_up() -> None:
     """Compile the kernels of the most usual jobs, or load them from their cache; the rest is :func:`warm_up_rest`."""
-    solve(parse_problem(KINDS["motion"].examples[0]))
+    motion = KINDS["motion"]
+    solve(motion.problem.model_validate(motion.examples[0]))
 
 
 def warm_up_rest() -> None:
@@ -57,4 +58,4 @@ def warm_up_kind(name: str) -> None:
         kind.warm_up()
         return
     for statement in kind.examples:
-        solve(parse_problem(statement))
+        solve(kind.problem.model_validate(statement))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Union
 
-from pydantic import Discriminator, Tag, TypeAdapter
+from pydantic import ConfigDict, Discriminator, Tag, TypeAdapter
 
 from synthesis.kinds import (
     cam,
@@ -83,4 +83,4 @@ def example(kind: str) -> dict[str, Any]:
     return examples(kind)[0]
 
 
-_PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem)
+_PROBLEM: TypeAdapter[Problem] = TypeAdapter(Problem, config=ConfigDict(defer_build=True))

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import httpx
@@ -11,7 +12,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
 from tests.cluster.engines import free_port
-from tests.service.running import SCRIPTED, START_S, STOP_S, environment, until, workers_of
+from tests.service.running import SCRIPTED, STACKS, START_S, STOP_S, environment, until, workers_of
 
 
 class Process:
@@ -97,6 +98,18 @@ class Deployment:
 
     def unfinished(self):
         return [job for job in self.jobs() if job[2] in ("queued", "running")]
+
+    def finish(self, within_s):
+        """Wait for the end of all jobs. Where it does not come, the failure tells where all processes stand."""
+        try:
+            until(lambda: not self.unfinished(), within_s, "the end of all jobs")
+        except AssertionError as late:
+            for process in (*self.hosts, *self.servers):
+                for pid in (process.process.pid, *process.children()):
+                    signal_quietly(pid, STACKS)
+            time.sleep(2.0)  # they write; nobody says when it is done
+            left = [(job[0], job[1], job[2], job[4]) for job in self.unfinished()]
+            raise AssertionError(f"{late}; {len(left)} are left: {left[:20]}\n{self.log()[-60_000:]}") from None
 
     def stop(self):
         for client in self.clients:

@@ -29,7 +29,7 @@ def deployed(shared):
     """The deployment with all its processes, whatever a test before has left."""
     (shared.folder / "open").touch()
     shared.complete()
-    until(lambda: not shared.unfinished(), 120.0, "the end of the jobs before")
+    shared.finish(120.0)
     return shared
 
 
@@ -233,7 +233,7 @@ def test_connections_that_break_in_a_commit_make_one_job_each(deployed):
     finally:
         done.set()
         cutting.join(10)
-    until(lambda: not deployed.unfinished(), 120.0, "the end of all jobs")
+    deployed.finish(120.0)
     rows = deployed.jobs()
     assert set(accepted) <= {row[0] for row in rows}
     assert len(accepted) == len(set(accepted))

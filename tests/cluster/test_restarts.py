@@ -37,7 +37,7 @@ def test_nothing_acknowledged_is_lost_when_the_engines_are_restarted(tmp_path):
                 engine = CHOSEN.postgres if which == "store" else CHOSEN.broker
                 # Every other time it is broken off: PostgreSQL then recovers from its log.
                 engine.restart(signal.SIGTERM if n % 2 else signal.SIGQUIT if which == "store" else signal.SIGKILL)
-        until(lambda: not deployment.unfinished(), 180.0, "the end of all jobs")
+        deployment.finish(180.0)
         became = verdict(load.accepted, deployment.jobs())
         print(
             f"\n{CHOSEN.name}: {STORE_RESTARTS} restarts of PostgreSQL and {BROKER_RESTARTS} of the broker in "

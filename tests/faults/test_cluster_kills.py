@@ -47,7 +47,7 @@ def test_no_job_is_lost_or_doubled_or_wrong(tmp_path):
                 killed[what] += 1
                 process.start()
                 until(process.ready, 4 * START_S, f"{process.name} again")
-        until(lambda: not deployment.unfinished(), 300.0, "the end of all jobs")
+        deployment.finish(300.0)
         jobs = deployment.jobs()
         became = verdict(load.accepted, jobs)
         print(

@@ -15,6 +15,8 @@ from tests.cluster.backend import CHOSEN
 ROOT = Path(__file__).parents[2]
 REAL = ("-m", "service.cli")
 SCRIPTED = (str(Path(__file__).with_name("scripted_server.py")),)
+STACKS = signal.SIGUSR1
+"""A scripted process writes the stacks of its threads to its log when it gets this signal."""
 START_S = 240.0  # the first start ever compiles the kernels, and a machine may be very busy
 STOP_S = 60.0  # how long it takes in good health is for the tests of that; a machine may be ten times as busy
 REACHED_S = 120.0  # a worker may have to be started first

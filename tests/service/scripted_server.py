@@ -4,6 +4,7 @@ The worker processes import the main module of the server again, so this script 
 """
 
 import ctypes
+import faulthandler
 import os
 import signal
 import sys
@@ -18,6 +19,8 @@ from synthesis.model.answer import Result, Search
 INSTANT, NATIVE, GREEDY, BROKEN, DIES_ONCE, GATED, STEPS, PYTHON, NUMBA, LAPACK, CONVEX = range(100, 111)
 BRIEF, TOLD = 10_000, 20_000
 """From these seeds on a job takes 20 ms; or until the store has its progress."""
+
+faulthandler.register(signal.SIGUSR1)
 
 progress_is_stored = threading.Event()
 
