@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.segments import Condition, polynomial_segment
 from synthesis.kinds.cam.joints import END_RATES, polynomial_ends
-from synthesis.kinds.cam.problem import Law
+from synthesis.kinds.cam.segments import Law
 from synthesis.registry import KINDS, parse_problem
 
 DOUBLE_DWELL = KINDS["cam"].problem.model_config["json_schema_extra"]["examples"][0]

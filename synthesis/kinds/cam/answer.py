@@ -23,7 +23,9 @@ from synthesis.kinds.cam.design import (
     CamSegment,
     Optimality,
 )
-from synthesis.kinds.cam.problem import BarrelRoller, CamProblem, Move
+from synthesis.kinds.cam.followers import BarrelRoller
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
 from synthesis.outcome.sifting import Sifting
 

@@ -21,8 +21,9 @@ from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barre
 from synthesis.kinds.cam.composition import Composition, least_pitch_radius
 from synthesis.kinds.cam.critical import smallest_allowed
 from synthesis.kinds.cam.design import BarrelCamDesign, BarrelCamMechanism, BarrelMetrics, CamResult
+from synthesis.kinds.cam.followers import BarrelRoller
 from synthesis.kinds.cam.mechanism import barrel_mechanism, profile_angles, refined
-from synthesis.kinds.cam.problem import BarrelRoller, CamProblem
+from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import REPRODUCED, reported
 from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import MARGIN, MAX_RADIUS, Size

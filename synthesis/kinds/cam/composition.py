@@ -22,8 +22,10 @@ from kinematics.cam.pieces import Motion, Pieces
 from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import Condition as PolynomialCondition
 from kinematics.cam.segments import Segment, dwell, knot_segment, law_segment, polynomial_segment
+from synthesis.kinds.cam.followers import BarrelRoller, LengthRange, TranslatingFlat, TranslatingRoller
 from synthesis.kinds.cam.joints import END_RATES, State, law_ends
 from synthesis.kinds.cam.knots import KnotMotion
+from synthesis.kinds.cam.limits import CamLimits
 from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (
     STEPS,
@@ -37,17 +39,8 @@ from synthesis.kinds.cam.optimal import (
     best_roller_size,
     best_torque,
 )
-from synthesis.kinds.cam.problem import (
-    BarrelRoller,
-    CamLimits,
-    CamProblem,
-    Dwell,
-    LengthRange,
-    Move,
-    Polynomial,
-    TranslatingFlat,
-    TranslatingRoller,
-)
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Dwell, Move, Polynomial
 from synthesis.model.kind import Progress
 
 ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
@@ -125,8 +118,8 @@ def compose(
     ``grids`` is as for the convex program of least size; ``progress`` is called before each program, with fractions
     within ``reach``.
     """
-    heights = problem.heights()
-    ends = problem.ends()
+    heights = problem.program.heights()
+    ends = problem.program.ends()
     segments: list[Segment | None] = []
     names: list[str] = []
     for stated, (start, end), pair in zip(problem.segments, heights, ends, strict=True):
@@ -134,7 +127,9 @@ def compose(
         if isinstance(stated, Dwell):
             segments.append(dwell(angle, start))
         elif isinstance(stated, Polynomial):
-            conditions = [PolynomialCondition(*condition) for condition in problem.polynomial_conditions(stated)]
+            conditions = [
+                PolynomialCondition(*condition) for condition in problem.program.polynomial_conditions(stated)
+            ]
             segments.append(polynomial_segment(angle, conditions))
         elif pair is None:
             segments.append(None)
@@ -423,7 +418,7 @@ def _run(
                 conditions.append(Condition.at(begin, 1, 0.0))
         stated = problem.segments[k]
         assert isinstance(stated, Move)
-        conditions += [Condition.at(begin + at, i, x) for at, i, x in problem.polynomial_conditions(stated)]
+        conditions += [Condition.at(begin + at, i, x) for at, i, x in problem.program.polynomial_conditions(stated)]
         for band in stated.bands:
             span = begin + math.radians(band.start), min(begin + math.radians(band.end), end)
             if band.upper is not None:
@@ -526,7 +521,7 @@ def _smallest(
     for segment in given:
         for k, sign in ((rising, 1), (falling, -1)):
             rest_rows.append((k, sign, _range_of(segment, _room(k, sign))[0]))
-    lowest = min(min(pair) for pair in problem.heights())
+    lowest = min(min(pair) for pair in problem.program.heights())
     rest_rows += [(min(rising, falling), sign, min(rising, falling) * lowest) for sign in (1, -1)]
     offset = None if problem.follower.offset == "free" else float(problem.follower.offset)
     return best_roller_size(runs, [(rising, falling)] * len(runs), offset, rest_rows, grids, on_grid=on_grid)
@@ -581,7 +576,7 @@ def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
 
 def least_face_radius(problem: CamProblem) -> float:
     """Least radius of curvature of a cam under a flat face: the client's, or as little as is not an edge."""
-    heights = [height for pair in problem.heights() for height in pair]
+    heights = [height for pair in problem.program.heights() for height in pair]
     travel = max(heights) - min(heights)
     reach = getattr(problem.follower, "pivot_distance", 1.0)
     return max(problem.limits.min_radius, EDGE * travel * reach)

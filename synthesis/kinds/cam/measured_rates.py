@@ -19,8 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.cam.problem import CamProblem, Move
+from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import reported
+from synthesis.kinds.cam.segments import Move
 from synthesis.model.answer import Check
 from synthesis.model.dimension import Dimension
 
@@ -123,7 +124,7 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
 def _open_segments(problem: CamProblem, measure: Measure) -> Iterator[_Open]:
     """Automatic and optimal segments, each measured on its own grid."""
     start = 0.0
-    for index, (segment, heights) in enumerate(zip(problem.segments, problem.heights(), strict=True)):
+    for index, (segment, heights) in enumerate(zip(problem.segments, problem.program.heights(), strict=True)):
         span = math.radians(segment.angle)
         if isinstance(segment, Move) and segment.follows_criterion:
             s, v = measure(start + span * np.arange(GRID + 1) / GRID)
@@ -135,7 +136,7 @@ def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) 
     """How far the measured displacement is from ends, conditions and bands."""
     unit = problem.displacement_unit
     stated = [(0.0, part.heights[0]), (part.span, part.heights[1])]
-    stated += [(t, x) for t, order, x in problem.polynomial_conditions(part.segment) if order == 0]
+    stated += [(t, x) for t, order, x in problem.program.polynomial_conditions(part.segment) if order == 0]
     at, value = (np.array(column) for column in zip(*stated, strict=True))
     off = float(np.abs(measure(part.start + at)[0] - value).max())
     grid = part.span * np.arange(GRID + 1) / GRID
@@ -152,7 +153,7 @@ def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) 
 
 def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: int) -> float | None:
     """How far a measured rate is from its conditions, as a share of the segment's peak; None without a condition."""
-    stated = [(t, x) for t, of, x in problem.polynomial_conditions(part.segment) if of == order]
+    stated = [(t, x) for t, of, x in problem.program.polynomial_conditions(part.segment) if of == order]
     if not stated:
         return None
     at, value = (np.array(column) for column in zip(*stated, strict=True))

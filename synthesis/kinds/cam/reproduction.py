@@ -17,7 +17,8 @@ from kinematics.cam.program import TURN
 from kinematics.cam.segments import Condition, dwell, law_segment, polynomial_segment
 from synthesis.kinds.cam.design import ProgramTable
 from synthesis.kinds.cam.mechanism import table_angles
-from synthesis.kinds.cam.problem import CamProblem, Dwell, Move, Polynomial
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Dwell, Move, Polynomial
 from synthesis.model.answer import Check
 from synthesis.model.dimension import ACCELERATION, JERK, VELOCITY
 from synthesis.proof.checks import at_most, tolerated
@@ -143,7 +144,7 @@ def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> l
     worst, start = 0.0, 0.0
     # Limits on the motion are those of automatic and optimal segments: the others are as the client states them.
     limited = np.zeros(len(angle), dtype=bool)
-    for segment, (low, high) in zip(problem.segments, problem.heights(), strict=True):
+    for segment, (low, high) in zip(problem.segments, problem.program.heights(), strict=True):
         span = math.radians(segment.angle)
         end = start + span
         inside = (angle >= start - ANGLE_TOLERANCE) & (angle <= end + ANGLE_TOLERANCE)
@@ -155,7 +156,7 @@ def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> l
         if isinstance(segment, Dwell):
             exact = dwell(span, low)
         elif isinstance(segment, Polynomial):
-            exact = polynomial_segment(span, [Condition(*c) for c in problem.polynomial_conditions(segment)])
+            exact = polynomial_segment(span, [Condition(*c) for c in problem.program.polynomial_conditions(segment)])
         else:
             law = segment.law if isinstance(segment, Move) else "constant_velocity"
             exact = law_segment(LAWS[law], span, low, high)

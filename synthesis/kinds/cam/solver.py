@@ -24,17 +24,17 @@ from synthesis.kinds.cam.composition import (
     roller_radius_range,
 )
 from synthesis.kinds.cam.design import CamDesign, CamMetrics, CamResult
-from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles, refined
-from synthesis.kinds.cam.optimal import STEPS
-from synthesis.kinds.cam.problem import (
+from synthesis.kinds.cam.followers import (
     BarrelRoller,
-    CamProblem,
     LengthRange,
     OscillatingFlat,
     OscillatingRoller,
     TranslatingFlat,
     TranslatingRoller,
 )
+from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles, refined
+from synthesis.kinds.cam.optimal import STEPS
+from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import REPRODUCED
 from synthesis.kinds.cam.resolution import resolved
 from synthesis.kinds.cam.sizing import (

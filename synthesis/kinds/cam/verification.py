@@ -19,9 +19,11 @@ from kinematics.cam.contact import Contour
 from kinematics.cam.follower import Follower
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.kinds.cam.design import CamMechanism
+from synthesis.kinds.cam.followers import OscillatingRoller, TranslatingRoller
+from synthesis.kinds.cam.limits import CamLimits
 from synthesis.kinds.cam.measured_rates import rate_checks
 from synthesis.kinds.cam.mechanism import core_follower, points_of
-from synthesis.kinds.cam.problem import CamLimits, CamProblem, OscillatingRoller, TranslatingRoller
+from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import FINER, TABLE_SLACK, Reproduction, reported
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import ANGLE, LENGTH

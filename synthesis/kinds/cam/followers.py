@@ -1,0 +1,137 @@
+"""Followers of a cam: their dimensions, and their mass and spring."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field
+
+from synthesis.model.dimension import FORCE, MASS, STIFFNESS
+from synthesis.model.statement import (
+    Contradiction,
+    Coordinate,
+    NonNegative,
+    PositiveLength,
+    PositiveNumber,
+    Statement,
+)
+
+
+class LengthRange(Statement):
+    """A dimension that is free between two lengths."""
+
+    min: PositiveLength
+    max: PositiveLength
+
+
+class TranslatingRoller(Statement):
+    """A roller on a slide. Without a prime radius the smallest sound one is found."""
+
+    type: Literal["translating_roller"]
+    roller_radius: PositiveLength | LengthRange = Field(
+        description="Radius, or a range: the largest that fits is taken."
+    )
+    offset: Coordinate | Literal["free"] = Field(
+        default=0.0,
+        description="Distance of the slide from the cam's centre; positive lowers the rise's pressure angle.",
+    )
+    prime_radius: PositiveLength | None = None
+
+
+class OscillatingRoller(Statement):
+    """A roller on a swinging arm; lifts are degrees of the arm."""
+
+    type: Literal["oscillating_roller"]
+    roller_radius: PositiveLength | LengthRange = Field(
+        description="Radius, or a range: the largest that fits is taken."
+    )
+    arm: PositiveLength = Field(description="From the pivot to the roller's centre.")
+    pivot_distance: PositiveLength | LengthRange = Field(description="From the cam's centre to the pivot, or a range.")
+    sense: Literal[1, -1] = Field(
+        default=1, description="1: the arm swings outward in the sense in which the cam turns; -1: against it."
+    )
+    prime_radius: PositiveLength | None = None
+
+
+class TranslatingFlat(Statement):
+    """A flat face on a slide, square to its motion. Without a base radius the smallest sound one is found."""
+
+    type: Literal["translating_flat"]
+    base_radius: PositiveLength | None = None
+
+
+class OscillatingFlat(Statement):
+    """A flat face on a swinging arm; lifts are degrees of the arm."""
+
+    type: Literal["oscillating_flat"]
+    pivot_distance: PositiveLength
+    face_offset: Coordinate = Field(
+        default=0.0, description="Distance of the face from the pivot, positive toward the cam."
+    )
+    sense: Literal[1, -1] = 1
+    base_radius: PositiveLength | None = None
+
+
+class BarrelRoller(Statement):
+    """A roller in the groove of a barrel (cylindrical) cam, moving along its axis; the groove's two walls guide it."""
+
+    type: Literal["barrel_roller"]
+    roller_radius: PositiveLength
+    cylinder_radius: PositiveLength | None = Field(
+        default=None, description="Of the cylinder on which the roller's middle runs; null: the smallest sound one."
+    )
+
+
+Follower = Annotated[
+    TranslatingRoller | OscillatingRoller | TranslatingFlat | OscillatingFlat | BarrelRoller, Discriminator("type")
+]
+
+
+class FollowerDynamics(Statement):
+    """The follower as one mass on a spring. Newton, kilogram and the length unit; pound-force and lbf s²/in for inches.
+
+    For an oscillating follower all is taken at its arm's end: effective mass and spring at the roller.
+    """
+
+    mass: Annotated[PositiveNumber, MASS]
+    spring_rate: Annotated[NonNegative, STIFFNESS] = Field(default=0.0, description="Force per length unit.")
+    damping_ratio: NonNegative = Field(default=0.0, description="Share of critical damping of mass and spring.")
+    preload: Annotated[NonNegative, FORCE] | None = Field(
+        default=None, description="Spring force at zero displacement; null: the least."
+    )
+    least_force: Annotated[NonNegative, FORCE] = Field(
+        default=0.0, description="Contact force that must always be left."
+    )
+
+
+def follower_contradictions(follower: Follower) -> list[Contradiction]:
+    """Dimensions of a follower that contradict one another."""
+    contradictions = []
+    for name in ("roller_radius", "pivot_distance"):
+        stated = getattr(follower, name, None)
+        if isinstance(stated, LengthRange) and stated.min >= stated.max:
+            contradictions.append(Contradiction(f"/follower/{name}/max", "must be above min"))
+    if isinstance(follower, TranslatingRoller | OscillatingRoller) and follower.prime_radius is not None:
+        radius = follower.roller_radius
+        least = radius.min if isinstance(radius, LengthRange) else radius
+        if follower.prime_radius <= least:
+            contradictions.append(Contradiction("/follower/prime_radius", "must be larger than the roller"))
+        if isinstance(follower, TranslatingRoller):
+            offset = follower.offset
+            if offset == "free":
+                detail = "a free offset needs a free prime radius; leave the prime radius out or state the offset"
+                contradictions.append(Contradiction("/follower/offset", detail))
+            elif abs(offset) >= follower.prime_radius:
+                contradictions.append(Contradiction("/follower/offset", "must be less than the prime radius"))
+        elif isinstance(follower.pivot_distance, LengthRange):
+            detail = "a free pivot needs a free prime radius; leave the prime radius out or state the pivot"
+            contradictions.append(Contradiction("/follower/pivot_distance", detail))
+        else:
+            arm, pivot = follower.arm, follower.pivot_distance
+            if not abs(pivot - arm) < follower.prime_radius < pivot + arm:
+                contradictions.append(Contradiction("/follower/prime_radius", "arm and pivot distance do not reach it"))
+    if isinstance(follower, OscillatingFlat):
+        reach = (follower.base_radius or 0.0) + follower.face_offset
+        if reach >= follower.pivot_distance:
+            contradictions.append(Contradiction("/follower/pivot_distance", "must exceed base radius and face offset"))
+    return contradictions

@@ -1,0 +1,45 @@
+"""Limits within which a cam is sound."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, VELOCITY
+from synthesis.model.statement import NonNegative, PositiveLength, PositiveNumber, Sizable, Statement
+
+LimitAngle = Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=85.0), Sizable]
+
+
+class CamLimits(Statement):
+    """What a sound cam keeps."""
+
+    pressure_angle: LimitAngle = Field(
+        default=30.0, description="Greatest pressure angle of a roller follower, degrees."
+    )
+    pressure_angle_fall: LimitAngle | None = Field(
+        default=None, description="Another limit while falling, where a spring and not the cam drives; degrees."
+    )
+    curvature_ratio: NonNegative = Field(
+        default=2.0, description="Least radius of curvature of the pitch curve over the roller radius (Norton: 2 to 3)."
+    )
+    min_radius: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0,
+        description="Least radius of curvature of the cam under a flat face; a fiftieth of the travel at least.",
+    )
+    face_width: PositiveLength | None = Field(default=None, description="Length that the contact may sweep on a face.")
+    hub_radius: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The base circle is at least as large.")
+    size: PositiveLength | None = Field(
+        default=None, description="Greatest prime radius (roller) or base radius (face)."
+    )
+    velocity: Annotated[PositiveNumber, VELOCITY] | None = Field(
+        default=None, description="Peak of every optimal or automatic motion."
+    )
+    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = None
+    jerk: Annotated[PositiveNumber, JERK] | None = None
+
+    @property
+    def falling_pressure_angle(self) -> float:
+        """The limit while falling, degrees: that of the rise where none is stated."""
+        return self.pressure_angle_fall or self.pressure_angle

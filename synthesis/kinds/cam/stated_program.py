@@ -1,0 +1,181 @@
+"""The motion program as it is stated: where each segment begins and ends, and what contradicts itself there.
+
+Written without any library, because a statement is checked where it comes in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from synthesis.kinds.cam.joints import Conditions, State, law_ends, polynomial_ends
+from synthesis.kinds.cam.segments import ConstantVelocity, DisplacementBand, Dwell, Move, Polynomial, Segment
+from synthesis.model.statement import Contradiction
+
+WHOLE_TURN = 1e-7
+"""Degrees by which the segments may miss a full turn: rounding of angles like 360/7."""
+
+SMOOTH = 1e-6
+"""Jump at a joint, relative to the segments' own rates, up to which it is continuous."""
+
+
+@dataclass(frozen=True)
+class StatedProgram:
+    """Segments that follow one another, with the unit of their displacements.
+
+    ``displacement_unit`` times a stated displacement is the solver's: radians of an arm, or lengths.
+    """
+
+    segments: Sequence[Segment]
+    displacement_unit: float
+
+    def polynomial_conditions(self, segment: Polynomial | Move) -> Conditions:
+        """A segment's conditions in radians and the solver's displacements."""
+        unit = self.displacement_unit
+        return [
+            (math.radians(condition.angle), order, value * (unit if order == 0 else 1.0))
+            for condition in segment.conditions
+            for order, value in condition.values()
+        ]
+
+    def heights(self) -> list[tuple[float, float]]:
+        """Displacement at start and end of each segment, in the solver's unit; the first begins at zero.
+
+        A polynomial begins and ends where its conditions put it.
+        """
+        heights = []
+        at = 0.0
+        for segment in self.segments:
+            end = at
+            if isinstance(segment, Polynomial):
+                ends = polynomial_ends(math.radians(segment.angle), self.polynomial_conditions(segment))
+                at, end = (at, at) if ends is None else (ends[0][0], ends[1][0])
+            elif isinstance(segment, ConstantVelocity):
+                end = at + segment.lift * self.displacement_unit
+            elif isinstance(segment, Move):
+                lift = at if segment.lift is None else segment.lift * self.displacement_unit
+                end = at + lift if segment.motion == "rise" else at - lift
+            heights.append((at, end))
+            at = end
+        return heights
+
+    def ends(self) -> list[tuple[State, State] | None]:
+        """s, v, a at both ends of each segment; None for automatic and optimal motions, which follow others."""
+        ends: list[tuple[State, State] | None] = []
+        for segment, (start, end) in zip(self.segments, self.heights(), strict=True):
+            angle = math.radians(segment.angle)
+            if isinstance(segment, Polynomial):
+                ends.append(polynomial_ends(angle, self.polynomial_conditions(segment)))
+            elif isinstance(segment, ConstantVelocity):
+                ends.append(law_ends("constant_velocity", angle, start, end))
+            elif isinstance(segment, Dwell):
+                ends.append(((start, 0.0, 0.0), (end, 0.0, 0.0)))
+            elif segment.follows_criterion:
+                ends.append(None)
+            else:
+                ends.append(law_ends(segment.law, angle, start, end))
+        return ends
+
+    def segment_contradictions(self) -> list[Contradiction]:
+        """Faults within a segment."""
+        contradictions = []
+        heights = self.heights()
+        for k, segment in enumerate(self.segments):
+            where = f"/segments/{k}"
+            if isinstance(segment, Move):
+                if segment.lift is None and segment.motion != "return":
+                    contradictions.append(Contradiction(f"{where}/lift", f"a {segment.motion} needs a lift"))
+                elif segment.lift is None and heights[k][0] <= 0.0:
+                    contradictions.append(
+                        Contradiction(f"{where}/lift", "there is nothing to return from; state a lift")
+                    )
+                for name in ("conditions", "bands"):
+                    if getattr(segment, name) and segment.law != "optimal":
+                        contradictions.append(Contradiction(f"{where}/{name}", "only an optimal motion can meet them"))
+                for n, band in enumerate(segment.bands):
+                    contradictions += _band_faults(f"{where}/bands/{n}", band, segment.angle)
+            if isinstance(segment, Move | Polynomial):
+                for n, condition in enumerate(segment.conditions):
+                    inner = isinstance(segment, Move)
+                    if condition.angle > segment.angle or (inner and condition.angle in (0.0, segment.angle)):
+                        detail = f"must lie within the segment's {segment.angle:g} degrees"
+                        contradictions.append(Contradiction(f"{where}/conditions/{n}/angle", detail))
+                    if not condition.values():
+                        contradictions.append(
+                            Contradiction(f"{where}/conditions/{n}", "states nothing; give s, v, a or j")
+                        )
+            if isinstance(segment, Polynomial) and not contradictions:
+                conditions = self.polynomial_conditions(segment)
+                if polynomial_ends(math.radians(segment.angle), conditions) is None:
+                    contradictions.append(Contradiction(f"{where}/conditions", "do not determine one polynomial"))
+        if not contradictions and not any(_moves(segment) for segment in self.segments):
+            contradictions.append(Contradiction("/segments", "the follower never moves; state a rise"))
+        return contradictions
+
+    def joint_contradictions(self, accept_discontinuity: bool) -> list[Contradiction]:
+        """Segments that do not make one turn, or that do not meet as a cam's program must."""
+        return [*self._turn(), *self._joints(accept_discontinuity)]
+
+    def _turn(self) -> list[Contradiction]:
+        total = math.fsum(segment.angle for segment in self.segments)
+        if abs(total - 360.0) > WHOLE_TURN:
+            return [Contradiction("/segments", f"the angles add up to {total:.12g} degrees; they must make one turn")]
+        return []
+
+    def _joints(self, accept_discontinuity: bool) -> list[Contradiction]:
+        """Joints where s jumps, or v or a without being accepted."""
+        heights, ends = self.heights(), self.ends()
+        travel = max(abs(b - a) for a, b in heights) or max(abs(a) for a, _ in heights) or 1.0
+        least = min(math.radians(segment.angle) for segment in self.segments)
+        contradictions = []
+        for k, segment in enumerate(self.segments):
+            n = (k + 1) % len(self.segments)
+            following = self.segments[n]
+            joint = f"where segment {n} ({following.motion}) follows segment {k} ({segment.motion})"
+            gap = heights[n][0] - heights[k][1]
+            if abs(gap) > SMOOTH * travel:
+                hint = "; the program must come back to where it began" if n == 0 else ""
+                gap /= self.displacement_unit
+                contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
+                continue
+            before, after = ends[k], ends[n]
+            if accept_discontinuity or before is None or after is None:
+                continue
+            for order, name in ((1, "velocity"), (2, "acceleration")):
+                jump = after[0][order] - before[1][order]
+                if abs(jump) > SMOOTH * travel / least**order:
+                    law = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
+                    contradictions.append(Contradiction(f"/segments/{n}", f"{name} jumps by {jump:.6g} {joint}, {law}"))
+                    break
+        if not contradictions and not accept_discontinuity:
+            contradictions += self._inner_jumps()
+        return contradictions
+
+    def _inner_jumps(self) -> list[Contradiction]:
+        """Laws whose acceleration jumps in their middle."""
+        return [
+            Contradiction(
+                f"/segments/{k}/law", f"the acceleration of {segment.law} jumps; accept_discontinuity takes it"
+            )
+            for k, segment in enumerate(self.segments)
+            if isinstance(segment, Move) and segment.law == "constant_acceleration"
+        ]
+
+
+def _band_faults(where: str, band: DisplacementBand, angle: float) -> list[Contradiction]:
+    if band.lower is None and band.upper is None:
+        return [Contradiction(where, "states no bound; give lower or upper")]
+    if not band.start < band.end <= angle:
+        return [Contradiction(f"{where}/end", f"must be after start and within the segment's {angle:g} degrees")]
+    if band.lower is not None and band.upper is not None and band.lower > band.upper:
+        return [Contradiction(f"{where}/upper", "must not be below lower")]
+    return []
+
+
+def _moves(segment: Segment) -> bool:
+    """Whether the follower moves in a segment; the polynomial of least degree through one value is that value."""
+    if isinstance(segment, Polynomial):
+        stated = [pair for condition in segment.conditions for pair in condition.values()]
+        return len({value for order, value in stated if order == 0}) > 1 or any(x for order, x in stated if order)
+    return isinstance(segment, Move) or (isinstance(segment, ConstantVelocity) and segment.lift != 0.0)
