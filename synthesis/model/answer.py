@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Generic, Self, TypeVar
+from typing import Annotated, Any, Generic, Self, TypeVar
 
 from pydantic import ConfigDict, Field
 
@@ -17,9 +17,13 @@ class Answer(Measured):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def blank(value: object) -> bool:
-    """Whether a field that may be left out is."""
+def _blank(value: object) -> bool:
     return value is None
+
+
+def optional(description: str | None = None) -> Any:
+    """A field of an answer that is left out where it has no value."""
+    return Field(default=None, exclude_if=_blank, description=description)
 
 
 class Check(Answer):
@@ -27,11 +31,9 @@ class Check(Answer):
 
     name: str
     passed: bool
-    value: float | None = Field(default=None, exclude_if=blank)
-    limit: float | None = Field(default=None, exclude_if=blank)
-    dimension: Dimension | None = Field(
-        default=None, exclude_if=blank, description="What value and limit measure; left out for a pure number."
-    )
+    value: float | None = optional()
+    limit: float | None = optional()
+    dimension: Dimension | None = optional("What value and limit measure; left out for a pure number.")
 
 
 class Verification(Answer):

@@ -10,14 +10,11 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Verification, blank
+from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length
 
-_BODY_ANGLE = Field(
-    default=None,
-    exclude_if=blank,
-    description="Angle of the body's line at the first target, absolute, degrees; "
-    "left out where it is the demanded one exactly.",
+_BODY_ANGLE = optional(
+    "Angle of the body's line at the first target, absolute, degrees; left out where it is the demanded one exactly."
 )
 """The same field of every mechanism that carries a body."""
 
@@ -216,17 +213,13 @@ class DrivenTo(Answer):
     """Where the input stands at a target: an input that turns at an angle, one that slides at a place of its line."""
 
     index: int
-    input_angle: Angle | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="Absolute input angle, degrees, continuous along the motion from the first target; "
-        "left out where the input slides.",
+    input_angle: Angle | None = optional(
+        "Absolute input angle, degrees, continuous along the motion from the first target; "
+        "left out where the input slides."
     )
-    input_place: Length | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="Place of an input that slides, along its line from the line's point, length units; "
-        "left out where the input turns.",
+    input_place: Length | None = optional(
+        "Place of an input that slides, along its line from the line's point, length units; "
+        "left out where the input turns."
     )
 
     @property
@@ -245,10 +238,8 @@ class Target(DrivenTo):
         "and the difference to the demanded angle in radians."
     )
     point_residual: Length = Field(description="Distance of P from the demanded point, length units.")
-    angle_residual: Angle | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="Difference of the body's angle to the demanded angle, degrees, where an angle is demanded.",
+    angle_residual: Angle | None = optional(
+        "Difference of the body's angle to the demanded angle, degrees, where an angle is demanded."
     )
 
 
@@ -278,16 +269,10 @@ class LinkageMetrics(MotionMetrics):
 
     same_branch: bool
     visits_in_order: bool
-    input_rotation: Angle | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="Rotation of the input from the first target to the last, degrees; left out where it slides.",
+    input_rotation: Angle | None = optional(
+        "Rotation of the input from the first target to the last, degrees; left out where it slides."
     )
-    input_travel: Length | None = Field(
-        default=None,
-        exclude_if=blank,
-        description="The same of an input that slides, length units; left out where it turns.",
-    )
+    input_travel: Length | None = optional("The same of an input that slides, length units; left out where it turns.")
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
         "angle is demanded, its difference in radians, added in squares."

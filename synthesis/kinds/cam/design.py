@@ -10,7 +10,7 @@ from typing import Any, Generic, Literal, TypeVar
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Search, Verification
+from synthesis.model.answer import Answer, Result, Search, Verification, optional
 from synthesis.model.dimension import (
     Acceleration,
     AccelerationSquared,
@@ -33,12 +33,12 @@ class CamFollower(Answer):
     """The follower and what belongs to its type."""
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
-    roller_radius: Length | None = Field(default=None, exclude_if=_blank)
-    offset: Length | None = Field(default=None, exclude_if=_blank, description="Of a translating roller's slide.")
-    arm: Length | None = Field(default=None, exclude_if=_blank)
-    pivot_distance: Length | None = Field(default=None, exclude_if=_blank)
-    face_offset: Length | None = Field(default=None, exclude_if=_blank)
-    sense: Literal[1, -1] | None = Field(default=None, exclude_if=_blank)
+    roller_radius: Length | None = optional()
+    offset: Length | None = optional("Of a translating roller's slide.")
+    arm: Length | None = optional()
+    pivot_distance: Length | None = optional()
+    face_offset: Length | None = optional()
+    sense: Literal[1, -1] | None = optional()
 
 
 class CamCurve(Answer):
@@ -64,15 +64,11 @@ class CamMechanism(Answer):
 
     type: Literal["cam"] = "cam"
     follower: CamFollower
-    prime_radius: Length | None = Field(default=None, exclude_if=_blank, description="Of a roller follower's cam.")
-    base_radius: Length | None = Field(default=None, exclude_if=_blank, description="Of a flat-faced follower's cam.")
+    prime_radius: Length | None = optional("Of a roller follower's cam.")
+    base_radius: Length | None = optional("Of a flat-faced follower's cam.")
     rotation: Literal["ccw", "cw"]
     profile: CamCurve
-    outer_wall: CamCurve | None = Field(
-        default=None,
-        exclude_if=_blank,
-        description="Of a groove; the profile is its inner wall.",
-    )
+    outer_wall: CamCurve | None = optional("Of a groove; the profile is its inner wall.")
     pitch_curve: CamCurve = Field(description="Path of the roller's centre; the profile itself under a flat face.")
     program: ProgramTable
 
@@ -140,8 +136,8 @@ class Optimality(Answer):
 
     criterion: str
     value: float
-    bound: float | None = Field(default=None, exclude_if=_blank)
-    gap: float | None = Field(default=None, exclude_if=_blank)
+    bound: float | None = optional()
+    gap: float | None = optional()
     scope: str
 
 
@@ -154,12 +150,10 @@ class CamForces(Answer):
     max_contact_force: Force
     min_torque: Torque
     max_torque: Torque
-    wall_changes: list[Angle] | None = Field(
-        default=None, exclude_if=_blank, description="Cam angles at which a roller in a groove changes walls."
-    )
+    wall_changes: list[Angle] | None = optional("Cam angles at which a roller in a groove changes walls.")
     natural_frequency: RadianFrequency = Field(description="Of mass and spring, rad/s.")
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
-    warning: str | None = Field(default=None, exclude_if=_blank)
+    warning: str | None = optional()
 
 
 class CamMetrics(Answer):
@@ -167,18 +161,18 @@ class CamMetrics(Answer):
 
     size: Length = Field(description="Greatest radius of the profile.")
     lift: Displacement
-    max_pressure_angle_rise: Angle | None = Field(default=None, exclude_if=_blank, description="Degrees.")
-    max_pressure_angle_fall: Angle | None = Field(default=None, exclude_if=_blank, description="Degrees.")
+    max_pressure_angle_rise: Angle | None = optional("Degrees.")
+    max_pressure_angle_fall: Angle | None = optional("Degrees.")
     min_convex_radius: Length = Field(description="Least convex radius of curvature of the profile.")
-    min_concave_radius: Length | None = Field(default=None, exclude_if=_blank, description="None where it is convex.")
-    curvature_ratio: float | None = Field(default=None, exclude_if=_blank, description="Pitch curve over roller.")
-    face_width: Length | None = Field(default=None, exclude_if=_blank, description="Length that the contact sweeps.")
+    min_concave_radius: Length | None = optional("None where it is convex.")
+    curvature_ratio: float | None = optional("Pitch curve over roller.")
+    face_width: Length | None = optional("Length that the contact sweeps.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
     peak_jerk: Jerk
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
-    forces: CamForces | None = Field(default=None, exclude_if=_blank)
+    forces: CamForces | None = optional()
 
 
 class BarrelMetrics(Answer):
@@ -196,7 +190,7 @@ class BarrelMetrics(Answer):
     peak_jerk: Jerk
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
-    forces: CamForces | None = Field(default=None, exclude_if=_blank)
+    forces: CamForces | None = optional()
 
 
 Mechanism = TypeVar("Mechanism", CamMechanism, BarrelCamMechanism)

@@ -6,14 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result
+from synthesis.model.answer import Answer, Point, Result, optional
 from synthesis.model.dimension import Angle, Area, Length
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMetrics
-
-
-def nothing(value: object) -> bool:
-    """Whether a field that may be left out is."""
-    return value is None
 
 
 class CognateTriples(Answer):
@@ -33,17 +28,13 @@ class PathMetrics(LinkageMetrics):
     sum_of_squares: Area = Field(description="Of the distances of P from the points, length units squared.")
     rms_distance: Length = Field(description="Root mean square of these distances, length units.")
     max_distance: Length = Field(description="The largest of them, length units.")
-    curve_distance: Length | None = Field(
-        default=None,
-        exclude_if=nothing,
-        description="For curves that are matched as a whole: the largest distance of the traced curve from the "
-        "straight lines through the points, length units.",
+    curve_distance: Length | None = optional(
+        "For curves that are matched as a whole: the largest distance of the traced curve from the "
+        "straight lines through the points, length units."
     )
-    excursion: Length | None = Field(
-        default=None,
-        exclude_if=nothing,
-        description="How much farther the traced curve goes from these lines than max_distance and what a curve may "
-        "bulge between points, a quarter of their distance; length units.",
+    excursion: Length | None = optional(
+        "How much farther the traced curve goes from these lines than max_distance and what a curve may "
+        "bulge between points, a quarter of their distance; length units."
     )
 
 
@@ -76,11 +67,7 @@ class PathDesign(LinkageDesign):
     """A linkage that guides a point, with the proof of what it does."""
 
     metrics: PathMetrics
-    placement: CurvePlacement | None = Field(
-        default=None,
-        exclude_if=nothing,
-        description="For a curve whose place was left free; what is measured, is there.",
-    )
+    placement: CurvePlacement | None = optional("For a curve whose place was left free; what is measured, is there.")
     cognates: list[PathCognate] = Field(default=[], description="The two other fourbars of the same curve.")
     cognate_choice: str = Field(default="", description="What speaks for the design or for a cognate of it.")
 
@@ -120,20 +107,10 @@ class CurveSweep(Answer):
 class PathResult(Result[PathDesign]):
     """Linkages whose coupler point goes through the points."""
 
-    triples: CognateTriples | None = Field(
-        default=None,
-        exclude_if=nothing,
-        description="For up to nine points of free timing; left out where other methods were used.",
+    triples: CognateTriples | None = optional(
+        "For up to nine points of free timing; left out where other methods were used."
     )
-    sweep: CurveSweep | None = Field(
-        default=None, exclude_if=nothing, description="For curves that are matched as a whole."
-    )
-    given_pivots: GivenPivotSolutions | None = Field(
-        default=None, exclude_if=nothing, description="For five points on two given fixed pivots."
-    )
-    family: FamilySearch | None = Field(
-        default=None, exclude_if=nothing, description="For fewer than nine points with demands."
-    )
-    timed: TimedDyads | None = Field(
-        default=None, exclude_if=nothing, description="For five points at their crank angles."
-    )
+    sweep: CurveSweep | None = optional("For curves that are matched as a whole.")
+    given_pivots: GivenPivotSolutions | None = optional("For five points on two given fixed pivots.")
+    family: FamilySearch | None = optional("For fewer than nine points with demands.")
+    timed: TimedDyads | None = optional("For five points at their crank angles.")

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, blank
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length, Output
 from synthesis.model.linkage_answer import (
     FixedPivots,
@@ -77,8 +77,8 @@ class QuickReturnMetrics(MotionMetrics):
     time_ratio: float = Field(description="Slow stroke over fast one, from the measured limit positions.")
     slow_rotation: Angle = Field(description="Crank rotation of the slow stroke, degrees.")
     fast_rotation: Angle = Field(description="Crank rotation of the fast stroke, degrees.")
-    swing: Angle | None = Field(default=None, exclude_if=blank, description="Degrees; of an output that swings.")
-    stroke: Length | None = Field(default=None, exclude_if=blank, description="Length; of an output that slides.")
+    swing: Angle | None = optional("Degrees; of an output that swings.")
+    stroke: Length | None = optional("Length; of an output that slides.")
 
 
 class QuickReturnDesign(Answer):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, blank
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, Skeleton
 
@@ -48,7 +48,7 @@ class SteeringMetrics(Answer):
     min_transmission_angle: Angle = Field(description="Over the whole range, degrees.")
     link_ratio: float = Field(description="Longest link over shortest.")
     size: Length = Field(description="Diagonal of the box around all joints in the straight position.")
-    bar_travel: Length | None = Field(default=None, exclude_if=blank, description="Of Davis's bar, to each side.")
+    bar_travel: Length | None = optional("Of Davis's bar, to each side.")
 
 
 class SteeringDesign(Answer):

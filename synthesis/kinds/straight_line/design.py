@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field
 
 from synthesis.kinds.straight_line.problem import LineMechanism
-from synthesis.model.answer import Answer, Point, Result, Verification, blank
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
 from synthesis.model.linkage_answer import FourbarMechanism, MotionMetrics, Skeleton
 
@@ -59,9 +59,7 @@ class StraightLineMetrics(MotionMetrics):
     middle_velocity: LengthPerRadian = Field(description="The same in the middle of the input's range.")
     input_rotation: Angle = Field(description="Of the input from the line's start to its end, degrees, with its sign.")
     moving_links: int
-    cycle_transmission_angle: Angle | None = Field(
-        default=None, exclude_if=blank, description="Over the whole turn of an input that turns through, degrees."
-    )
+    cycle_transmission_angle: Angle | None = optional("Over the whole turn of an input that turns through, degrees.")
     same_branch: bool
     visits_in_order: bool = Field(description="Whether P runs along the line without turning back.")
 
