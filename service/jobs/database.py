@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 from urllib.parse import unquote, urlsplit
 
-from sqlalchemy import URL, Engine, NullPool, create_engine, event, func, make_url, select
+from sqlalchemy import URL, Connection, Engine, NullPool, create_engine, event, func, make_url, select
 from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, OperationalError, TimeoutError
 
 BUSY_TIMEOUT_S = 10.0
@@ -116,7 +118,7 @@ def _with_driver(url: URL) -> URL:
 
 
 def upgrade(engine: Engine, revision: str = "head") -> None:
-    """Bring the tables to a revision, the newest by default.
+    """Bring the tables to a revision, the newest by default: wholly or, whatever dies on the way, not at all.
 
     Raises
     ------
@@ -130,9 +132,7 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
 
     config = Config()
     config.set_main_option("script_location", str(Path(__file__).parent / "migrations").replace("%", "%%"))
-    with engine.begin() as connection:
-        if engine.dialect.name == "postgresql":  # servers and worker hosts may start at once
-            connection.execute(select(func.pg_advisory_xact_lock(UPGRADE_LOCK)))
+    with _alone(engine) as connection:
         config.attributes["connection"] = connection
         try:
             command.upgrade(config, revision)
@@ -140,3 +140,27 @@ def upgrade(engine: Engine, revision: str = "head") -> None:
             raise LaterTables(
                 "the tables of the database are of a later version of mechsynth; start that one, or go back to a dump"
             ) from error
+
+
+@contextmanager
+def _alone(engine: Engine) -> Iterator[Connection]:
+    """A connection in one transaction around all that is done with it, changes of tables included, and no other such.
+
+    Servers and worker hosts may start at once, hence the lock. Python's driver of SQLite begins a transaction before a
+    change of rows only, so that each change of a table would be committed by itself: it is told to leave that to us.
+    """
+    with engine.connect() as connection:
+        if engine.dialect.name == "postgresql":
+            connection.execute(select(func.pg_advisory_xact_lock(UPGRADE_LOCK)))
+            yield connection
+            connection.commit()
+            return
+        driver: Any = connection.connection.driver_connection
+        usual, driver.isolation_level = driver.isolation_level, None
+        try:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+            yield connection
+            connection.commit()
+        finally:
+            connection.rollback()
+            driver.isolation_level = usual
