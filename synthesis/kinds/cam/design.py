@@ -6,7 +6,7 @@ radian of cam rotation (of an arm in radians).
 
 from __future__ import annotations
 
-from typing import Any, Generic, Literal, TypeVar
+from typing import Generic, Literal, TypeVar
 
 from pydantic import Field
 
@@ -23,10 +23,6 @@ from synthesis.model.dimension import (
     Torque,
     Velocity,
 )
-
-
-def _blank(value: Any) -> bool:
-    return value is None
 
 
 class CamFollower(Answer):
