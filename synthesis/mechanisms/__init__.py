@@ -6,46 +6,61 @@ the types that have them; every other type is stated by its skeleton.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
-from pydantic import Discriminator, Tag
+from pydantic import BaseModel, Discriminator, Tag
 
 from synthesis.mechanisms.base import MechanismError
 from synthesis.mechanisms.fourbar import GivenFourbar
 from synthesis.mechanisms.geared_fivebar import GivenGearedFivebar
-from synthesis.mechanisms.skeleton import GivenSkeleton
+from synthesis.mechanisms.skeleton import GivenByDimensions, GivenSkeleton
 from synthesis.mechanisms.slider_crank import GivenInvertedSliderCrank, GivenQuickReturn, GivenSliderCrank
 
-BY_DIMENSIONS: dict[str, str] = {
-    "fourbar": "<fourbar>",
-    "slider_crank": "<slider_crank>",
-    "inverted_slider_crank": "<inverted_slider_crank>",
-    "crank_shaper": "<quick_return>",
-    "whitworth": "<quick_return>",
-    "geared_fivebar": "<geared_fivebar>",
+_BY_TYPE: dict[str, type[GivenByDimensions]] = {
+    name: model
+    for model in (GivenFourbar, GivenSliderCrank, GivenInvertedSliderCrank, GivenQuickReturn, GivenGearedFivebar)
+    for name in get_args(model.model_fields["type"].annotation)
 }
-"""Types whose dimensions say all, and the tag of the model that reads them."""
 
 
-def _tag(statement: Any) -> str:
-    """Which model reads a statement: dimensions where the type has them and they are given, else the skeleton."""
-    if not isinstance(statement, dict):
-        return "<skeleton>"
-    kind = statement.get("type")
+def known_by_dimensions(mechanism_type: str) -> bool:
+    """Whether the dimensions of a type say all, so that its mechanism needs no skeleton."""
+    return mechanism_type in _BY_TYPE
+
+
+def _model_of(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
+    """Which model reads a statement: the dimensions where its type has them and they are given, else the skeleton.
+
+    Whatever is no statement of a mechanism is the skeleton's to refuse.
+    """
+    if not isinstance(statement, dict) or not isinstance(statement.get("type"), str):
+        return GivenSkeleton
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():
-        return "<skeleton>"
-    return BY_DIMENSIONS.get(kind, "<skeleton>") if isinstance(kind, str) else "<skeleton>"
+        return GivenSkeleton
+    return _BY_TYPE.get(statement["type"], GivenSkeleton)
+
+
+def _tag(model: type[BaseModel]) -> str:
+    """The model's name among those of the union; no name of a field looks so."""
+    return f"<{model.__name__}>"
 
 
 GivenMechanism = Annotated[
-    Annotated[GivenFourbar, Tag("<fourbar>")]
-    | Annotated[GivenSliderCrank, Tag("<slider_crank>")]
-    | Annotated[GivenInvertedSliderCrank, Tag("<inverted_slider_crank>")]
-    | Annotated[GivenQuickReturn, Tag("<quick_return>")]
-    | Annotated[GivenGearedFivebar, Tag("<geared_fivebar>")]
-    | Annotated[GivenSkeleton, Tag("<skeleton>")],
-    Discriminator(_tag),
+    Annotated[GivenFourbar, Tag(_tag(GivenFourbar))]
+    | Annotated[GivenSliderCrank, Tag(_tag(GivenSliderCrank))]
+    | Annotated[GivenInvertedSliderCrank, Tag(_tag(GivenInvertedSliderCrank))]
+    | Annotated[GivenQuickReturn, Tag(_tag(GivenQuickReturn))]
+    | Annotated[GivenGearedFivebar, Tag(_tag(GivenGearedFivebar))]
+    | Annotated[GivenSkeleton, Tag(_tag(GivenSkeleton))],
+    Discriminator(lambda statement: _tag(_model_of(statement))),
 ]
 """Any stated mechanism; the field ``type`` tells which."""
 
-__all__ = ["BY_DIMENSIONS", "GivenFourbar", "GivenGearedFivebar", "GivenMechanism", "GivenSkeleton", "MechanismError"]
+__all__ = [
+    "GivenFourbar",
+    "GivenGearedFivebar",
+    "GivenMechanism",
+    "GivenSkeleton",
+    "MechanismError",
+    "known_by_dimensions",
+]

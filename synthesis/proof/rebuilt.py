@@ -6,7 +6,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from kinematics.errors import MechanismError as ImpossibleMechanism
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.mechanisms import BY_DIMENSIONS, GivenMechanism, MechanismError
+from synthesis.mechanisms import GivenMechanism, MechanismError, known_by_dimensions
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
@@ -31,7 +31,7 @@ def rebuilt(mechanism: BaseModel, *, from_skeleton: bool = False) -> Mechanism |
         None where the dimensions make no mechanism that can be assembled, or are beyond what any statement may hold.
     """
     stated = mechanism.model_dump()
-    if stated["type"] in BY_DIMENSIONS and not from_skeleton:
+    if known_by_dimensions(stated["type"]) and not from_skeleton:
         del stated["skeleton"]
     try:
         return _GIVEN.validate_python(stated).mechanism()
