@@ -16,6 +16,7 @@ from kinematics.gear.planetary import EXTERNAL, GROUND, INTERNAL, Mesh, Speeds, 
 from kinematics.gear.power import PowerFlow, power_flow
 from synthesis.analyses.base import DrivenAnalysis, DrivenRequest, Family
 from synthesis.model.answer import Answer
+from synthesis.model.ratio_target import decimal
 from synthesis.model.statement import Flag, Number, Statement
 
 MAX_MESHES = 8
@@ -219,7 +220,7 @@ def _analysis(request: PlanetaryAnalysisRequest) -> dict[str, Any]:
     at, speed, time = request.motion.inputs()
     mechanism, train = request.mechanism, request.mechanism.train()
     turning = request.speeds is None
-    known = {body: Fraction(repr(value)) for body, value in (request.speeds or {}).items()}
+    known = {body: decimal(value) for body, value in (request.speeds or {}).items()}
     if turning:
         held = {} if mechanism.fixed is None else {mechanism.fixed: Fraction(0)}
         known = {**held, str(mechanism.input): Fraction(1)}
@@ -294,7 +295,7 @@ def _flow(
     """Torques and powers, where the known torques determine them; none with clutches, whose torque no mesh tells."""
     if request.locked:
         return None
-    torques = {body: Fraction(repr(value)) for body, value in (request.torques or {}).items()}
+    torques = {body: decimal(value) for body, value in (request.torques or {}).items()}
     if request.torques is None and request.mechanism.input is not None:
         torques = {request.mechanism.input: Fraction(1)}
     loads = request.loads
@@ -302,7 +303,7 @@ def _flow(
         stated = [*known, *torques, request.mechanism.input, request.mechanism.output, request.mechanism.fixed]
         loads = [body for body in dict.fromkeys(stated) if body is not None and body in train.members]
     rates = {body: rate for body, rate in solution.values.items() if rate is not None}
-    return power_flow(train, rates, loads, torques, Fraction(repr(request.mesh_efficiency)))
+    return power_flow(train, rates, loads, torques, decimal(request.mesh_efficiency))
 
 
 FAMILY = Family(PlanetaryAnalysisRequest, PlanetaryAnalysis)

@@ -105,6 +105,13 @@ class Sifting(Generic[Design]):
                 break
         return verified
 
+    def sift_best(
+        self, best: Sequence[Candidate], covered: int, verify: Callable[[Candidate], Design | str | None]
+    ) -> None:
+        """Verify the best of the ``covered`` candidates of an exhaustive search; they outrank the others."""
+        self.reject(OUTRANKED, covered - len(best))
+        self.sift(best, verify)
+
     def add(self, verdict: Design | str | None) -> None:
         """Keep and count one candidate."""
         self.count(self.keep(verdict))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from types import SimpleNamespace
 from typing import NamedTuple, cast
 
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from synthesis.model.answer import Check, Verification
 from synthesis.model.statement import StatedProblem
+from synthesis.outcome.exhaustive import first_within, pareto, within_tolerance
 from synthesis.outcome.ranking import KEYS, ranked
 from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting, reported
 
@@ -146,3 +148,22 @@ def test_nothing_that_is_left_out_as_alike_takes_a_place() -> None:
         first,
         second,
     ]
+
+
+class Sized(NamedTuple):
+    error: Fraction
+    size: int
+
+
+def test_an_error_exactly_at_the_tolerance_is_within_it():
+    """0.1 is no float: the float of it is above the decimal, that of 0.3 below."""
+    for decimal in ("0.1", "0.3"):
+        assert within_tolerance(Fraction(decimal), float(decimal))
+        assert not within_tolerance(Fraction(decimal) + Fraction(1, 10**30), float(decimal))
+    assert within_tolerance(Fraction(5), None)
+
+
+def test_the_pareto_set_has_what_is_nearer_than_all_smaller_ones():
+    by_size = [Sized(Fraction(error, 100), size) for size, error in enumerate((7, 9, 7, 4, 5, 4, 0))]
+    assert [one.size for one in pareto(by_size, lambda one: one.error)] == [0, 3, 6]
+    assert [one.size for one in first_within(by_size, 0.05, 2)] == [3, 4]

@@ -27,6 +27,7 @@ from synthesis.kinds.gear_train.kernels import MOST_STAGES, NOISE, WINDOW_MARGIN
 from synthesis.kinds.gear_train.problem import NEAR
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 from synthesis.model.ratio_target import Target
+from synthesis.outcome.exhaustive import pareto
 
 ZERO_WINDOW = 1e-15
 """Added to a tolerance, so that rounding loses no exact train where the tolerance is zero."""
@@ -262,11 +263,7 @@ def _equally_near(task: Task, ratio: Fraction) -> list[Fraction]:
 
 def _pareto(task: Task, shortlist: Found, tolerance: Fraction | None) -> list[Train]:
     """The nearest train of each size that is nearer than all smaller ones."""
-    front: list[Train] = []
-    for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)]:
-        train = _train(row)
-        if tolerance is not None and not task.target.within(train.ratio, tolerance):
-            continue
-        if not front or task.target.nearer(train.ratio, front[-1].ratio) < 0:
-            front.append(train)
-    return front
+    near = cmp_to_key(task.target.nearer)
+    trains = (_train(row) for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)])
+    kept = (train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance))
+    return pareto(kept, lambda train: near(train.ratio))

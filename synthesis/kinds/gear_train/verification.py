@@ -17,6 +17,7 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.gear_answer import mesh_geometries
+from synthesis.model.ratio_target import decimal
 from synthesis.proof.checks import tolerated
 
 DISTANCE_TOLERANCE = 1e-12
@@ -113,7 +114,7 @@ def _gear_checks(
         inside = all(low <= n <= high for n, (low, high) in zip(gears, ranges, strict=False))
         checks.append(Check(name="teeth", passed=inside))
     if problem.max_stage_ratio is not None:
-        limit = Fraction(repr(problem.max_stage_ratio))
+        limit = decimal(problem.max_stage_ratio)
         kept = all(
             Fraction(s.driven, s.driver) <= limit and Fraction(s.driver, s.driven) <= limit for s in train.stages
         )

@@ -23,7 +23,7 @@ from synthesis.kinds.gearbox.structures import Group, Structure, formula, spread
 from synthesis.kinds.gearbox.verification import measure, verify
 from synthesis.model.gear_answer import GearPairTeeth
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import OUTRANKED, Sifting
+from synthesis.outcome.sifting import Sifting
 
 FIXED = Group(1, 1)
 """A stage of one pair."""
@@ -76,8 +76,7 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     )
     unsearched = _unsearched(problem, tried)
     sifting = Sifting[GearboxDesign](problem)
-    sifting.reject(OUTRANKED, covered - len(gearboxes[: problem.max_designs]))
-    sifting.sift(gearboxes[: problem.max_designs], partial(_design, problem))
+    sifting.sift_best(gearboxes[: problem.max_designs], covered, partial(_design, problem))
     progress(1.0, "done")
     return GearboxResult(
         designs=sifting.designs(list),

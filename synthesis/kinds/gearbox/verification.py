@@ -10,6 +10,7 @@ from kinematics.gear.teeth import Mesh
 from synthesis.kinds.gearbox.design import GearboxMechanism, GearboxMetrics, ShaftSpeeds, SpindleSpeed
 from synthesis.kinds.gearbox.problem import GearboxProblem
 from synthesis.model.answer import Check, Verification
+from synthesis.model.ratio_target import decimal
 
 ROUNDING = 1e-12
 """Logarithms of the speeds are rounded by some 1e-15 on each side."""
@@ -62,12 +63,12 @@ def measure(problem: GearboxProblem, mechanism: GearboxMechanism, standard: list
     """Speeds of all shafts, deviations and loads."""
     stages = _teeth(mechanism)
     nominal = problem.speeds.nominal
-    speeds = spindle_speeds(Fraction(repr(mechanism.input_speed)), stages)
+    speeds = spindle_speeds(decimal(mechanism.input_speed), stages)
     rounded: list[float | None] = [*standard] if standard else [None] * len(speeds)
     shafts = [
         ShaftSpeeds(
             shaft=k + 1,
-            speeds=[float(s.speed) for s in spindle_speeds(Fraction(repr(mechanism.input_speed)), stages[:k])],
+            speeds=[float(s.speed) for s in spindle_speeds(decimal(mechanism.input_speed), stages[:k])],
         )
         for k in range(len(stages) + 1)
     ]
@@ -95,7 +96,7 @@ def _teeth(mechanism: GearboxMechanism) -> list[list[tuple[int, int]]]:
 
 def _errors(problem: GearboxProblem, mechanism: GearboxMechanism) -> list[float]:
     """|ln(speed/nominal)| of every speed, both in rising order."""
-    speeds = spindle_speeds(Fraction(repr(mechanism.input_speed)), _teeth(mechanism))
+    speeds = spindle_speeds(decimal(mechanism.input_speed), _teeth(mechanism))
     if len(speeds) != problem.speeds.count:
         return []
     return [

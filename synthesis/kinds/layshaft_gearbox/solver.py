@@ -29,7 +29,9 @@ from synthesis.kinds.layshaft_gearbox.verification import PASSING, measure, veri
 from synthesis.model.gear_answer import GearPairTeeth, Ratio
 from synthesis.model.kind import Progress
 from synthesis.model.mesh_limits import external_sound
-from synthesis.outcome.sifting import OUTRANKED, Sifting
+from synthesis.model.ratio_target import decimal
+from synthesis.outcome.exhaustive import first_within, pareto
+from synthesis.outcome.sifting import Sifting
 
 Real = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -84,18 +86,16 @@ def solve_layshaft_gearbox(problem: LayshaftProblem, progress: Progress) -> Lays
         own = _of_level(problem, size, level, problem.max_designs)
         boxes = sorted([*boxes, *own])[: problem.max_designs]
         best += own[:1]
-    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
-    ranked = boxes if problem.rank_by == "error" else best
-    chosen = [box for box in ranked if limit is None or box.error <= limit][: problem.max_designs]
     sifting = Sifting[LayshaftDesign](problem)
-    sifting.reject(OUTRANKED, covered - len(chosen))
-    sifting.sift(chosen, partial(_design, problem))
+    ranked = boxes if problem.rank_by == "error" else best
+    chosen = first_within(ranked, problem.tolerance, problem.max_designs)
+    sifting.sift_best(chosen, covered, partial(_design, problem))
     progress(1.0, "done")
     return LayshaftResult(
         designs=sifting.designs(list),
         search=sifting.search("exhaustive", complete=not sifting.failed),
         summary=_summary(problem, sifting.passed, boxes, covered),
-        pareto=_front(best),
+        pareto=[_outlined(box) for box in pareto(best, lambda box: box.error)],
     )
 
 
@@ -184,10 +184,10 @@ def _of_level(problem: LayshaftProblem, size: int, level: _Level, count: int) ->
             e, f, g = (int(side[k]) for side in level.reverse)
             reverse = (e, f, g)
         ratios = layshaft_ratios((own, size - own), gears, reverse)
-        demanded = [Fraction(repr(ratio)) for ratio in problem.ratios]
+        demanded = [decimal(ratio) for ratio in problem.ratios]
         errors = [abs(r / t - 1) for r, t in zip(ratios.forward, demanded, strict=True)]
         if ratios.reverse is not None and problem.reverse is not None:
-            errors.append(abs(-ratios.reverse / Fraction(repr(problem.reverse)) - 1))
+            errors.append(abs(-ratios.reverse / decimal(problem.reverse) - 1))
         boxes.append(_Box(max(errors), size, (own, size - own), gears, reverse))
     return sorted(boxes, key=lambda box: box[:3])[:count]
 
@@ -219,16 +219,10 @@ def _design(problem: LayshaftProblem, box: _Box) -> LayshaftDesign:
     )
 
 
-def _front(best: list[_Box]) -> list[ParetoLayshaft]:
-    """The Pareto set of error against tooth sum."""
-    front: list[ParetoLayshaft] = []
-    least: Fraction | None = None
-    for box in best:
-        if least is None or box.error < least:
-            least = box.error
-            head = GearPairTeeth(driver=box.head[0], driven=box.head[1])
-            front.append(ParetoLayshaft(tooth_sum=box.size, max_error=float(box.error), head=head))
-    return front
+def _outlined(box: _Box) -> ParetoLayshaft:
+    """A gearbox of the Pareto set as the answer has it."""
+    head = GearPairTeeth(driver=box.head[0], driven=box.head[1])
+    return ParetoLayshaft(tooth_sum=box.size, max_error=float(box.error), head=head)
 
 
 def _summary(problem: LayshaftProblem, passed: list[LayshaftDesign], boxes: list[_Box], covered: int) -> str:

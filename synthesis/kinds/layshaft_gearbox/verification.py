@@ -12,6 +12,8 @@ from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism, LayshaftM
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.gear_answer import GearPairTeeth
+from synthesis.model.ratio_target import decimal
+from synthesis.outcome.exhaustive import within_tolerance
 
 PASSING = 1e-9
 """Room between the tips of reverse gears on layshaft and main shaft, in modules, that is no touch."""
@@ -20,7 +22,6 @@ PASSING = 1e-9
 def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verification:
     """Every demand on a layshaft gearbox, measured."""
     errors = _errors(problem, mechanism)
-    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
     sums = {one + other for one, other in _coaxial_pairs(mechanism)}
     teeth = [z for pair in _meshing_pairs(mechanism) for z in pair]
     low, high = problem.teeth.min, problem.teeth.max
@@ -28,7 +29,7 @@ def verify(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> Verificati
     checks = [
         Check(
             name="ratios",
-            passed=errors is not None and (limit is None or max(map(abs, errors)) <= limit),
+            passed=errors is not None and within_tolerance(max(map(abs, errors)), problem.tolerance),
             value=None if errors is None else float(max(map(abs, errors))),
             limit=problem.tolerance,
         ),
@@ -57,7 +58,7 @@ def measure(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> LayshaftM
 
 def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Fraction] | None:
     """Relative errors of all gears, reverse last; None where a gear is missing or states another ratio than it has."""
-    demanded = [Fraction(repr(ratio)) for ratio in problem.ratios]
+    demanded = [decimal(ratio) for ratio in problem.ratios]
     if len(mechanism.gears) != len(demanded) or (mechanism.reverse is None) != (problem.reverse is None):
         return None
     head = Rolling("input", "layshaft", GROUND, mechanism.head.driver, mechanism.head.driven)
@@ -81,7 +82,7 @@ def _errors(problem: LayshaftProblem, mechanism: LayshaftMechanism) -> list[Frac
         ratio = speed_ratio(Train((head, *pairs)), "input", "mainshaft") or Fraction(0)
         if ratio != back.ratio.exact or ratio >= 0:
             return None
-        errors.append(-ratio / Fraction(repr(problem.reverse)) - 1)
+        errors.append(-ratio / decimal(problem.reverse) - 1)
     return errors
 
 

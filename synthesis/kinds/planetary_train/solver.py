@@ -28,7 +28,8 @@ from synthesis.kinds.planetary_train.verification import SIZE_SLACK, measure, ve
 from synthesis.model import mesh_limits
 from synthesis.model.gear_answer import Ratio
 from synthesis.model.kind import Progress
-from synthesis.outcome.sifting import OUTRANKED, Sifting
+from synthesis.outcome.exhaustive import first_within, pareto
+from synthesis.outcome.sifting import Sifting
 
 
 def solve_planetary_train(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
@@ -117,27 +118,19 @@ class _Ranking:
     def result(self) -> PlanetaryResult:
         """The verified answer."""
         problem = self._problem
-        limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
-        ranked = self._best if problem.rank_by == "error" else [self._by_size[size] for size in sorted(self._by_size)]
-        chosen = [c for c in ranked if limit is None or c.error <= limit][: problem.max_designs]
+        by_size = [self._by_size[size] for size in sorted(self._by_size)]
+        ranked = self._best if problem.rank_by == "error" else by_size
         sifting = self._sifting
-        sifting.reject(OUTRANKED, self._sound - len(chosen))
-        sifting.sift(chosen, partial(_design, problem))
+        best = first_within(ranked, problem.tolerance, problem.max_designs)
+        sifting.sift_best(best, self._sound, partial(_design, problem))
+        front = pareto(by_size, lambda candidate: candidate.error)
         return PlanetaryResult(
             designs=sifting.designs(list),
             search=sifting.search("exhaustive", complete=not sifting.failed),
             summary=self._summary(),
             ties=self._ties[self._best[0].error] if self._best else 0,
-            pareto=[_pareto(problem, candidate) for candidate in self._front() if _holds(problem, candidate)],
+            pareto=[_pareto(problem, candidate) for candidate in front if _holds(problem, candidate)],
         )
-
-    def _front(self) -> list[Candidate]:
-        """Trains that no other beats in error and size, smallest first."""
-        front: list[Candidate] = []
-        for size in sorted(self._by_size):
-            if not front or self._by_size[size].error < front[-1].error:
-                front.append(self._by_size[size])
-        return front
 
     def _summary(self) -> str:
         """What the search covered and what is best, in one sentence."""

@@ -21,6 +21,8 @@ from synthesis.kinds.planetary_train.design import MeshContact, PlanetaryMechani
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH
+from synthesis.model.ratio_target import decimal
+from synthesis.outcome.exhaustive import within_tolerance
 from synthesis.proof.checks import at_least, at_most
 
 SIZE_SLACK = 1e-12
@@ -71,7 +73,7 @@ def measure(problem: PlanetaryProblem, mechanism: PlanetaryMechanism) -> Planeta
         known,
         (mechanism.input, mechanism.output, mechanism.fixed),
         {mechanism.input: 1},
-        Fraction(repr(problem.mesh_efficiency)),
+        decimal(problem.mesh_efficiency),
     )
     assert flow is not None
     ratio = exact_ratio_of(mechanism)
@@ -107,8 +109,9 @@ def _ratio(problem: PlanetaryProblem, mechanism: PlanetaryMechanism, arrangement
     if ratio is None or members not in problem.roles(arrangement):
         return Check(name="ratio", passed=False)
     error = abs(ratio / problem.target - 1)
-    limit = None if problem.tolerance is None else Fraction(repr(problem.tolerance))
-    passed = ratio == mechanism.ratio.exact and ratio * problem.target > 0 and (limit is None or error <= limit)
+    passed = (
+        ratio == mechanism.ratio.exact and ratio * problem.target > 0 and within_tolerance(error, problem.tolerance)
+    )
     return Check(name="ratio", passed=passed, value=float(error), limit=problem.tolerance)
 
 
