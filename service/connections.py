@@ -74,6 +74,9 @@ TOO_SLOW = Fault(
     f"The request was not complete within {REQUEST_S:g} seconds.",
 )  # fmt: skip
 NOT_HTTP = Fault(400, "/problems/malformed-request", "Malformed request", "What came is not HTTP.")
+HOST_UNCLEAR = Fault(
+    400, "/problems/malformed-request", "Malformed request", "A request names its host once, in one `Host` header."
+)
 HEAD_TOO_LARGE = Fault(
     431, "/problems/head-too-large", "Head too large",
     f"The address and the headers of a request may have {MOST_HEAD_BYTES} bytes together.",
@@ -107,6 +110,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         self._reading_due: asyncio.TimerHandle | None = None
         self._fault = NOT_HTTP
         self._head = 0
+        self._hosts = 0
         self._unread = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -134,7 +138,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         """A request begins."""
         if self._request_due is None:
             self._await_request(REQUEST_S)
-        self._head = self._unread = 0
+        self._head = self._hosts = self._unread = 0
         super().on_message_begin()
 
     def on_url(self, url: bytes) -> None:
@@ -145,6 +149,10 @@ class ImpatientProtocol(HttpToolsProtocol):
     def on_header(self, name: bytes, value: bytes) -> None:
         """A header, or a trailer behind the body."""
         self._add_to_head(len(name) + len(value))
+        self._hosts += name.lower() == b"host"
+        if self._hosts > 1:  # whoever stands before us may have gone by the other one (RFC 9112, 3.2)
+            self._fault = HOST_UNCLEAR
+            raise Unacceptable
         super().on_header(name, value)
 
     def on_headers_complete(self) -> None:

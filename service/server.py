@@ -106,6 +106,11 @@ def _listener(settings: Settings, only_here: bool) -> Iterator[socket.socket]:
     except OSError:
         raise ServeError(f"there is no address for the host {settings.host!r}; set MECHSYNTH_HOST") from None
     if only_here:
+        if "*" in settings.cors_origins:
+            log.warning(
+                "there are no API keys, and MECHSYNTH_CORS_ORIGINS lets every web page in: whatever page a browser on "
+                "this machine shows can read and cancel all jobs; name the origins, or make a key",
+            )
         if not ip_address(str(address[0]).partition("%")[0]).is_loopback:
             log.warning(
                 "there are no API keys, so the service listens on 127.0.0.1 and not where it was told to; "

@@ -46,6 +46,13 @@ class Export(NamedTuple):
     schema: dict[str, str] = _TEXT
 
 
+_AS_IT_IS_SAID = {"X-Content-Type-Options": "nosniff"}
+_HEADERS: dict[Form, dict[str, str]] = {
+    # A drawing is opened as a page of its own, too, and then it may do nothing.
+    "svg": {**_AS_IT_IS_SAID, "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'; sandbox"},
+}
+"""With what a file of a form goes out, where it is more than its type and :data:`_AS_IT_IS_SAID`."""
+
 EXPORTS: dict[Form, Export] = {
     "svg": Export(
         "image/svg+xml",
@@ -82,7 +89,7 @@ def _offer(form: Form, export: Export) -> None:
         job, result = await _solved(desk, tenant, job_id)
         with span("drawing"):
             content = await _drawn(board, _file, job, result, number, form)
-        return Response(content, media_type=export.media_type)
+        return Response(content, media_type=export.media_type, headers=_HEADERS.get(form, _AS_IT_IS_SAID))
 
     router.add_api_route(
         f"/{{job_id}}/designs/{{number}}.{form}",

@@ -6,9 +6,10 @@ from importlib.resources import files
 from threading import Lock
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse, JSONResponse
+from starlette.concurrency import run_in_threadpool
 from starlette.staticfiles import StaticFiles
 
 from service.api import analyses, errors
@@ -43,10 +44,11 @@ def install(app: FastAPI) -> None:
 
     app.openapi = openapi  # type: ignore[method-assign]  # the framework's documented way to change the document
 
-    # In a thread, because the first document waits for the models of the analyses.
     @app.get("/openapi.json", include_in_schema=False)
-    def openapi_document() -> JSONResponse:
-        return JSONResponse(app.openapi())
+    async def openapi_document(request: Request) -> JSONResponse:
+        # In a thread, because the first document waits for the models of the analyses.
+        document = await run_in_threadpool(app.openapi)
+        return JSONResponse(_without_keys(document) if await request.app.state.gate.is_open() else document)
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> HTMLResponse:
@@ -87,6 +89,19 @@ def _complete(document: dict[str, Any]) -> None:
                 del operation["responses"]["422"]
     for name in ("HTTPValidationError", "ValidationError"):
         schemas.pop(name, None)
+
+
+def _without_keys(document: dict[str, Any]) -> dict[str, Any]:
+    """The document of a service that has no keys: nothing in it asks for one."""
+    paths = {
+        path: {
+            method: {name: value for name, value in operation.items() if name != "security"}
+            for method, operation in methods.items()
+        }
+        for path, methods in document["paths"].items()
+    }
+    components = {name: value for name, value in document["components"].items() if name != "securitySchemes"}
+    return {**document, "paths": paths, "components": components}
 
 
 def _add(operation: dict[str, Any], responses: dict[int | str, dict[str, Any]]) -> None:

@@ -103,6 +103,14 @@ def test_with_a_key_any_host_is_right(shared):
     assert shared.clients["acme"].get("/v1/jobs", headers={"Host": "mechanisms.com"}).status_code == 200
 
 
+def test_the_document_asks_for_keys_where_there_are_some(shared):
+    document = shared.client.get("/openapi.json").json()
+    assert document["components"]["securitySchemes"]["bearer"]["type"] == "http"
+    for path, methods in document["paths"].items():
+        asked = [{"bearer": []}] if path.startswith("/v1/") else None
+        assert [operation.get("security") for operation in methods.values()] == [asked] * len(methods)
+
+
 def test_what_is_open_stays_open(shared):
     for path in ("/healthz", "/readyz", "/metrics", "/docs", "/openapi.json"):
         assert httpx.get(shared.url + path).status_code == 200
@@ -256,10 +264,12 @@ def test_web_pages_may_not_use_it_unless_told(scripted):
 
 
 def test_without_keys_it_listens_on_this_machine_only(tmp_path):
-    server = RunningServer(tmp_path, SCRIPTED, workers=1, host="0.0.0.0")
+    server = RunningServer(tmp_path, SCRIPTED, workers=1, host="0.0.0.0", cors_origins="*")
     try:
         assert server.url.startswith("http://127.0.0.1:")
         assert "there are no API keys" in server.log()
+        assert "CORS_ORIGINS lets every web page in" in server.log()
+        assert "bearer" not in str(server.client.get("/openapi.json").json())
         assert listening_on(server.url.rpartition(":")[2]) == {"0100007F"}
         # The first key closes what was open, without a restart.
         assert server.client.get("/v1/jobs").status_code == 200

@@ -182,6 +182,19 @@ def test_what_is_no_http_is_told_so(url, metrics, noise):
     assert counted(metrics, "400", "malformed-request") == (1, 1)
 
 
+@pytest.mark.parametrize("second", [b"Host: x", b"hOsT: mechanisms.com", b"Host:"])
+def test_a_request_names_its_host_once(url, metrics, second):
+    request = REQUEST.replace(b"/ ", b"/again ")
+    head, _, body = sent_until_closed(url, request[:-2] + second + b"\r\n\r\n", b"", 0).partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 400 ")
+    assert "Host" in json.loads(body)["detail"]
+    assert counted(metrics, "400", "malformed-request") == (1, 1)
+    with socket.create_connection(url, timeout=10) as connection:
+        for _ in range(2):  # each request of a connection has a host of its own
+            connection.sendall(request)
+            assert is_answered(connection)
+
+
 def test_noise_behind_a_request_is_told_so_too(url):
     with socket.create_connection(url, timeout=10) as connection:
         connection.sendall(REQUEST.replace(b"/ ", b"/again "))

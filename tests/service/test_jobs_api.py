@@ -130,6 +130,11 @@ def test_a_design_is_drawn(client, solved):
     answer = client.get(f"/v1/jobs/{solved['id']}/designs/0.svg")
     assert answer.status_code == 200
     assert answer.headers["content-type"].startswith("image/svg+xml")
+    assert answer.headers["content-security-policy"].startswith("default-src 'none';")
+    assert answer.headers["content-security-policy"].endswith("; sandbox")
+    for form in ("svg", "csv", "dxf", "gif"):
+        file = client.get(f"/v1/jobs/{solved['id']}/designs/0.{form}")
+        assert (file.status_code, file.headers["x-content-type-options"]) == (200, "nosniff")
     assert "<svg" in answer.text
     assert "Müller" in answer.text
 
