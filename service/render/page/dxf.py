@@ -57,7 +57,10 @@ def new_drawing(
 
 
 def written(document: Drawing) -> str:
-    """The drawing as text."""
+    """The drawing as text, the same in every process."""
+    # The library lists classes in the order of a set, which depends on the process; what is listed already it keeps.
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
     text = io.StringIO()
     document.write(text)
     return text.getvalue()
