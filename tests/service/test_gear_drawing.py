@@ -16,7 +16,7 @@ import pytest
 
 from kinematics.gear.teeth import Gear
 from service.render import exported
-from service.render.gears.train_layout import PlacedGear, placed_gears
+from service.render.gears.train_layout import TrainGear, placed_gears
 from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -54,7 +54,7 @@ def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProb
     return result.designs[0], problem
 
 
-def drawn(task: tuple[GearTrainDesign, GearTrainProblem]) -> list[PlacedGear]:
+def drawn(task: tuple[GearTrainDesign, GearTrainProblem]) -> list[TrainGear]:
     return placed_gears(task[0], task[1].reverted)
 
 

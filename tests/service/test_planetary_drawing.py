@@ -14,7 +14,7 @@ import pytest
 
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render import exported
-from service.render.gears.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
+from service.render.gears.planetary_layout import PlanetaryGear, placed_planetary_gears
 from synthesis.dispatch import solve
 from synthesis.registry import example, parse_problem
 
@@ -42,7 +42,7 @@ def test_teeth_of_all_copies_stand_in_spaces(stated: dict[str, Any]) -> None:
     design, _ = solved(**stated)
     arrangement = ARRANGEMENTS[design.mechanism.arrangement]
     placed = placed_planetary_gears(design.mechanism)
-    by_name: dict[str, list[PlacedPlanetaryGear]] = {}
+    by_name: dict[str, list[PlanetaryGear]] = {}
     for gear in placed:
         by_name.setdefault(gear.name, []).append(gear)
     contacts = 0

@@ -15,9 +15,14 @@ a planetary train. Bevel gears have pitch circles only. Lengths are in the probl
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from ezdxf.layouts.layout import Modelspace
+
 from kinematics.gear.arrangements import ARRANGEMENTS
+from service.render.gears.placed import PlacedGear, box_around
 from service.render.gears.planetary_layout import placed_planetary_gears
-from service.render.gears.train_layout import box_around, placed_gears
+from service.render.gears.train_layout import placed_gears
 from service.render.page import dxf
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.problem import GearTrainProblem
@@ -34,17 +39,31 @@ LINE_STEP = 1.6
 """Distance of lines of text below one another, in heights of letters."""
 
 
+def gear_layers(name: str, colour: int) -> dict[str, tuple[int, str]]:
+    """The two layers of a gear: its pitch circle, and the outline of its teeth."""
+    return {f"{name}_PITCH": (colour, "DASHDOT"), f"{name}_TEETH": (colour, "CONTINUOUS")}
+
+
+def add_gear(space: Modelspace, placed: PlacedGear, names: Iterable[str], *, toothed: bool = True) -> None:
+    """Pitch circle and, where it is ``toothed``, outline of a gear on the layers of each name."""
+    teeth = placed.teeth() if toothed else None
+    for name in names:
+        dxf.add_circle(space, placed.centre, placed.pitch_radius, f"{name}_PITCH")
+        if teeth is not None:
+            dxf.add_outline(space, placed.centre + teeth, f"{name}_TEETH")
+
+
 def gear_train_drawing(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a DXF document (R2010)."""
     gears = placed_gears(design, problem.reverted)
     layers = {"CENTRES": (7, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
     for number in range(1, len(design.mechanism.stages) + 1):
-        layers |= dxf.gear_layers(f"STAGE_{number}", COLOURS[number - 1])
+        layers |= gear_layers(f"STAGE_{number}", COLOURS[number - 1])
     document = dxf.new_drawing(title or "Gear train", problem.length_unit, layers)
     space, size = document.modelspace(), box_around(gears).diagonal
     for placed in gears:
         at, gear, height = placed.centre, placed.gear, LETTERS * size
-        dxf.add_gear(space, f"STAGE_{placed.stage}", gear, at, dxf.teeth_outline(gear, at, placed.tooth_at))
+        add_gear(space, placed, [f"STAGE_{placed.stage}"])
         dxf.add_cross(space, at, CROSS * size, "CENTRES")
         # Gears on one shaft are written below one another.
         below = at - 1j * height * (1.5 + LINE_STEP * (2 * placed.stage + (placed.role == "driven")))
@@ -58,14 +77,11 @@ def planetary_drawing(design: PlanetaryDesign, problem: PlanetaryProblem, title:
     gears = placed_planetary_gears(mechanism)
     layers = {"CENTRES": (7, "CONTINUOUS")}
     for plane in sorted({plane for placed in gears for plane in placed.planes}):
-        layers |= dxf.gear_layers(f"PLANE_{plane}", 1 + plane)
+        layers |= gear_layers(f"PLANE_{plane}", 1 + plane)
     document = dxf.new_drawing(title or "Planetary train", problem.length_unit, layers)
     space = document.modelspace()
     bevel = ARRANGEMENTS[mechanism.arrangement].bevel
     for placed in gears:
-        at = placed.centre
-        teeth = None if bevel else dxf.teeth_outline(placed.gear, at, placed.tooth_at)
-        for plane in placed.planes:
-            dxf.add_gear(space, f"PLANE_{plane}", placed.gear, at, teeth)
-        space.add_point((at.real, at.imag), dxfattribs={"layer": "CENTRES"})
+        add_gear(space, placed, [f"PLANE_{plane}" for plane in placed.planes], toothed=not bevel)
+        space.add_point((placed.centre.real, placed.centre.imag), dxfattribs={"layer": "CENTRES"})
     return dxf.written(document)

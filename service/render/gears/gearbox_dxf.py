@@ -19,7 +19,9 @@ from __future__ import annotations
 
 from ezdxf.document import Drawing
 
+from service.render.gears.dxf import add_gear, gear_layers
 from service.render.gears.gearbox_layout import BoxLayout, gearbox_layout, layshaft_layout
+from service.render.gears.placed import box_around
 from service.render.page import dxf
 from synthesis.kinds.gearbox.design import GearboxDesign
 from synthesis.kinds.gearbox.problem import GearboxProblem
@@ -49,7 +51,7 @@ def _drawn(title: str, unit: str, layout: BoxLayout, module: float) -> str:
     layers = {"SHAFTS": (7, "CENTER"), "TEXT": (7, "CONTINUOUS")}
     for pair, stage in {placed.pair: placed.stage for placed in layout.gears}.items():
         colour = COLOURS[stage % len(COLOURS)]
-        layers |= dxf.gear_layers(pair, colour) | {f"{pair}_DEVELOPED": (colour, "CONTINUOUS")}
+        layers |= gear_layers(pair, colour) | {f"{pair}_DEVELOPED": (colour, "CONTINUOUS")}
     document = dxf.new_drawing(title, unit, layers)
     _from_the_end(document, layout, module)
     _developed(document, layout, module)
@@ -59,9 +61,8 @@ def _drawn(title: str, unit: str, layout: BoxLayout, module: float) -> str:
 def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
     for placed in layout.gears:
-        teeth = dxf.teeth_outline(placed.gear, placed.centre, placed.tooth_at)
-        dxf.add_gear(space, placed.pair, placed.gear, placed.centre, teeth)
-    top = max(placed.centre.imag + placed.gear.tip_radius for placed in layout.gears)
+        add_gear(space, placed, [placed.pair])
+    top = box_around(layout.gears).high
     for k, shaft in enumerate(layout.shafts):
         dxf.add_cross(space, shaft.centre, LETTERS * module, "SHAFTS")
         above = complex(shaft.centre.real, top + (2.0 + 1.6 * k) * LETTERS * module)
@@ -70,10 +71,10 @@ def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
 
 def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
-    bottom = min(placed.centre.imag - placed.gear.tip_radius for placed in layout.gears)
+    seen = box_around(layout.gears)
     highest = max(placed.gear.tip_radius - layout.shafts[placed.shaft].below for placed in layout.gears)
-    left = min(placed.centre.real - placed.gear.tip_radius for placed in layout.gears) + 8.0 * LETTERS * module
-    axis = bottom - highest - 6.0 * LETTERS * module
+    left = seen.left + 8.0 * LETTERS * module
+    axis = seen.low - highest - 6.0 * LETTERS * module
     face, step = FACE * module, (FACE + ROOM) * module
 
     for placed in layout.gears:

@@ -12,26 +12,23 @@ import math
 from dataclasses import dataclass
 
 from kinematics.gear.teeth import Gear
-from service.render.gears.meshing import facing
+from service.render.gears.placed import PlacedGear, facing
 from synthesis.kinds.gearbox.design import GearboxMechanism
 from synthesis.kinds.layshaft_gearbox.design import LayshaftMechanism
 
 
 @dataclass(frozen=True)
-class BoxGear:
-    """A gear in the drawing.
+class BoxGear(PlacedGear):
+    """A gear of a gearbox.
 
-    ``pair`` names the pair, ``stage`` counts what is drawn in one colour, ``shaft`` is the place of its shaft, ``slot``
-    counts the pairs along the shafts, and ``tooth_at`` is the angle of one tooth's middle.
+    ``pair`` names the pair, ``stage`` counts what is drawn in one colour, ``shaft`` is the place of its shaft, and
+    ``slot`` counts the pairs along the shafts.
     """
 
     pair: str
     stage: int
     shaft: int
     slot: int
-    gear: Gear
-    centre: complex
-    tooth_at: float
 
 
 @dataclass(frozen=True)
@@ -62,11 +59,9 @@ def gearbox_layout(mechanism: GearboxMechanism) -> BoxLayout:
         first.append(first[-1] + len(stage.pairs))
         for k, pair in enumerate(stage.pairs):
             name = f"STAGE_{number + 1}_PAIR_{k + 1}"
-            driver, driven = (_gear(mechanism, z) for z in (pair.driver, pair.driven))
-            slot = first[number] + k
-            gears.append(BoxGear(name, number, number, slot, driver, complex(at[number]), 0.0))
-            turned = facing(driver, 0.0, driven, 0.0)
-            gears.append(BoxGear(name, number, number + 1, slot, driven, complex(at[number + 1]), turned))
+            driver = pair.driver, number, complex(at[number])
+            driven = pair.driven, number + 1, complex(at[number + 1])
+            gears += _in_mesh(mechanism, name, number, first[number] + k, driver, driven)
     count = len(mechanism.stages)
     names = ["input", *(f"shaft {k}" for k in range(2, count + 1)), "spindle"]
     shafts = [
@@ -80,25 +75,15 @@ def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
     """A layshaft gearbox: the head pair, then the forward gears from the last to the first, then reverse."""
     distance = mechanism.centre_distance
     input_shaft, layshaft, main = 0, 1, 2
-    gears: list[BoxGear] = []
-
-    def add(pair: str, slot: int, *placed: tuple[int, int, complex]) -> None:
-        """Gears that mesh one after the other: teeth, shaft and centre of each."""
-        turned, before = 0.0, None
-        for teeth, shaft, centre in placed:
-            gear = _gear(mechanism, teeth)
-            if before is not None:
-                turned = facing(before.gear, turned, gear, cmath.phase(centre - before.centre))
-            before = BoxGear(pair, slot, shaft, slot, gear, centre, turned)
-            gears.append(before)
-
     beside = complex(distance)
-    add("HEAD", 0, (mechanism.head.driver, input_shaft, 0j), (mechanism.head.driven, layshaft, beside))
+    head = mechanism.head
+    gears = _in_mesh(mechanism, "HEAD", 0, 0, (head.driver, input_shaft, 0j), (head.driven, layshaft, beside))
     slot = 1
     for number in range(len(mechanism.gears), 0, -1):
         pair = mechanism.gears[number - 1]
         if pair.layshaft is not None and pair.mainshaft is not None:
-            add(f"GEAR_{number}", slot, (pair.layshaft, layshaft, beside), (pair.mainshaft, main, 0j))
+            on_layshaft, on_main = (pair.layshaft, layshaft, beside), (pair.mainshaft, main, 0j)
+            gears += _in_mesh(mechanism, f"GEAR_{number}", slot, slot, on_layshaft, on_main)
             slot += 1
     shafts = [
         Shaft("input", 0j, 0.0, (0, 0)),
@@ -111,10 +96,25 @@ def layshaft_layout(mechanism: LayshaftMechanism) -> BoxLayout:
         x = 0.5 * (distance**2 + far**2 - near**2) / distance
         centre = complex(x, math.sqrt(max(far**2 - x**2, 0.0)))
         idler = len(shafts)
-        add("REVERSE", slot, (back.layshaft, layshaft, beside), (back.idler, idler, centre), (back.mainshaft, main, 0j))
+        train = (back.layshaft, layshaft, beside), (back.idler, idler, centre), (back.mainshaft, main, 0j)
+        gears += _in_mesh(mechanism, "REVERSE", slot, slot, *train)
         shafts.append(Shaft("idler", centre, distance + near, (slot, slot)))
     return BoxLayout(gears, shafts)
 
 
-def _gear(mechanism: GearboxMechanism | LayshaftMechanism, teeth: int) -> Gear:
-    return Gear(teeth, mechanism.module, math.radians(mechanism.pressure_angle))
+def _in_mesh(
+    mechanism: GearboxMechanism | LayshaftMechanism,
+    pair: str,
+    stage: int,
+    slot: int,
+    *placed: tuple[int, int, complex],
+) -> list[BoxGear]:
+    """Gears that mesh one after the other, from teeth, shaft and centre of each."""
+    gears: list[BoxGear] = []
+    for teeth, shaft, centre in placed:
+        gear, turned = Gear(teeth, mechanism.module, math.radians(mechanism.pressure_angle)), 0.0
+        if gears:
+            mate = gears[-1]
+            turned = facing(mate.gear, mate.tooth_at, gear, cmath.phase(centre - mate.centre))
+        gears.append(BoxGear(gear, centre, turned, pair, stage, shaft, slot))
+    return gears

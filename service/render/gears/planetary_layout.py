@@ -9,24 +9,21 @@ from dataclasses import dataclass
 from kinematics.gear.arrangements import ARRANGEMENTS, Arrangement
 from kinematics.gear.assembly import pins
 from kinematics.gear.teeth import Gear
-from service.render.gears.meshing import facing
+from service.render.gears.placed import PlacedGear, facing
 from synthesis.kinds.planetary_train.design import PlanetaryMechanism
 
 
 @dataclass(frozen=True)
-class PlacedPlanetaryGear:
-    """A gear in the drawing; ``copy`` counts the copies of a planet, ``tooth_at`` is the angle of a tooth's middle."""
+class PlanetaryGear(PlacedGear):
+    """A gear of a planetary train; ``copy`` counts the copies of a planet."""
 
     name: str
     body: str
     copy: int
     planes: tuple[int, ...]
-    gear: Gear
-    centre: complex
-    tooth_at: float
 
 
-def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlacedPlanetaryGear]:
+def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlanetaryGear]:
     """All gears with the axis at 0 and the first planet of each set on the positive real axis.
 
     Bevel gears are shown as if spread out in one plane, and without meshing teeth.
@@ -49,20 +46,17 @@ def placed_planetary_gears(mechanism: PlanetaryMechanism) -> list[PlacedPlanetar
     first = _first_copies(arrangement, gears, centres)
     layout = []
     for place in arrangement.gears:
-        if place.body not in arrangement.carriers:
-            layout.append(
-                PlacedPlanetaryGear(place.name, place.body, 0, place.planes, gears[place.name], 0j, first[place.name])
-            )
-            continue
-        places = mechanism.places[place.body]
-        for copy, step in enumerate(places.steps):
-            turn = 2.0 * math.pi * step / places.divisions
-            centre = centres[place.body] * cmath.exp(1j * turn)
-            turned = _turned(arrangement, gears, centres, first, place.body, turn)
+        carried = place.body in arrangement.carriers
+        copies = [] if carried else [(0j, 0.0)]
+        if carried:
+            places = mechanism.places[place.body]
+            for step in places.steps:
+                turn = 2.0 * math.pi * step / places.divisions
+                turned = _turned(arrangement, gears, centres, first, place.body, turn)
+                copies.append((centres[place.body] * cmath.exp(1j * turn), turned))
+        for copy, (centre, turned) in enumerate(copies):
             at = first[place.name] + turned
-            layout.append(
-                PlacedPlanetaryGear(place.name, place.body, copy, place.planes, gears[place.name], centre, at)
-            )
+            layout.append(PlanetaryGear(gears[place.name], centre, at, place.name, place.body, copy, place.planes))
     return layout
 
 

@@ -8,7 +8,7 @@ import math
 from kinematics.gear.arrangements import ARRANGEMENTS
 from service.render.checks import checks, verdict
 from service.render.gears.marks import PAPER, circles, label, label_box
-from service.render.gears.planetary_layout import PlacedPlanetaryGear, placed_planetary_gears
+from service.render.gears.planetary_layout import PlanetaryGear, placed_planetary_gears
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
@@ -53,14 +53,14 @@ def _words(design: PlanetaryDesign) -> str:
     return f"{title.capitalize()}; {parts}, ratio {ratio}; {verdict(design.verification)}".replace("-", "−")
 
 
-def _colour(placed: PlacedPlanetaryGear, design: PlanetaryDesign) -> str:
+def _colour(placed: PlanetaryGear, design: PlanetaryDesign) -> str:
     mechanism = design.mechanism
     colours = {mechanism.input: INPUT, mechanism.output: OUTPUT, mechanism.fixed: GROUND}
     arrangement = ARRANGEMENTS[mechanism.arrangement]
     return colours.get(placed.body, COUPLER if placed.body in arrangement.carriers else CURVE)
 
 
-def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlacedPlanetaryGear], name: str, unit: str) -> Element:
+def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlanetaryGear], name: str, unit: str) -> Element:
     panel = view.panel
     group = framed(panel, name or "main", PAPER)
     if name:
@@ -82,7 +82,7 @@ def _panel(design: PlanetaryDesign, view: Viewport, gears: list[PlacedPlanetaryG
     return group
 
 
-def _label(placed: PlacedPlanetaryGear, view: Viewport, colour: str) -> Element:
+def _label(placed: PlanetaryGear, view: Viewport, colour: str) -> Element:
     words = f"{placed.name.replace('_', ' ')} {placed.gear.teeth:g}"
     if placed.centre:
         at = view.point(placed.centre) + 16j

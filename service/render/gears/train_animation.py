@@ -7,9 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinematics.errors import DimensionError
-from kinematics.gear.profile import outline
-from service.render.gears.train_layout import PlacedGear, placed_gears
+from service.render.gears.train_layout import TrainGear, placed_gears
 from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box, Points
 from service.render.page.symbols import COUPLER, GROUND, INPUT, OUTPUT
@@ -47,9 +45,7 @@ def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, tit
     return animated(frames(), Box.around(np.concatenate(reached)))
 
 
-def _outline(placed: PlacedGear) -> Points:
-    """All teeth around the origin; the pitch circle where a cutter would come to a point."""
-    try:
-        return np.asarray(outline(placed.gear, placed.tooth_at))
-    except DimensionError:
-        return ring(0j, placed.pitch_radius)
+def _outline(placed: TrainGear) -> Points:
+    """All teeth around the origin; the pitch circle where there are none."""
+    teeth = placed.teeth()
+    return ring(0j, placed.pitch_radius) if teeth is None else teeth

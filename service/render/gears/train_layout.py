@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from kinematics.gear.teeth import Gear
-from service.render.gears.meshing import facing
-from service.render.page.svg import Box
+from service.render.gears.placed import PlacedGear, facing
 from synthesis.kinds.gear_train.design import GearTrainDesign
 from synthesis.kinds.gear_train.verification import driven_train
 
@@ -22,29 +21,21 @@ SAME_DISTANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class PlacedGear:
-    """A gear in the drawing; ``speed`` is its share of the input's, ``tooth_at`` the angle of one tooth's middle."""
+class TrainGear(PlacedGear):
+    """A gear of an ordinary train; ``speed`` is its share of the input's."""
 
     stage: int
     role: str
-    gear: Gear
-    centre: complex
-    tooth_at: float
     speed: Fraction
 
-    @property
-    def pitch_radius(self) -> float:
-        """Radius of the pitch circle."""
-        return self.gear.pitch_radius
 
-
-def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
+def placed_gears(design: GearTrainDesign, reverted: bool) -> list[TrainGear]:
     """All gears in the order of the power, the input shaft at 0."""
     mechanism = design.mechanism
     train = driven_train(mechanism)
     distances = train.centre_distances
     coaxial = reverted and max(distances) - min(distances) <= SAME_DISTANCE * max(distances)
-    placed: list[PlacedGear] = []
+    placed: list[TrainGear] = []
     shaft = 0j
     for number, (stage, speeds) in enumerate(zip(train.stages, train.speeds, strict=True)):
         ahead = _direction(number, len(train.stages), coaxial)
@@ -56,7 +47,7 @@ def placed_gears(design: GearTrainDesign, reverted: bool) -> list[PlacedGear]:
             if previous is not None:
                 centre += ahead * (previous.pitch_radius + gear.pitch_radius)
                 tooth_at = facing(previous, tooth_at, gear, cmath.phase(ahead))
-            placed.append(PlacedGear(number + 1, role, gear, centre, tooth_at, speed))
+            placed.append(TrainGear(gear, centre, tooth_at, number + 1, role, speed))
             previous = gear
         shaft = centre
     return placed
@@ -69,14 +60,3 @@ def _direction(number: int, stages: int, coaxial: bool) -> complex:
     if stages == 3:
         return cmath.exp(2j * math.pi * number / 3.0)
     return complex((-1) ** number)
-
-
-def box_around(gears: list[PlacedGear]) -> Box:
-    """The box around all tip circles."""
-    sides = [(g.centre, g.gear.tip_radius) for g in gears]
-    return Box(
-        min(c.real - r for c, r in sides),
-        min(c.imag - r for c, r in sides),
-        max(c.real + r for c, r in sides),
-        max(c.imag + r for c, r in sides),
-    )

@@ -8,7 +8,8 @@ import numpy as np
 
 from service.render.checks import checks, verdict
 from service.render.gears.marks import COLOURS, PAPER, circles, label, label_box
-from service.render.gears.train_layout import PlacedGear, box_around, placed_gears
+from service.render.gears.placed import box_around
+from service.render.gears.train_layout import TrainGear, placed_gears
 from service.render.outline import entries
 from service.render.page import blocks
 from service.render.page.numbers import length
@@ -55,7 +56,7 @@ def _description(design: GearTrainDesign, problem: GearTrainProblem) -> str:
     return f"Pitch circles of a gear train to scale: {listed}{idlers}."
 
 
-def _drawing(gears: list[PlacedGear], view: Viewport, unit: str) -> Element:
+def _drawing(gears: list[TrainGear], view: Viewport, unit: str) -> Element:
     group = framed(view.panel, "main", PAPER)
     for placed in gears:
         marks = {"data_stage": f"{placed.stage}", "data_gear": placed.role, "data_teeth": f"{placed.gear.teeth}"}
@@ -85,7 +86,7 @@ def _shaft(at: complex) -> list[Element]:
     return [circle(at, 3.0, fill="#fff", stroke=GROUND, stroke_width=1.4), *arms]
 
 
-def _turn(placed: PlacedGear, view: Viewport, start: float) -> list[Element]:
+def _turn(placed: TrainGear, view: Viewport, start: float) -> list[Element]:
     """An arrow round the shaft the way it turns, from an angle of ``start`` degrees over 140."""
     at = view.point(placed.centre)
     radius = max(14.0, min(30.0, 0.4 * view.scale * placed.pitch_radius))
@@ -103,7 +104,7 @@ def _unit(vector: complex) -> complex:
     return complex(vector / abs(vector))
 
 
-def _label(placed: PlacedGear, view: Viewport, taken: list[Box]) -> Element:
+def _label(placed: TrainGear, view: Viewport, taken: list[Box]) -> Element:
     """Tooth number at the pitch circle, at the first place where it covers no other label."""
     words = f"{placed.gear.teeth}"
     panel = view.panel.grown(-3.0)
@@ -121,7 +122,7 @@ def _label(placed: PlacedGear, view: Viewport, taken: list[Box]) -> Element:
     return label(box, words, COLOURS[placed.stage - 1], words)
 
 
-def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[PlacedGear]) -> list[blocks.Block]:
+def _tables(design: GearTrainDesign, problem: GearTrainProblem, gears: list[TrainGear]) -> list[blocks.Block]:
     unit, metrics = problem.length_unit, design.metrics
     tables = []
     for number, stage in enumerate(design.mechanism.stages, 1):

@@ -1,8 +1,4 @@
-"""DXF documents (R2010): a new one in the problem's unit, gears in it, and its text.
-
-A gear is drawn on two layers of one name: ``NAME_PITCH`` has its pitch circle, ``NAME_TEETH`` the closed outline of its
-teeth, true involutes with their fillets.
-"""
+"""DXF documents (R2010): a new one in the problem's unit, what is drawn in it, and its text."""
 
 from __future__ import annotations
 
@@ -17,10 +13,6 @@ from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
-
-from kinematics.errors import DimensionError
-from kinematics.gear.profile import outline
-from kinematics.gear.teeth import Gear
 
 # Without the time and the random marks of its making, so that the same design gives the same file.
 ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]
@@ -64,26 +56,6 @@ def written(document: Drawing) -> str:
     text = io.StringIO()
     document.write(text)
     return text.getvalue()
-
-
-def gear_layers(name: str, colour: int) -> dict[str, tuple[int, str]]:
-    """The two layers of a gear."""
-    return {f"{name}_PITCH": (colour, "DASHDOT"), f"{name}_TEETH": (colour, "CONTINUOUS")}
-
-
-def teeth_outline(gear: Gear, at: complex, tooth_at: float) -> list[tuple[float, float]] | None:
-    """The outline of all teeth; None for teeth whose cutter would come to a point, which have none."""
-    try:
-        return [(float(z.real), float(z.imag)) for z in at + outline(gear, tooth_at)]
-    except DimensionError:
-        return None
-
-
-def add_gear(space: Modelspace, name: str, gear: Gear, at: complex, teeth: list[tuple[float, float]] | None) -> None:
-    """Pitch circle and outline on the layers of ``name``."""
-    add_circle(space, at, gear.pitch_radius, f"{name}_PITCH")
-    if teeth is not None:
-        space.add_lwpolyline(teeth, close=True, dxfattribs={"layer": f"{name}_TEETH"})
 
 
 def add_circle(space: Modelspace, at: complex, radius: float, layer: str) -> None:

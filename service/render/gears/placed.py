@@ -1,0 +1,53 @@
+"""A gear in its place in a drawing, turned so that its teeth stand in the spaces of its mate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinematics.errors import DimensionError
+from kinematics.gear.profile import outline
+from kinematics.gear.teeth import Gear
+from service.render.page.svg import Box, Points
+
+
+@dataclass(frozen=True)
+class PlacedGear:
+    """A gear in a drawing; ``tooth_at`` is the angle of one tooth's middle."""
+
+    gear: Gear
+    centre: complex
+    tooth_at: float
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the pitch circle."""
+        return self.gear.pitch_radius
+
+    def teeth(self) -> Points | None:
+        """Outline of all teeth about the centre; None for teeth whose cutter would come to a point, which have none."""
+        try:
+            return np.asarray(outline(self.gear, self.tooth_at))
+        except DimensionError:
+            return None
+
+
+def box_around(gears: Iterable[PlacedGear]) -> Box:
+    """The box around all tip circles."""
+    return Box.around(np.array([g.centre + side * g.gear.tip_radius for g in gears for side in (-1 - 1j, 1 + 1j)]))
+
+
+def facing(gear: Gear, tooth_at: float, mate: Gear, ahead: float) -> float:
+    """Angle of a tooth of ``mate`` so that a space of it faces the tooth of ``gear`` nearest to their contact.
+
+    That tooth of ``gear`` is some way past the contact on the pitch circle; the space of ``mate`` is as far past it:
+    the other way round for external gears. ``ahead`` is the direction from the centre of ``gear`` to the contact; with
+    internal teeth both see it the same way.
+    """
+    past = math.remainder(tooth_at - ahead, 2.0 * math.pi / gear.teeth) * gear.pitch_radius / mate.pitch_radius
+    if gear.internal or mate.internal:
+        return ahead + past + math.pi / mate.teeth
+    return ahead + math.pi - past + math.pi / mate.teeth
