@@ -15,6 +15,7 @@ import pytest
 from ezdxf.path import make_path
 
 from service.render import exported
+from service.render.cam.animation import _holder
 from service.render.cam.scene import CamScene
 from service.render.page.diagrams import ticks
 from synthesis.kinds.cam.design import CamDesign
@@ -137,6 +138,18 @@ def test_drawn_faces_lie_along_the_profile(kind: str, rotation: str) -> None:
         if scene.pivot is not None:
             pivot = scene.pivot * scene.station(float(scene.angle[k * every]))
             assert abs(((pivot - start) * np.conj(along)).imag) == pytest.approx(6.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+def test_an_animated_face_lies_along_the_turned_profile(rotation: str) -> None:
+    scene = CamScene(solved("oscillating_flat", rotation)[0].mechanism)
+    theta = np.radians(np.arange(0.0, 360.0, 15.0))
+    contact = scene.contour.follow(scene.follower, theta, scene.mechanism.rotation)
+    for turn, point in zip(np.exp(1j * scene.sense * theta), contact.point, strict=True):
+        start, end = _holder(scene, complex(point * turn), 0j, 0.0)[0].points
+        along = (end - start) / abs(end - start)
+        height = ((scene.profile * turn - start) * np.conj(along)).imag
+        assert min(height.max(), -height.min()) == pytest.approx(0.0, abs=2e-3)
 
 
 def drawing_of(kind: str) -> ezdxf.document.Drawing:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinematics.cam.follower import OscillatingFlat, OscillatingRoller
 from kinematics.cam.profile import even_angles
 from service.render.cam.scene import CamScene
 from service.render.cam.view import STEM
@@ -23,8 +22,20 @@ CAM_FACE, ROLLER_FACE = "#e8eef6", "#f8eee2"
 SPOKES = 3
 """Lines through a roller that show how it turns."""
 
-MARK = 0.5
-"""Length of the line on the cam that shows how it turns, as a share of the base radius."""
+MARK, HUB, PIVOT = 0.5, 0.05, 0.06
+"""Shares of the base radius: length of the line that shows how the cam turns, radii of its shaft and of a pivot."""
+
+HALF_FACE, BEYOND_CONTACT = 0.45, 1.1
+"""Least half length of a translating face, a share of the base radius; how far it reaches, distances of the contact."""
+
+BLANK = 1.06
+"""Radius of the disc with a groove, in greatest radii of the groove's outer wall."""
+
+SPOKE = 0.85
+"""Length of a roller's spokes, as a share of its radius."""
+
+STEPS_A_FRAME = 12
+"""Steps from frame to frame by which the roller's way along the profile is summed."""
 
 
 def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
@@ -46,18 +57,18 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
         for k in range(FRAMES):
             strokes = []
             if scene.outer_wall is not None:
-                strokes.append(Stroke(ring(0j, 1.06 * far), GREY, 1.2, closed=True, fill=CAM_FACE))
+                strokes.append(Stroke(ring(0j, BLANK * far), GREY, 1.2, closed=True, fill=CAM_FACE))
                 strokes.append(Stroke(scene.outer_wall * turns[k], INPUT, 2.0, closed=True, fill="#ffffff"))
             strokes.append(Stroke(scene.profile * turns[k], INPUT, 2.4, closed=True, fill=CAM_FACE))
             strokes.append(Stroke(np.array([0j, MARK * scene.base_radius * turns[k]]), INPUT, 2.0))
-            strokes.append(Stroke(ring(0j, 0.05 * scene.base_radius), GROUND, 1.6, closed=True, fill="#ffffff"))
+            strokes.append(Stroke(ring(0j, HUB * scene.base_radius), GROUND, 1.6, closed=True, fill="#ffffff"))
             if radius > 0.0:
                 strokes += _roller(complex(centre[k]), radius, float(spin[k]))
             strokes += _holder(scene, complex(touching[k]), complex(centre[k]), reach)
             yield strokes
 
     corners: list[Points] = [
-        ring(0j, 1.06 * far if scene.outer_wall is not None else far),
+        ring(0j, BLANK * far if scene.outer_wall is not None else far),
         centre + radius,
         centre + reach,
     ]
@@ -68,44 +79,33 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
 
 def _spin(scene: CamScene, point: Points, toward: np.ndarray, radius: float) -> np.ndarray:
     """How far the roller has turned: its contact has travelled along it as far as along the profile."""
-    fine = even_angles(FRAMES * 12)
+    fine = even_angles(FRAMES * STEPS_A_FRAME)
     closed = scene.contour.follow(scene.follower, fine, scene.mechanism.rotation).point
-    travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])[::12]
+    travelled = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])[::STEPS_A_FRAME]
     return np.asarray(toward - scene.sense * travelled / radius)
 
 
 def _roller(centre: complex, radius: float, turned: float) -> list[Stroke]:
     strokes = [Stroke(ring(centre, radius), COUPLER, 2.2, closed=True, fill=ROLLER_FACE)]
     for spoke in range(SPOKES):
-        end = 0.85 * radius * complex(np.exp(1j * (turned + spoke * math.pi / SPOKES)))
+        end = SPOKE * radius * complex(np.exp(1j * (turned + spoke * math.pi / SPOKES)))
         strokes.append(Stroke(np.array([centre - end, centre + end]), COUPLER, 1.2))
     return strokes
 
 
 def _holder(scene: CamScene, touching: complex, centre: complex, reach: float) -> list[Stroke]:
     """What carries the roller, or the face with what carries it."""
-    follower, pivot = scene.follower, scene.pivot
-    if isinstance(follower, OscillatingRoller) and pivot is not None:
-        return [Stroke(np.array([pivot, centre]), COUPLER, 3.0), *_pivot(pivot, scene.base_radius)]
-    if isinstance(follower, OscillatingFlat) and pivot is not None:
-        reached = touching - pivot
-        foot_distance = math.sqrt(max(abs(reached) ** 2 - follower.face_offset**2, 0.0))
-        along = reached / complex(foot_distance, -follower.face_offset * follower.sense)
-        start = touching - along * (reached * along.conjugate()).real
-        end = touching + 0.35 * scene.base_radius * along
-        face = [Stroke(np.array([start, end]), COUPLER, 3.0), Stroke(np.array([start, pivot]), COUPLER, 2.0)]
-        return [*face, *_pivot(pivot, scene.base_radius)]
+    pivot = scene.pivot
+    if pivot is not None:
+        held = [(pivot, centre)] if scene.roller is not None else scene.swung_face(touching)
+        strokes = [Stroke(np.array(ends), COUPLER, width) for ends, width in zip(held, (3.0, 2.0), strict=False)]
+        return [*strokes, Stroke(ring(pivot, PIVOT * scene.base_radius), GROUND, 1.8, closed=True, fill="#ffffff")]
     if scene.roller is not None:
         return [Stroke(np.array([centre, centre + reach]), COUPLER, 3.0)]
-    half = 0.45 * scene.base_radius
     foot = complex(touching.real)
-    width = max(half, abs(touching.imag) * 1.1)
-    face_line = np.array([foot - 1j * width, foot + 1j * width])
-    return [Stroke(face_line, COUPLER, 3.0), Stroke(np.array([foot, foot + reach]), COUPLER, 3.0)]
-
-
-def _pivot(at: complex, size: float) -> list[Stroke]:
-    return [Stroke(ring(at, 0.06 * size), GROUND, 1.8, closed=True, fill="#ffffff")]
+    half = max(HALF_FACE * scene.base_radius, BEYOND_CONTACT * abs(touching.imag))
+    face = np.array([foot - 1j * half, foot + 1j * half])
+    return [Stroke(face, COUPLER, 3.0), Stroke(np.array([foot, foot + reach]), COUPLER, 3.0)]
 
 
 def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -> bytes:

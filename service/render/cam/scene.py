@@ -104,25 +104,36 @@ class CamScene:
             return [(complex(self.pitch_curve[0]), self.pivot)]
         if self.roller is not None:
             return []
-        (start, end), along = self.faces(len(self.angle))[0], self.face_direction(0)
         if self.pivot is None:
-            return [(start, end)]
-        foot = start + along * ((self.pivot - start) * along.conjugate()).real
-        return [(foot, end), (foot, self.pivot)]
+            return self.faces(len(self.angle))[:1]
+        return self.swung_face(complex(self.contact.point[0]))
+
+    def swung_face(self, point: complex) -> list[tuple[complex, complex]]:
+        """A flat face from the foot of its pivot to beyond its contact, and what holds it there, as lines.
+
+        The contact is a point of the ground's frame, in which the pivot stands still.
+        """
+        assert self.pivot is not None
+        along = self.face_direction(point, 1.0 + 0j)
+        foot = point + along * ((self.pivot - point) * along.conjugate()).real
+        return [(foot, point + FACE_SHARE * self.base_radius * along), (foot, self.pivot)]
 
     def faces(self, every: int) -> list[tuple[complex, complex]]:
         """A flat face around its contact, in each so many positions of the table."""
-        half = FACE_SHARE * self.base_radius
-        return [
-            (complex(self.contact.point[k] - half * along), complex(self.contact.point[k] + half * along))
-            for k, along in ((k, self.face_direction(k)) for k in range(0, len(self.angle), every))
-        ]
+        faces = []
+        for degrees, point in zip(self.angle[::every].tolist(), self.contact.point[::every].tolist(), strict=True):
+            half = FACE_SHARE * self.base_radius * self.face_direction(point, self.station(degrees))
+            faces.append((point - half, point + half))
+        return faces
 
-    def face_direction(self, k: int) -> complex:
-        """Unit vector along a flat face at a position of the table; away from the pivot where there is one."""
-        follower, station = self.follower, self.station(float(self.angle[k]))
+    def face_direction(self, point: complex, station: complex) -> complex:
+        """Unit vector along a flat face that touches the cam at a point; away from the pivot where there is one.
+
+        ``station`` is the ground's +x axis in the frame of the point.
+        """
+        follower = self.follower
         if not isinstance(follower, OscillatingFlat):
             return station * 1j
-        reach = complex(self.contact.point[k]) - follower.pivot_distance * station
+        reach = point - follower.pivot_distance * station
         foot = math.sqrt(max(abs(reach) ** 2 - follower.face_offset**2, 0.0))
         return reach / complex(foot, -follower.face_offset * follower.sense * self.sense)
