@@ -18,7 +18,7 @@ import numpy as np
 
 from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Slide
-from service.render.linkage.motion import DrivenLinkage, Real
+from service.render.linkage.motion import Demand, DrivenLinkage, Real
 from service.render.page.labels import Labels
 from service.render.page.sheet import clipping, fitted
 from service.render.page.svg import Box, Element, Points, Viewport, circle, element, line, path, polygon
@@ -31,13 +31,10 @@ from service.render.page.symbols import (
     OUTPUT,
     PALE,
     bearing,
-    demanded_point,
-    demanded_position,
+    demanded,
     scale_bar,
 )
 from service.render.page.symbols import GROUND as GROUND_COLOUR
-from synthesis.kinds.motion.problem import Position
-from synthesis.kinds.path.problem import PathPoint
 
 LINK_WIDTH, THIN, JOINT = 5.0, 2.4, 4.5
 """Strokes of the bold and the pale linkage, and the radius of a joint, pixels."""
@@ -70,12 +67,12 @@ class Scene:
         inputs: Real,
         traced: Sequence[str],
         used: str | None = None,
-        positions: Sequence[Position | PathPoint] = (),
+        demands: Sequence[Demand] = (),
         target: Points | None = None,
         hidden: Set[str] = frozenset(),
     ) -> None:
         self.linkage, self.mechanism, self.inputs = linkage, linkage.mechanism, inputs
-        self.positions, self.target, self.hidden = positions, target, hidden
+        self.demands, self.target, self.hidden = demands, target, hidden
         self.at = linkage.driven(inputs)
         self.paths: list[Points] = [linkage.path(joint, *linkage.cycle, SAMPLES) for joint in traced]
         self.used: Points = np.empty(0, np.complex128)
@@ -114,7 +111,7 @@ class Scene:
 
     def box(self) -> Box:
         """What the drawing must show."""
-        demanded = [position.point for position in self.positions]
+        demanded = [demand.point for demand in self.demands]
         target = [] if self.target is None else list(self.target)
         return Box.around(np.concatenate([self.places(), demanded, target, self.used, *self.paths]))
 
@@ -191,10 +188,8 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
     group = clipping(panel, "main")
     labels = Labels(panel.grown(-3.0))
     if shown.target is not None:
-        demanded = path(
-            view.shown(shown.target), stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3, data_curve="target"
-        )
-        group.add(demanded)
+        style: Style = {"stroke": DEMANDED, "stroke_width": 6.0, "stroke_opacity": 0.3}
+        group.add(path(view.shown(shown.target), data_curve="target", **style))
     for points in shown.paths:
         group.add(path(view.shown(points), stroke=CURVE, stroke_width=0.9))
     group.add(path(view.shown(shown.used), stroke=CURVE, stroke_width=2.2))
@@ -205,16 +200,14 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
     group.add(*_rails(shown, view))
     for k in range(len(shown.inputs) - 1, -1, -1):
         group.add(_configuration(shown, view, k, labels))
-    for k, position in enumerate(shown.positions):
-        at = view.point(position.point)
-        if isinstance(position, PathPoint):
-            symbol, lines = demanded_point(at, k + 1)
-        else:
-            symbol, lines = demanded_position(at, math.radians(position.angle), k + 1)
+    for demand in shown.demands:
+        symbol, lines = demanded(view.point(demand.point), demand.angle, demand.index + 1)
         labels.avoid(lines, 1.0)
         group.add(symbol)
-    for k, position in enumerate(shown.positions):
-        labels.place(view.point(position.point), f"{k + 1}", 11.0, clearance=9.0, ring=CURVE, style={"fill": CURVE})
+    for demand in shown.demands:
+        labels.place(
+            view.point(demand.point), f"{demand.index + 1}", 11.0, clearance=9.0, ring=CURVE, style={"fill": CURVE}
+        )
     for name, place in shown.joints(0).items():
         labels.place(
             view.point(place), name[0], 13.0, subscript=name[1:], clearance=8.0, away=-1j,

@@ -9,6 +9,7 @@ import numpy as np
 
 from service.render.linkage.fourbar_canvas import Canvas, Style
 from service.render.linkage.motion import Demand
+from service.render.page import symbols
 from service.render.page.numbers import angle
 from service.render.page.svg import CLIP_MARGIN, circle, clipped, line, path
 from service.render.page.symbols import (
@@ -18,8 +19,6 @@ from service.render.page.symbols import (
     INK,
     INPUT,
     arrow,
-    demanded_point,
-    demanded_position,
 )
 
 ROTATION_ARC = 26.0, 74.0
@@ -97,11 +96,7 @@ def rotation_arc(canvas: Canvas) -> complex | None:
 def demand(canvas: Canvas, demanded: Demand) -> None:
     """A demanded point or position."""
     if canvas.readable(demanded.point):
-        at, number = canvas.at(demanded.point), demanded.index + 1
-        if demanded.angle is None:
-            symbol, lines = demanded_point(at, number)
-        else:
-            symbol, lines = demanded_position(at, demanded.angle, number)
+        symbol, lines = symbols.demanded(canvas.at(demanded.point), demanded.angle, demanded.index + 1)
         canvas.labels.avoid(lines, 3.0)
         canvas.root.add(symbol)
 

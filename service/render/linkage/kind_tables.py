@@ -16,7 +16,7 @@ from service.render.linkage.drawing import PlanarPicture, Scene
 from service.render.linkage.fourbar import scene as fourbar_scene
 from service.render.linkage.fourbar_picture import FourbarPicture, description
 from service.render.linkage.function_diagram import function_diagram, range_arc
-from service.render.linkage.motion import DrivenLinkage, target_curve
+from service.render.linkage.motion import DrivenLinkage, demands_of, target_curve
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import angle, length, small
@@ -106,12 +106,11 @@ def guided(design: LinkageDesign, problem: MotionProblem | PathProblem, linkage:
             [fourbar_tables.targets(design, fourbar, unit)],
             dimensions=fourbar_tables.dimensions(design, fourbar, unit),
         )
-    inputs, target = linkage.targets(design), target_curve(problem)
-    positions = problem.positions if isinstance(problem, MotionProblem) else problem.points
+    inputs, target, demands = linkage.targets(design), target_curve(problem), demands_of(problem)
     if isinstance(problem, PathProblem) and problem.matched:
         last = inputs[0] + cycle(linkage.mechanism) if problem.closed else inputs[-1]
-        inputs, positions = np.array([inputs[0], last]), positions[:1]
-    scene = Scene(linkage, inputs, ["P"], "P", positions, target)
+        inputs, demands = np.array([inputs[0], last]), demands[:1]
+    scene = Scene(linkage, inputs, ["P"], "P", demands, target)
     slides = linkage.mechanism.driven_by_slide
     met = [
         (

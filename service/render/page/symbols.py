@@ -44,14 +44,14 @@ def bearing(at: complex, size: float) -> tuple[Element, list[Points]]:
     return symbol, [np.array([at, left, right, at]), np.array([left, right]) + 4j * size]
 
 
-def demanded_point(at: complex, number: int) -> tuple[Element, list[Points]]:
-    """Ring of a demanded point."""
+def demanded(at: complex, angle: float | None, number: int) -> tuple[Element, list[Points]]:
+    """Ring of a demanded point; of a position with its body frame: a long arrow at its angle, a short line across.
+
+    The angle is in radians, and None where the point alone is demanded.
+    """
     ring = circle(at, DEMAND_RADIUS, fill="none", stroke=DEMANDED, stroke_width=1.6, stroke_dasharray="3 1.6")
-    return element("g", ring, data_target=f"{number}"), []
-
-
-def demanded_position(at: complex, angle: float, number: int) -> tuple[Element, list[Points]]:
-    """Ring and body frame of a demanded position: a long arrow at its angle (radians), a short line across."""
+    if angle is None:
+        return element("g", ring, data_target=f"{number}"), []
     ahead = cmath.exp(-1j * angle)
     tip, side = at + DIRECTION_LENGTH * ahead, at - 0.42j * DIRECTION_LENGTH * ahead
     symbol = element(
@@ -59,7 +59,7 @@ def demanded_position(at: complex, angle: float, number: int) -> tuple[Element, 
         line(at, tip - 6.0 * ahead, stroke=DEMANDED, stroke_width=4.5, stroke_opacity=0.35),
         line(at, side, stroke=DEMANDED, stroke_width=1.3),
         arrow(tip - 8.0 * ahead, tip + 4.0 * ahead, 4.5, DEMANDED),
-        circle(at, DEMAND_RADIUS, fill="none", stroke=DEMANDED, stroke_width=1.6, stroke_dasharray="3 1.6"),
+        ring,
         data_target=f"{number}",
         data_angle=repr(math.degrees(angle)),
     )
