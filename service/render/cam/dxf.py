@@ -68,6 +68,9 @@ BARREL_LAYERS = {
 ARC_TOLERANCE = 1e-5
 """Distance of the arcs from the points that they replace, as a share of the base radius: 0.4 µm for 40 mm."""
 
+ARM, PIVOT = 0.08, 0.04
+"""Arm of the cross at the cam's centre, and radius of a pivot, as shares of the base radius."""
+
 LONGEST_RUN = 64
 """Points that one pair of arcs replaces at most."""
 
@@ -94,7 +97,7 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
         _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
         dxf.add_circle(space, 0j, scene.roller.prime_radius, "PRIME_CIRCLE")
     _follower(space, scene)
-    arm = 0.08 * scene.base_radius
+    arm = ARM * scene.base_radius
     dxf.add_cross(space, 0j, arm, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
     return dxf.written(document)
@@ -194,4 +197,4 @@ def _follower(space: Modelspace, scene: CamScene) -> None:
         if scene.pivot is None:
             dxf.add_line(space, centre, centre + scene.base_radius, "FOLLOWER")
     if scene.pivot is not None:
-        dxf.add_circle(space, scene.pivot, 0.04 * scene.base_radius, "FOLLOWER")
+        dxf.add_circle(space, scene.pivot, PIVOT * scene.base_radius, "FOLLOWER")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from service.render.cam.scene import CamScene
-from service.render.cam.view import FOOT, MARGIN, STYLES, barrel_box, barrel_panel, panel
+from service.render.cam.view import FOOT, MARGIN, STATION, STYLES, barrel_box, barrel_panel, panel
 from service.render.checks import checks, outcome, verdict
 from service.render.outline import entries
 from service.render.page import blocks
@@ -29,6 +29,9 @@ BARREL_HEIGHTS = 240.0, 620.0
 
 APART = 12.0, 4.0, 8.0
 """Space above tables below a drawing, above the diagrams below these, and between diagrams, pixels."""
+
+SAMPLE, KEY_SIZE, KEY_GAP, KEY_MIDDLE = 20.0, 10.0, 9.0, 4.0
+"""Of the key: length of a sample, font size, space between entries, height of small letters' middle; pixels."""
 
 SEGMENT_COLUMNS = (0.06, 0.09, 0.58, 0.72, 0.86, 1.0)
 """Right ends of the columns of the table of segments, shares of its width; the left end of the words."""
@@ -230,15 +233,15 @@ def _diagrams(design: CamDesign, problem: CamProblem, scene: CamScene) -> list[D
 
 def _key(scene: CamScene, y: float) -> Element:
     """What the line styles mean."""
-    group, x = element("g", data_key="true"), EDGE
+    group, x, middle = element("g", data_key="true"), EDGE, y - KEY_MIDDLE
     for name, style in STYLES.items():
         if scene.roller is None and name in ("pitch curve", "prime circle"):
             continue
         if name == "outer wall":
             # Its line is the profile's.
             continue
-        group.add(line(complex(x, y - 4.0), complex(x + 20.0, y - 4.0), **style))
-        group.add(text(x + 24.0, y, name, 10.0, fill=GREY))
-        x += 24.0 + text_width(name, 10.0) + 9.0
-    group.add(circle(complex(x + 3.0, y - 4.0), 1.8, fill=CURVE), text(x + 8.0, y, "cam angle", 10.0, fill=GREY))
+        group.add(line(complex(x, middle), complex(x + SAMPLE, middle), **style))
+        group.add(text(x + SAMPLE + 4.0, y, name, KEY_SIZE, fill=GREY))
+        x += SAMPLE + 4.0 + text_width(name, KEY_SIZE) + KEY_GAP
+    group.add(circle(complex(x + 3.0, middle), STATION, fill=CURVE), text(x + 8.0, y, "cam angle", KEY_SIZE, fill=GREY))
     return group

@@ -51,8 +51,14 @@ STATION, STATION_TEXT = 1.8, 9.5
 STEM = 0.8
 """Length of a translating follower's stem beyond its roller or face, as a share of the base radius."""
 
-ROTATION = 0.45
-"""Radius of the arc that shows the rotation, as a share of the base radius."""
+ROTATION, ROTATION_AT, ROTATION_ANGLE = 0.45, -110.0, 80.0
+"""Arc that shows the rotation: radius as a share of the base radius, middle and angle on the sheet in degrees."""
+
+BEARING, AXIS = 0.8, 4.0
+"""Size of the ground symbols at the cam's centre and at a pivot, and radius of their pins, pixels."""
+
+SMALLEST_ROLLER = 1.5
+"""Least radius of the drawn follower's roller, pixels: a knife edge is seen too."""
 
 STYLES: dict[str, dict[str, str | float]] = {
     "profile": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
@@ -97,9 +103,9 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
         group.add(_closed(scene.outer_wall, viewport, "outer wall"))
     group.add(_stations(scene.mechanism.pitch_curve, viewport, labels, centre))
     group.add(_follower(scene, viewport))
-    symbol, _ = bearing(centre, 0.8)
+    symbol, _ = bearing(centre, BEARING)
     group.add(
-        element("g", symbol, circle(centre, 4.0, fill="#fff", stroke=GROUND, stroke_width=1.5), data_part="centre")
+        element("g", symbol, circle(centre, AXIS, fill="#fff", stroke=GROUND, stroke_width=1.5), data_part="centre")
     )
     group.add(_rotation(scene, viewport))
     bar, _ = scale_bar(viewport, unit)
@@ -155,7 +161,7 @@ def _follower(scene: CamScene, viewport: Viewport) -> Element:
         centre = complex(scene.pitch_curve[0])
         if scene.pivot is None:
             group.add(*_stem(viewport, centre, centre + roller.roller_radius + reach))
-        radius = max(viewport.scale * roller.roller_radius, 1.5)
+        radius = max(viewport.scale * roller.roller_radius, SMALLEST_ROLLER)
         group.add(circle(viewport.point(centre), radius, fill="#fff", fill_opacity=0.7))
         group.add(circle(viewport.point(centre), 2.5, fill=COUPLER))
     elif scene.pivot is None:
@@ -163,7 +169,7 @@ def _follower(scene: CamScene, viewport: Viewport) -> Element:
         group.add(*_stem(viewport, foot, foot + reach))
     if scene.pivot is not None:
         at = viewport.point(scene.pivot)
-        group.add(bearing(at, 0.8)[0], circle(at, 4.0, fill="#fff", stroke=GROUND, stroke_width=1.5))
+        group.add(bearing(at, BEARING)[0], circle(at, AXIS, fill="#fff", stroke=GROUND, stroke_width=1.5))
     return group
 
 
@@ -187,7 +193,7 @@ def _rotation(scene: CamScene, viewport: Viewport) -> Element:
     radius = ROTATION * scene.base_radius * viewport.scale
     centre = viewport.point(0j)
     # On the sheet y points down, so that a counter-clockwise turn has falling angles.
-    start, turn = math.radians(-110.0), -scene.sense * math.radians(80.0)
+    start, turn = math.radians(ROTATION_AT), -scene.sense * math.radians(ROTATION_ANGLE)
     start -= 0.5 * turn
     points = centre + radius * np.exp(1j * (start + turn * np.linspace(0.0, 1.0, 25)))
     tip = complex(points[-1])

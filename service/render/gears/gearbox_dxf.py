@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from ezdxf.document import Drawing
 
-from service.render.gears.dxf import add_gear, gear_layers
+from service.render.gears.dxf import LINE_STEP, add_gear, gear_layers
 from service.render.gears.gearbox_layout import BoxLayout, gearbox_layout, layshaft_layout
 from service.render.gears.placed import box_around
 from service.render.page import dxf
@@ -33,6 +33,12 @@ COLOURS = (5, 3, 30, 6, 4, 1, 2)
 
 FACE, ROOM, LETTERS = 8.0, 4.0, 2.0
 """Width of a face, room beside it and height of letters, in modules."""
+
+BEYOND = 0.4 * ROOM
+"""How far an axis goes on beyond its last face, in modules."""
+
+NAMES, APART = 8.0, 6.0
+"""Room at the left for the names of the shafts, and between the two views, in heights of letters."""
 
 
 def gearbox_drawing(design: GearboxDesign, problem: GearboxProblem, title: str) -> str:
@@ -65,7 +71,7 @@ def _from_the_end(document: Drawing, layout: BoxLayout, module: float) -> None:
     top = box_around(layout.gears).high
     for k, shaft in enumerate(layout.shafts):
         dxf.add_cross(space, shaft.centre, LETTERS * module, "SHAFTS")
-        above = complex(shaft.centre.real, top + (2.0 + 1.6 * k) * LETTERS * module)
+        above = complex(shaft.centre.real, top + (2.0 + LINE_STEP * k) * LETTERS * module)
         dxf.add_words(space, above, shaft.name, LETTERS * module)
 
 
@@ -73,8 +79,8 @@ def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
     space = document.modelspace()
     seen = box_around(layout.gears)
     highest = max(placed.gear.tip_radius - layout.shafts[placed.shaft].below for placed in layout.gears)
-    left = seen.left + 8.0 * LETTERS * module
-    axis = seen.low - highest - 6.0 * LETTERS * module
+    left = seen.left + NAMES * LETTERS * module
+    axis = seen.low - highest - APART * LETTERS * module
     face, step = FACE * module, (FACE + ROOM) * module
 
     for placed in layout.gears:
@@ -88,8 +94,8 @@ def _developed(document: Drawing, layout: BoxLayout, module: float) -> None:
         words = low + 0.5 * face + 1j * (0.5 * placed.gear.pitch_radius)
         dxf.add_words(space, words, f"z={placed.gear.teeth:g}", LETTERS * module)
     for shaft in layout.shafts:
-        start = complex(left + shaft.slots[0] * step - 0.4 * ROOM * module, axis - shaft.below)
-        end = complex(left + shaft.slots[1] * step + face + 0.4 * ROOM * module, axis - shaft.below)
+        start = complex(left + shaft.slots[0] * step - BEYOND * module, axis - shaft.below)
+        end = complex(left + shaft.slots[1] * step + face + BEYOND * module, axis - shaft.below)
         dxf.add_line(space, start, end, "SHAFTS")
         if shaft.slots[0] == 0:
             dxf.add_words(space, start - 4.0 * LETTERS * module, shaft.name, LETTERS * module)

@@ -25,6 +25,12 @@ from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
 COLUMN, HEIGHT = 400.0, 620.0
 """Width of the tables, and height of the diagram, pixels."""
 
+LEFT, RIGHT, HEAD, FOOT = 70.0, 100.0, 50.0, 30.0
+"""Room around the rays: for the speeds at both sides, for the names of the shafts above, and below; pixels."""
+
+SHAFT_NAME, SPEED = 11.5, 10.5
+"""Font sizes of the names of the shafts, and of speeds and teeth, pixels."""
+
 RAY_LABEL = 0.72
 """Share of a ray's length at which its teeth stand, towards the end, where the rays have parted."""
 
@@ -116,8 +122,8 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
     span = (high - low) or 1.0
 
     def point(shaft: int, speed: float) -> complex:
-        across = panel.left + 70.0 + (panel.width - 170.0) * shaft / (len(shafts) - 1)
-        return complex(across, panel.high - 30.0 - (panel.height - 80.0) * (math.log(speed) - low) / span)
+        across = panel.left + LEFT + (panel.width - LEFT - RIGHT) * shaft / (len(shafts) - 1)
+        return complex(across, panel.high - FOOT - (panel.height - HEAD - FOOT) * (math.log(speed) - low) / span)
 
     group = framed(panel, "ray_diagram", PAPER)
     for speed in shafts[-1]:
@@ -126,7 +132,7 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
     for k, name in enumerate(names):
         top, foot = complex(point(k, min(every)).real, panel.low + 34.0), point(k, min(every)) + 12j
         group.add(line(top, foot, stroke=INK, stroke_width=1.2))
-        group.add(text(top.real, panel.low + 24.0, name, 11.5, fill=INK, text_anchor="middle"))
+        group.add(text(top.real, panel.low + 24.0, name, SHAFT_NAME, fill=INK, text_anchor="middle"))
     for ray in rays:
         start, end = point(ray.shaft, ray.start), point(ray.shaft + 1, ray.end)
         colour = COLOURS[ray.shaft % len(COLOURS)]
@@ -140,11 +146,11 @@ def _diagram(names: Sequence[str], shafts: Sequence[Sequence[float]], rays: Sequ
             if k in (0, len(shafts) - 1):
                 offset, anchor = (10.0, "start") if k else (-10.0, "end")
                 words = length(speed, digits=4)
-                group.add(text(at.real + offset, at.imag + 4.0, words, 10.5, fill=INK, text_anchor=anchor))
+                group.add(text(at.real + offset, at.imag + 4.0, words, SPEED, fill=INK, text_anchor=anchor))
     return group
 
 
 def _label(at: complex, words: str, colour: str) -> Element:
-    half = 0.5 * text_width(words, 10.5) + 2.0
+    half = 0.5 * text_width(words, SPEED) + 2.0
     clear = element("rect", x=at.real - half, y=at.imag - 7.0, width=2.0 * half, height=14.0, fill=PAPER)
-    return element("g", clear, text(at.real, at.imag + 3.8, words, 10.5, fill=colour, text_anchor="middle"))
+    return element("g", clear, text(at.real, at.imag + 3.8, words, SPEED, fill=colour, text_anchor="middle"))

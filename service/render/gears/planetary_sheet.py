@@ -21,6 +21,12 @@ from synthesis.kinds.planetary_train.problem import PlanetaryProblem
 LARGEST = "largest pitch diameter"
 """What the size of a planetary train is."""
 
+HEIGHT, HEIGHT_OF_SEVERAL, APART = 560.0, 430.0, 10.0
+"""Heights of a panel that is alone, and of one of several, and the space between these, pixels."""
+
+RING_LABEL, SUN_LABEL = 140.0, 250.0
+"""Angles on the pitch circles of the gears about the main axis at which their labels stand, degrees."""
+
 MARGIN = 24.0
 """Room in a panel around what is shown, and more of it below, pixels."""
 
@@ -31,14 +37,14 @@ def planetary_sheet(design: PlanetaryDesign, problem: PlanetaryProblem, title: s
     gears = placed_planetary_gears(mechanism)
     planes = sorted({plane for placed in gears for plane in placed.planes})
     reach = max((abs(placed.centre) + placed.gear.pitch_radius for placed in gears), default=1.0) + mechanism.module
-    height = 430.0 if len(planes) > 1 else 560.0
+    height = HEIGHT_OF_SEVERAL if len(planes) > 1 else HEIGHT
     parts, low = [], TOP
     for plane in planes:
         panel = Box(EDGE, low, EDGE + beside(), low + height)
         view = Viewport.fit(Box(-reach, -reach, reach, reach), panel, MARGIN, MARGIN)
         shown = [placed for placed in gears if plane in placed.planes]
         parts.append(_panel(design, view, shown, f"plane {plane}" if len(planes) > 1 else "", unit))
-        low += height + 10.0
+        low += height + APART
     tables, y = stacked(_tables(design, problem))
     listed = ", ".join(f"{gear} {teeth}" for gear, teeth in mechanism.teeth.items())
     described = f"Pitch circles of a planetary train to scale, {mechanism.arrangement}: {listed} teeth."
@@ -87,9 +93,8 @@ def _label(placed: PlanetaryGear, view: Viewport, colour: str) -> Element:
     if placed.centre:
         at = view.point(placed.centre) + 16j
     else:
-        at = view.point(
-            placed.gear.pitch_radius * cmath.exp(1j * math.radians(140.0 if placed.gear.internal else 250.0))
-        )
+        degrees = RING_LABEL if placed.gear.internal else SUN_LABEL
+        at = view.point(placed.pitch_radius * cmath.exp(1j * math.radians(degrees)))
     return label(label_box(at, words), words, colour, placed.name)
 
 

@@ -19,6 +19,9 @@ COLOURS = (INPUT, OUTPUT, COUPLER)
 
 FACES = ("#e8eef6", "#e6f1ea", "#f8eee2")
 
+SPOKE, HUB = 0.8, 0.08
+"""Length of the line that shows how a gear turns, and radius of its shaft, as shares of the pitch radius."""
+
 PITCHES = 6
 """Teeth of the input gear that pass in one cycle; the other stages' gears stand otherwise at its end."""
 
@@ -36,9 +39,9 @@ def gear_train_animation(design: GearTrainDesign, problem: GearTrainProblem, tit
                 turned = complex(np.exp(1j * turn * k / FRAMES * float(gear.speed)))
                 colour, face = COLOURS[(gear.stage - 1) % 3], FACES[(gear.stage - 1) % 3]
                 strokes.append(Stroke(gear.centre + points * turned, colour, 1.4, closed=True, fill=face))
-                spoke = np.array([gear.centre, gear.centre + 0.8 * gear.pitch_radius * turned])
+                spoke = np.array([gear.centre, gear.centre + SPOKE * gear.pitch_radius * turned])
                 strokes.append(Stroke(spoke, colour, 1.6))
-                strokes.append(Stroke(ring(gear.centre, 0.08 * gear.pitch_radius), GROUND, 1.4, True, "#ffffff"))
+                strokes.append(Stroke(ring(gear.centre, HUB * gear.pitch_radius), GROUND, 1.4, True, "#ffffff"))
             yield strokes
 
     reached = [ring(gear.centre, float(np.abs(points).max())) for gear, points in zip(gears, outlines, strict=True)]

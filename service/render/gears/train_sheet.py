@@ -22,6 +22,15 @@ from synthesis.kinds.gear_train.problem import GearTrainProblem
 HEIGHTS = (420.0, 860.0)
 """Least and greatest height of the drawing, pixels."""
 
+MARGIN, FOOT = 20.0, 26.0
+"""Room in the panel around what is shown, and more of it below for the scale bar, pixels."""
+
+TURN_RADII, TURN = (14.0, 30.0), 140.0
+"""Least and greatest radius, pixels, and angle, degrees, of the arrow that shows how a shaft turns."""
+
+TURN_OF_DRIVERS, TURN_OF_OUTPUT = 200.0, 20.0
+"""Angles at which these arrows begin, degrees: on coaxial shafts the output's is opposite to the input's."""
+
 PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.0, 165.0)
 """Angles on the pitch circle, degrees, at which a gear's label is tried, the first that is free."""
 
@@ -29,7 +38,7 @@ PLACES = (90.0, 65.0, 115.0, 40.0, 140.0, 270.0, 245.0, 295.0, 220.0, 320.0, 15.
 def gear_train_sheet(design: GearTrainDesign, problem: GearTrainProblem, title: str) -> str:
     """The drawing of a gear train as a complete SVG document."""
     gears = placed_gears(design, problem.reverted)
-    view = fitted(box_around(gears), beside(), HEIGHTS, 20.0, 26.0)
+    view = fitted(box_around(gears), beside(), HEIGHTS, MARGIN, FOOT)
     tables, y = stacked(_tables(design, problem, gears))
     drawn = _drawing(gears, view, problem.length_unit)
     bottom = max(view.panel.high, y)
@@ -69,8 +78,8 @@ def _drawing(gears: list[TrainGear], view: Viewport, unit: str) -> Element:
             group.add(*_shaft(at))
     for placed in gears:
         if placed.role != "driven":
-            group.add(*_turn(placed, view, 200.0))
-    group.add(*_turn(gears[-1], view, 20.0))
+            group.add(*_turn(placed, view, TURN_OF_DRIVERS))
+    group.add(*_turn(gears[-1], view, TURN_OF_OUTPUT))
     for placed, words, below in ((gears[0], "in", 1.0), (gears[-1], "out", -1.0)):
         at = view.point(placed.centre) + below * 11j
         group.add(text(at.real + 5.0, at.imag + 4.0, words, 10.5, fill=GROUND))
@@ -87,11 +96,11 @@ def _shaft(at: complex) -> list[Element]:
 
 
 def _turn(placed: TrainGear, view: Viewport, start: float) -> list[Element]:
-    """An arrow round the shaft the way it turns, from an angle of ``start`` degrees over 140."""
+    """An arrow round the shaft the way it turns, from an angle of ``start`` degrees."""
     at = view.point(placed.centre)
-    radius = max(14.0, min(30.0, 0.4 * view.scale * placed.pitch_radius))
+    radius = max(TURN_RADII[0], min(TURN_RADII[1], 0.4 * view.scale * placed.pitch_radius))
     way = 1.0 if placed.speed > 0 else -1.0
-    angles = np.radians(np.linspace(start, start + 140.0, 25))[:: 1 if way > 0 else -1]
+    angles = np.radians(np.linspace(start, start + TURN, 25))[:: 1 if way > 0 else -1]
     # Sheet coordinates run down: the conjugate turns the way the gear does.
     points = np.asarray(at + radius * np.exp(-1j * angles), np.complex128)
     head = arrow(complex(points[-2]), complex(points[-1] + 5.0 * _unit(points[-1] - points[-2])), 3.6, GREY)

@@ -19,13 +19,13 @@ import numpy as np
 from kinematics.linkage.planar.drive import MechanismMotion
 from kinematics.linkage.planar.mechanism import GROUND, Slide
 from service.render.linkage.motion import Demand, DrivenLinkage, Real
+from service.render.linkage.styles import GHOST, GROUND_LINE, TARGET_CURVE, USED_PATH, WHOLE_PATH, Style
 from service.render.page.labels import Labels
 from service.render.page.sheet import clipping, fitted
 from service.render.page.svg import Box, Element, Points, Viewport, circle, element, line, path, polygon
 from service.render.page.symbols import (
     COUPLER,
     CURVE,
-    DEMANDED,
     INK,
     INPUT,
     OUTPUT,
@@ -36,8 +36,8 @@ from service.render.page.symbols import (
 )
 from service.render.page.symbols import GROUND as GROUND_COLOUR
 
-LINK_WIDTH, THIN, JOINT = 5.0, 2.4, 4.5
-"""Strokes of the bold and the pale linkage, and the radius of a joint, pixels."""
+LINK_WIDTH, PLATE_EDGE, JOINT = 5.0, 2.4, 4.5
+"""Strokes of a bar of the bold linkage and of a plate's edge, and the radius of a joint, pixels."""
 
 BLOCK = (22.0, 13.0)
 """A slide's block, pixels."""
@@ -50,8 +50,6 @@ MARGIN, FOOT = 50.0, 26.0
 
 SAMPLES = 361
 """Points of a path."""
-
-Style = dict[str, str | float | None]
 
 
 class Scene:
@@ -188,15 +186,13 @@ def drawing(shown: Scene, view: Viewport, unit: str) -> Element:
     group = clipping(panel, "main")
     labels = Labels(panel.grown(-3.0))
     if shown.target is not None:
-        style: Style = {"stroke": DEMANDED, "stroke_width": 6.0, "stroke_opacity": 0.3}
-        group.add(path(view.shown(shown.target), data_curve="target", **style))
+        group.add(path(view.shown(shown.target), **TARGET_CURVE, data_curve="target"))
     for points in shown.paths:
-        group.add(path(view.shown(points), stroke=CURVE, stroke_width=0.9))
-    group.add(path(view.shown(shown.used), stroke=CURVE, stroke_width=2.2))
+        group.add(path(view.shown(points), **WHOLE_PATH))
+    group.add(path(view.shown(shown.used), **USED_PATH))
     labels.avoid(view.shown(shown.used), 1.0)
-    ground: Style = {"stroke": GROUND_COLOUR, "stroke_width": 1.3, "stroke_dasharray": "12 4 2 4"}
     for start, end in pairwise(view.point(z) for z in shown.pivots()):
-        group.add(line(start, end, data_link=GROUND, **ground))
+        group.add(line(start, end, data_link=GROUND, **GROUND_LINE))
     group.add(*_rails(shown, view))
     for k in range(len(shown.inputs) - 1, -1, -1):
         group.add(_configuration(shown, view, k, labels))
@@ -253,8 +249,9 @@ def _configuration(shown: Scene, view: Viewport, k: int, labels: Labels) -> Elem
 def _link(name: str, corners: list[complex], first: bool, driven: bool) -> Element:
     """A link: a bar between two joints, a plate between three or more."""
     colour = INPUT if driven else COUPLER if name == "coupler" else OUTPUT
-    style: Style = {"stroke": colour if first else PALE, "stroke_width": LINK_WIDTH if first else THIN}
+    style = {"stroke": colour, "stroke_width": LINK_WIDTH} if first else GHOST
     if len(corners) == 2:
         return line(corners[0], corners[1], stroke_linecap="round", data_link=name, **style)
     fill: Style = {"fill": colour, "fill_opacity": 0.14} if first else {"fill": "none"}
-    return polygon(around(corners), stroke_linejoin="round", data_link=name, **{**style, **fill, "stroke_width": THIN})
+    style = style | fill | {"stroke_width": PLATE_EDGE}
+    return polygon(around(corners), stroke_linejoin="round", data_link=name, **style)

@@ -57,6 +57,15 @@ LINK_COLOURS = (5, 30, 3, 4, 2, 6)
 PIN, ARM, WORDS, BLOCK = 0.008, 0.02, 0.018, 0.03
 """Radius of a pin, arm of a cross, height of letters and length of a block, as shares of the drawing's diagonal."""
 
+BLOCK_HEIGHT, TARGET, DIRECTION = 0.6 * BLOCK, 1.5 * PIN, 3.0 * ARM
+"""Height of a block, radius of a demanded point and length of its direction, as shares of the diagonal."""
+
+ARROW, GAP = 0.6 * WORDS, 0.3 * WORDS
+"""Arrows of a dimension, and how far its lines begin from the joints and go on beyond the arrows, as such shares."""
+
+ASIDE = 1.6
+"""Distance of the middle of a name from its joint in x and y, in heights of letters."""
+
 DIMENSION_ASIDE = 0.045
 """Distance of a dimension line from its link, as a share of the diagonal."""
 
@@ -110,9 +119,9 @@ def _links(space: Modelspace, scene: Scene, k: int, size: float) -> None:
         return
     for name, place in joints.items():
         dxf.add_circle(space, place, PIN * size, "JOINTS")
-        dxf.add_words(space, place + 1.6 * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
+        dxf.add_words(space, place + ASIDE * WORDS * size * (1.0 + 1.0j), name, WORDS * size)
     for _, place, turned in scene.slides(0):
-        dxf.add_outline(space, block_corners(place, turned, BLOCK * size, 0.6 * BLOCK * size), "SLIDES")
+        dxf.add_outline(space, block_corners(place, turned, BLOCK * size, BLOCK_HEIGHT * size), "SLIDES")
 
 
 def _ground(space: Modelspace, scene: Scene, size: float) -> None:
@@ -144,10 +153,10 @@ def _targets(space: Modelspace, demanded: list[Demand], size: float) -> None:
     """Demanded points as circles, with the direction of the body."""
     for k, demand in enumerate(demanded):
         at = demand.point
-        dxf.add_circle(space, at, 1.5 * PIN * size, "TARGETS")
+        dxf.add_circle(space, at, TARGET * size, "TARGETS")
         if demand.angle is not None:
-            dxf.add_line(space, at, at + 3.0 * ARM * size * cmath.exp(1j * demand.angle), "TARGETS")
-        dxf.add_words(space, at - 1.6 * WORDS * size * (1.0 + 1.0j), str(k + 1), WORDS * size)
+            dxf.add_line(space, at, at + DIRECTION * size * cmath.exp(1j * demand.angle), "TARGETS")
+        dxf.add_words(space, at - ASIDE * WORDS * size * (1.0 + 1.0j), str(k + 1), WORDS * size)
 
 
 def _dimensions(space: Modelspace, scene: Scene, size: float) -> None:
@@ -163,8 +172,8 @@ def _dimensions(space: Modelspace, scene: Scene, size: float) -> None:
                     p2=(p2.real, p2.imag),
                     distance=DIMENSION_ASIDE * size,
                     dimstyle="EZDXF",
-                    override={"dimtxt": WORDS * size, "dimasz": 0.6 * WORDS * size, "dimexe": 0.3 * WORDS * size,
-                              "dimexo": 0.3 * WORDS * size, "dimdec": 4, "dimzin": 8},
+                    override={"dimtxt": WORDS * size, "dimasz": ARROW * size, "dimexe": GAP * size,
+                              "dimexo": GAP * size, "dimdec": 4, "dimzin": 8},
                     dxfattribs={"layer": "DIMENSIONS"},
                 )  # fmt: skip
                 dimension.render()

@@ -29,8 +29,12 @@ MEETS = 1e-6
 """A configuration meets a position when it misses by less than this share of the task's size, and radians: far below
 what the eye sees, far above rounding."""
 
-AT_LIMIT = 1e-6
-"""Input angles, radians, beyond a limit by less than this count as at the limit: a target at a toggle stays visible."""
+AT_LIMIT, INSIDE = 1e-6, 1e-9
+"""Input angles, radians, beyond a limit by less than the first count as at the limit, and are moved inside it by the
+second: a target at a toggle stays visible."""
+
+SWEPT_SAMPLES = 33
+"""Points of the path of A, whose box alone is asked for."""
 
 CURVE_SAMPLES = 121
 """First sample points on a coupler curve; more are put where it is fast."""
@@ -131,7 +135,7 @@ class Scene:
     def swept(self) -> Points:
         """Path of A as far as the input reaches, coarsely."""
         start, end = self.limits or (0.0, math.tau)
-        return np.asarray(positions(self.linkage, np.linspace(start, end, 33)).a)
+        return np.asarray(positions(self.linkage, np.linspace(start, end, SWEPT_SAMPLES)).a)
 
     def box(self) -> Box:
         """What the drawing must show: all joints and the used curve whole, the rest of the curve in part."""
@@ -234,7 +238,7 @@ def _assembled(
     """A, B, P and coupler angle; a hair inside a limit where the angle is a hair outside; None if it cannot close."""
     off = np.remainder(toggles - angle + np.pi, 2.0 * np.pi) - np.pi
     nearest = float(off[np.argmin(np.abs(off))]) if off.size else math.inf
-    shifts = (0.0, nearest + AT_LIMIT * 1e-3, nearest - AT_LIMIT * 1e-3) if abs(nearest) < AT_LIMIT else (0.0,)
+    shifts = (0.0, nearest + INSIDE, nearest - INSIDE) if abs(nearest) < AT_LIMIT else (0.0,)
     for shift in shifts:
         at = positions(linkage, angle + shift, assembly)
         if at.valid:

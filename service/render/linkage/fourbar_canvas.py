@@ -22,8 +22,6 @@ FRAME_REACH = 12.0
 ROOMY, SMALLEST = 30.0, 0.4
 """Distance of joints on the sheet, pixels, from which the linkage is drawn in full size, and the least factor on it."""
 
-Style = dict[str, str | float | None]
-
 
 class Detail(NamedTuple):
     """A part of the mechanism that is drawn again in another panel, with that panel's name and viewport."""

@@ -9,7 +9,8 @@ from __future__ import annotations
 import cmath
 
 from service.render.linkage.fourbar import Configuration
-from service.render.linkage.fourbar_canvas import Canvas, Style
+from service.render.linkage.fourbar_canvas import Canvas
+from service.render.linkage.styles import GHOST, GHOST_WIDTH, GROUND_LINE
 from service.render.page.labels import direction_between
 from service.render.page.svg import Element, circle, clipped_polygon, element, line, polygon
 from service.render.page.symbols import (
@@ -21,15 +22,20 @@ from service.render.page.symbols import (
     INK,
     INPUT,
     OUTPUT,
-    PALE,
     bearing,
 )
 
 LINK_WIDTH, JOINT_RADIUS, PIVOT_RADIUS = 5.0, 5.0, 6.0
 """Sizes of the bold linkage, pixels, where there is room."""
 
+SEEN_BEYOND = 40.0
+"""Plates are cut so many pixels outside their panel."""
+
 BAR_HEIGHT = 2.5
 """A coupler triangle lower than this many pixels is drawn as a bar."""
+
+JOINT_NAME, LINK_NAME, GHOST_NAME = 15.0, 13.0, 11.0
+"""Font sizes of the names of joints and links, and of joints at the other targets, pixels."""
 
 NAMED_LENGTH = 40.0
 """Links shorter than this on the sheet, pixels, have no letter."""
@@ -38,8 +44,7 @@ NAMED_LENGTH = 40.0
 def ground(canvas: Canvas) -> None:
     """The line between the fixed pivots, and their bearings."""
     o2, o4 = canvas.scene.o2, canvas.scene.o4
-    style: Style = {"stroke": GROUND, "stroke_width": 1.3, "stroke_dasharray": "12 4 2 4"}
-    group = element("g", data_link="ground").add(canvas.segment(o2, o4, 2.0, **style))
+    group = element("g", data_link="ground").add(canvas.segment(o2, o4, 2.0, **GROUND_LINE))
     for pivot in (o2, o4):
         if canvas.readable(pivot):
             symbol, outline = bearing(canvas.at(pivot), max(0.6, canvas.size))
@@ -78,11 +83,11 @@ def joints(canvas: Canvas, c: Configuration) -> None:
 def ghost(canvas: Canvas, c: Configuration) -> None:
     """The linkage at another target; dashed where it stands in the other assembly."""
     dashes = None if c.own else "6 4"
-    style: Style = {"stroke": PALE, "stroke_width": 2.4, "stroke_dasharray": dashes}
+    style = GHOST | {"stroke_dasharray": dashes}
     group = element("g", data_configuration=f"{c.index + 1}", data_own_assembly=str(c.own).lower())
     group.attributes |= {"stroke-linecap": "round", "stroke-linejoin": "round"}
     group.add(
-        *_plate(canvas, c, 1.0, 0.07, 2.4, **(style | {"stroke_width": 1.4})),
+        *_plate(canvas, c, 1.0, 0.07, GHOST_WIDTH, **(style | {"stroke_width": 1.4})),
         canvas.segment(canvas.scene.o2, c.a, 1.0, **style),
         canvas.segment(canvas.scene.o4, c.b, 1.0, **style),
     )
@@ -103,7 +108,7 @@ def _plate(
     height = abs(((c.b - c.a).conjugate() * (c.p - c.a)).imag) / base if base > 0.0 else 0.0
     if height * canvas.viewport.scale < BAR_HEIGHT:
         return [canvas.segment(*longest, weight, data_link="coupler", **(style | {"stroke_width": bar}))]
-    seen = clipped_polygon([canvas.at(corner) for corner in corners], canvas.viewport.panel.grown(40.0))
+    seen = clipped_polygon([canvas.at(corner) for corner in corners], canvas.viewport.panel.grown(SEEN_BEYOND))
     face = polygon(seen, fill=COUPLER, fill_opacity=fill, data_link="coupler") if seen else None
     return [face, *(canvas.segment(u, v, weight, **style) for u, v in pairs if u != v)]
 
@@ -130,7 +135,7 @@ def label_joints(canvas: Canvas, c: Configuration) -> None:
     ):
         if canvas.readable(joint):
             away = direction_between(rays)
-            canvas.labels.place(point, words, 15.0, subscript=digit, clearance=clearance, away=away, style=style)
+            canvas.labels.place(point, words, JOINT_NAME, subscript=digit, clearance=clearance, away=away, style=style)
 
 
 def label_ghost(canvas: Canvas, c: Configuration) -> None:
@@ -138,9 +143,11 @@ def label_ghost(canvas: Canvas, c: Configuration) -> None:
     style = {"fill": GREY}
     for words, joint, pivot in (("A", c.a, canvas.scene.o2), ("B", c.b, canvas.scene.o4)):
         if canvas.readable(joint):
-            at, number = canvas.at(joint), f"{c.index + 1}"
+            at, digits = canvas.at(joint), f"{c.index + 1}"
             away = at - canvas.at(pivot)
-            canvas.labels.place(at, words, 11.0, subscript=number, clearance=4.0, away=away, optional=True, style=style)
+            canvas.labels.place(
+                at, words, GHOST_NAME, subscript=digits, clearance=4.0, away=away, optional=True, style=style
+            )
 
 
 def label_links(canvas: Canvas, c: Configuration) -> None:
@@ -152,4 +159,4 @@ def label_links(canvas: Canvas, c: Configuration) -> None:
         if abs(end - start) >= NAMED_LENGTH:
             style = {"fill": colour, "font_style": "italic", "font_weight": "bold"}
             across, middle = 1j * (end - start) / abs(end - start), 0.5 * (start + end)
-            canvas.labels.place(middle, letter, 13.0, clearance=6.0, away=across, optional=True, style=style)
+            canvas.labels.place(middle, letter, LINK_NAME, clearance=6.0, away=across, optional=True, style=style)

@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
-from service.render.linkage.fourbar_canvas import Canvas, Style
+from service.render.linkage.fourbar_canvas import Canvas
 from service.render.linkage.motion import Demand
+from service.render.linkage.styles import LIMIT, MISS, TARGET_CURVE, USED_PATH, WHOLE_PATH
 from service.render.page import symbols
 from service.render.page.numbers import angle
 from service.render.page.svg import CLIP_MARGIN, circle, clipped, line, path
 from service.render.page.symbols import (
-    CURVE,
     DEMAND_RADIUS,
     DEMANDED,
     INK,
@@ -23,6 +23,9 @@ from service.render.page.symbols import (
 
 ROTATION_ARC = 26.0, 74.0
 """Least and greatest radius of the arc that shows the input's rotation, pixels."""
+
+ARC_SHARE, MAX_ARC_SHARE, ARROW_LENGTH = 0.42, 0.8, 9.0
+"""Radius of that arc between these as a share of the input link, its radius at most, and its arrow in pixels."""
 
 ARC_LENGTH = 26.0
 """That arc is moved outwards along the input link where it would be shorter than this, pixels."""
@@ -55,7 +58,7 @@ def input_circle(canvas: Canvas) -> None:
         tip = canvas.at(scene.o2) + radius * outward
         if view.panel.holds(tip):
             low, high = tip - TICK * outward, tip + TICK * outward
-            canvas.root.add(line(low, high, stroke=INPUT, stroke_width=2.0, data_limit=repr(math.degrees(limit))))
+            canvas.root.add(line(low, high, **LIMIT, data_limit=repr(math.degrees(limit))))
             canvas.labels.avoid([np.array([low, high])], 6.0)
 
 
@@ -64,11 +67,10 @@ def curves(canvas: Canvas) -> None:
     scene, shown = canvas.scene, canvas.viewport.shown
     pieces, used = [piece for curve in scene.rest for piece in shown(curve)], shown(scene.used)
     if scene.target is not None:
-        wide: Style = {"stroke": DEMANDED, "stroke_width": 6.0, "stroke_opacity": 0.3}
-        canvas.root.add(path(shown(scene.target), data_curve="target", **wide))
+        canvas.root.add(path(shown(scene.target), data_curve="target", **TARGET_CURVE))
     canvas.root.add(
-        path(pieces, stroke=CURVE, stroke_width=0.9, data_curve="branch"),
-        path(used, stroke=CURVE, stroke_width=2.2, stroke_linecap="round", data_curve="used"),
+        path(pieces, **WHOLE_PATH, data_curve="branch"),
+        path(used, **USED_PATH, stroke_linecap="round", data_curve="used"),
     )
     canvas.labels.avoid(pieces, 0.6)
     canvas.labels.avoid(used, 2.0)
@@ -82,8 +84,8 @@ def rotation_arc(canvas: Canvas) -> complex | None:
         return None
     link = canvas.viewport.scale * float(scene.linkage.input)
     least, most = ROTATION_ARC
-    radius = max(min(max(0.42 * link, least), most), min(ARC_LENGTH / abs(turned), 0.8 * link))
-    head = math.copysign(min(abs(turned), 9.0 / radius), turned)
+    radius = max(min(max(ARC_SHARE * link, least), most), min(ARC_LENGTH / abs(turned), MAX_ARC_SHARE * link))
+    head = math.copysign(min(abs(turned), ARROW_LENGTH / radius), turned)
     arc = canvas.arc(radius, scene.start, scene.end - 0.8 * head)
     back, tip = (complex(z) for z in canvas.arc(radius, scene.end - head, scene.end)[[0, -1]])
     mark = arrow(back, tip, 4.0, INK)
@@ -110,7 +112,7 @@ def misses(canvas: Canvas) -> None:
             continue
         wanted, met = canvas.at(point), canvas.at(c.p)
         if abs(met - wanted) >= SEEN_MISS and canvas.viewport.panel.holds(met):
-            mark = line(wanted, met, stroke=DEMANDED, stroke_width=1.6, data_miss=f"{c.index + 1}")
+            mark = line(wanted, met, **MISS, data_miss=f"{c.index + 1}")
             canvas.root.add(mark, circle(met, 1.8, fill=DEMANDED))
 
 

@@ -8,9 +8,10 @@ from functools import cached_property
 from service.render.linkage.fourbar import Scene, details, fourbar_of
 from service.render.linkage.fourbar_canvas import Detail
 from service.render.linkage.fourbar_panel import FOOT, MARGIN, panel
+from service.render.linkage.styles import GHOST, LIMIT, MISS, TARGET_CURVE, USED_PATH, WHOLE_PATH
 from service.render.page.sheet import EDGE, fitted
 from service.render.page.svg import Box, Element, Viewport, element, line, text, text_width
-from service.render.page.symbols import CURVE, DEMANDED, GREY, INPUT, PALE
+from service.render.page.symbols import DEMANDED, GREY
 from synthesis.model.linkage_answer import LinkageDesign
 
 WIDE = 1.7
@@ -18,6 +19,12 @@ WIDE = 1.7
 
 BESIDE_HEIGHT, BELOW_HEIGHT = (560.0, 860.0), (330.0, 620.0)
 """Least and greatest height of the main panel with tables beside it, and with tables below it, pixels."""
+
+SAMPLE, SAMPLE_GAP, KEY_SIZE, MAX_GAP = 28.0, 6.0, 10.5, 26.0
+"""Of the key: width of a sample with its gap, that gap, font size, and greatest space between entries; pixels."""
+
+SAMPLES = {"used": USED_PATH, "rest": WHOLE_PATH, "ghost": GHOST, "curve": TARGET_CURVE, "miss": MISS}
+"""Line styles of the key."""
 
 DETAIL_HEIGHT, KEY_HEIGHT, APART = 300.0, 30.0, 10.0
 """Heights of a detail and of the key, and space between panels, pixels."""
@@ -84,13 +91,12 @@ def _key(shown: Scene, y: float, width: float) -> Element:
     if shown.limits is not None:
         entries.append(("limit", "input limit"))
     group = element("g", data_key="true")
-    sample, size = 22.0, 10.5
-    spare = width - sum(sample + 6.0 + text_width(words, size) for _, words in entries)
+    spare = width - sum(SAMPLE + text_width(words, KEY_SIZE) for _, words in entries)
     x = EDGE
     for kind, words in entries:
-        group.add(*_sample(kind, complex(x, y - 4.0), sample))
-        group.add(text(x + sample + 6.0, y, words, size, fill=GREY))
-        x += sample + 6.0 + text_width(words, size) + min(26.0, spare / max(1, len(entries) - 1))
+        group.add(*_sample(kind, complex(x, y - 4.0), SAMPLE - SAMPLE_GAP))
+        group.add(text(x + SAMPLE, y, words, KEY_SIZE, fill=GREY))
+        x += SAMPLE + text_width(words, KEY_SIZE) + min(MAX_GAP, spare / max(1, len(entries) - 1))
     return group
 
 
@@ -99,11 +105,6 @@ def _sample(kind: str, at: complex, width: float) -> list[Element]:
     if kind == "target":
         ring = element("circle", cx=at.real + 5.0, cy=at.imag, r=4.5, fill="none", stroke=DEMANDED, stroke_width=1.5)
         return [line(at + 5.0, end, stroke=DEMANDED, stroke_width=3.5, stroke_opacity=0.35), ring]
-    if kind == "curve":
-        return [line(at, end, stroke=DEMANDED, stroke_width=6.0, stroke_opacity=0.3)]
-    if kind == "miss":
-        return [line(at, end, stroke=DEMANDED, stroke_width=1.6)]
     if kind == "limit":
-        return [line(middle - 7j, middle + 7j, stroke=INPUT, stroke_width=2.0)]
-    stroke, weight = {"used": (CURVE, 2.2), "rest": (CURVE, 0.9), "ghost": (PALE, 2.4)}[kind]
-    return [line(at, end, stroke=stroke, stroke_width=weight)]
+        return [line(middle - 7j, middle + 7j, **LIMIT)]
+    return [line(at, end, **SAMPLES[kind])]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 
 from service.render.linkage.fourbar import Scene, fourbar_of
+from service.render.linkage.styles import GROUND_LINE
 from service.render.page import blocks
 from service.render.page.blocks import Block
 from service.render.page.numbers import NONE, angle, length, small
 from service.render.page.svg import Element, element, line
-from service.render.page.symbols import COUPLER, GROUND, INPUT, OUTPUT
+from service.render.page.symbols import COUPLER, INPUT, OUTPUT
 from synthesis.model.linkage_answer import LinkageDesign
 
 GRASHOF = {
@@ -93,7 +94,7 @@ def _sample(name: str, left: float, y: float) -> Element | None:
     start, end = complex(left + 2.0, y), complex(left + 26.0, y)
     group = element("g", stroke_linecap="round")
     if link == "ground":
-        return group.add(line(start, end, stroke=GROUND, stroke_width=1.3, stroke_dasharray="12 4 2 4"))
+        return group.add(line(start, end, **GROUND_LINE))
     if link == "coupler":
         return element(
             "rect",

@@ -24,6 +24,9 @@ SAMPLES = 181
 ARC = (24.0, 70.0)
 """Least and greatest radius of the arc that shows the input's range, pixels."""
 
+ARC_SHARE, ARC_SAMPLES = 0.4, 60
+"""Its radius between these, as a share of the crank, and its points."""
+
 
 def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Element]:
     """An arc with an arrow from the input's first angle to its last."""
@@ -32,8 +35,8 @@ def range_arc(design: FunctionDesign, scene: Scene, view: Viewport) -> list[Elem
         return []
     stated = design.structural_error.curve.input_angle or [target.input_angle for target in design.targets]
     start, end = math.radians(stated[0]), math.radians(stated[-1])
-    radius = max(min(0.4 * abs(joints["A"] - joints["O2"]) * view.scale, ARC[1]), ARC[0])
-    arc = view.point(joints["O2"]) + radius * np.exp(-1j * np.linspace(start, end, 60))
+    radius = max(min(ARC_SHARE * abs(joints["A"] - joints["O2"]) * view.scale, ARC[1]), ARC[0])
+    arc = view.point(joints["O2"]) + radius * np.exp(-1j * np.linspace(start, end, ARC_SAMPLES))
     drawn = path([arc], stroke=INK, stroke_width=1.4, data_range=repr(math.degrees(end - start)))
     head = arrow(complex(arc[-4]), complex(arc[-1]), 3.6, INK)
     return [drawn, head] if drawn is not None else [head]

@@ -14,6 +14,9 @@ ROW, HEADING, GAP = 18.0, 24.0, 16.0
 SIZE, SMALL = 11.5, 10.5
 """Font sizes of rows, and of tables with their many columns, pixels."""
 
+MARK, MARK_ROOM = 8.0, 22.0
+"""Where the mark of a check stands from the left, and where its name begins, pixels."""
+
 BETWEEN, CLOSER = 5.0, 3.0
 """Least space between the columns of a table, and by how much a note stands closer than a row, pixels."""
 
@@ -101,10 +104,10 @@ def checks(listed: Sequence[CheckRow]) -> Block:
         for check in listed:
             y += ROW
             measure = f"{check.value}  (limit {check.limit})" if check.limit else check.value
-            room = width - 22.0 - text_width(measure, SIZE) - 8.0
+            room = width - MARK_ROOM - text_width(measure, SIZE) - MARK
             words = shortened(clean(check.name.replace("_", " ")), SIZE, room)
-            row = element("g", _mark(check.passed, left + 8.0, y - 4.0), data_check=clean(check.name))
-            row.add(text(left + 22.0, y, words, SIZE, fill=INK))
+            row = element("g", _mark(check.passed, left + MARK, y - 4.0), data_check=clean(check.name))
+            row.add(text(left + MARK_ROOM, y, words, SIZE, fill=INK))
             row.add(text(left + width, y, measure, SIZE, text_anchor="end", fill=INK))
             block.add(row)
         return block, y + GAP

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from service.render.page.svg import (
     FONT_ASCENT,
     FONT_DESCENT,
+    SUBSCRIPT,
     Box,
     Element,
     Points,
@@ -40,6 +41,9 @@ DIRECTIONS = np.exp(2j * np.pi * np.arange(24) / 24)
 
 GAP_COST, TURN_COST = 0.25, 3.0
 """Cost of a gap, for each pixel, and of a direction at right angles to the preferred one."""
+
+SUBSCRIPT_BELOW = 0.12
+"""How far a subscript hangs below the letters, in units of the font size."""
 
 PAD = 2.0
 """Space between a label and what it avoids, pixels."""
@@ -119,8 +123,8 @@ class Labels:
         """
         if not self._panel.holds(point):
             return
-        width = text_width(words, size) + text_width(subscript, 0.75 * size)
-        height = (FONT_ASCENT + FONT_DESCENT) * size + (0.12 * size if subscript else 0.0)
+        width = text_width(words, size) + text_width(subscript, SUBSCRIPT * size)
+        height = (FONT_ASCENT + FONT_DESCENT) * size + (SUBSCRIPT_BELOW * size if subscript else 0.0)
         if ring:
             width = height = max(width, height) + 4.0
         placed, cost = self._best(point, width, height, clearance, away, NEAR if optional else RINGS)
@@ -134,7 +138,8 @@ class Labels:
             self.drawn.append(
                 element("circle", cx=box.centre.real, cy=box.centre.imag, r=0.5 * width, fill="#fff", stroke=ring)
             )
-        base = box.centre.imag + 0.5 * (FONT_ASCENT - FONT_DESCENT) * size - (0.06 * size if subscript else 0.0)
+        below = SUBSCRIPT_BELOW if subscript else 0.0
+        base = box.centre.imag + 0.5 * (FONT_ASCENT - FONT_DESCENT - below) * size
         self.drawn.append(
             text(
                 box.centre.real,

@@ -7,6 +7,9 @@ import math
 PLAIN = 1e-3, 1e6
 """Magnitudes that are written without an exponent."""
 
+ROUNDING = 1e-12
+"""Share of the mechanism's size below which a coordinate is what rounding has left of zero."""
+
 NONE = "–"
 
 
@@ -18,7 +21,7 @@ def length(value: float, size: float = 0.0, digits: int = 6, most: int = 15) -> 
     """
     if not math.isfinite(value):
         return NONE
-    if value == 0.0 or abs(value) < 1e-12 * size:
+    if value == 0.0 or abs(value) < ROUNDING * size:
         return "0"
     if 0.0 < size < abs(value):
         digits = min(most, digits + math.ceil(math.log10(abs(value) / size)))

@@ -12,6 +12,9 @@ from service.render.page.symbols import GREY, INK, PALE
 WIDTH, EDGE, TOP, COLUMN, GUTTER = 1100.0, 22.0, 74.0, 370.0, 26.0
 """Width of the sheet, border, height of the title, width of the tables' column, space beside it; pixels."""
 
+HEADING, WORDS = (34.0, 20.0), (55.0, 12.5)
+"""Base lines and font sizes of the heading and of the line of words below it, pixels."""
+
 FULL = WIDTH - 2.0 * EDGE
 """Width between the borders, pixels."""
 
@@ -34,8 +37,8 @@ def sheet(heading: str, words: str, described: str, parts: Iterable[Element], bo
         heading,
         described,
         (WIDTH, height),
-        text(EDGE, 34.0, shortened(heading, 20.0, FULL), 20.0, font_weight="bold", fill=INK),
-        text(EDGE, 55.0, shortened(words, 12.5, FULL), 12.5, fill=GREY),
+        text(EDGE, HEADING[0], shortened(heading, HEADING[1], FULL), HEADING[1], font_weight="bold", fill=INK),
+        text(EDGE, WORDS[0], shortened(words, WORDS[1], FULL), WORDS[1], fill=GREY),
         *parts,
     )
 

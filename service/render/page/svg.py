@@ -36,6 +36,9 @@ GLYPH_WIDTHS = {
 TURNING = frozenset((*range(0x202A, 0x202F), *range(0x2066, 0x206A)))
 """Characters that would turn the direction of all text after them."""
 
+SUBSCRIPT, SUBSCRIPT_DROP = 0.75, 0.25
+"""Font size of a subscript, and how far it stands below the base line, in units of the font size."""
+
 FONT_ASCENT, FONT_DESCENT = 0.78, 0.22
 """Extent of text above and below its base line, in units of the font size."""
 
@@ -140,7 +143,7 @@ def text(
     """A line of text with its base line at ``y``, and a subscript after it."""
     drawn = element("text", x=x, y=y, font_size=size, **attributes).add(words)
     if subscript:
-        drawn.add(element("tspan", subscript, dy=0.25 * size, font_size=0.75 * size))
+        drawn.add(element("tspan", subscript, dy=SUBSCRIPT_DROP * size, font_size=SUBSCRIPT * size))
     return drawn
 
 
