@@ -1,15 +1,15 @@
 """How long a connection may keep the server waiting, and how much of it the server keeps in memory.
 
-The web server itself closes idle connections only. A client that sends a request by halves, or does not read its
-answer, would keep its connection for ever; nine hundred of them would keep everybody else out. And it takes heads of
-any length, and any number of requests ahead of their answers: a few seconds of either fill the memory.
+The web server itself closes idle connections only. A client that sends part of a request, or does not read its answer,
+would keep its connection for ever; nine hundred such clients would lock out all others. The web server also accepts
+heads of any length, and any number of pipelined requests: a few seconds of either fill the memory.
 
-What is refused here no operation has seen. It is answered like everything else, with a problem, and is counted.
+A request that is refused here reaches no operation. It is answered with a problem, like any refusal, and is counted.
 
-An idle connection is closed late and with care. A client that uses it again at the moment of its end sees a reset, and
-cannot know whether its request was seen. The usual clients drop a connection that has been idle for 5 to 60 seconds by
-themselves, so the server waits longer than they do; and it looks first whether a request has just arrived that the
-event loop has not come to yet, since the loop runs timers before it reads.
+An idle connection is closed late and with care. A client that reuses it while it is being closed sees a reset, and
+cannot know whether its request was processed. The usual clients drop a connection after 5 to 60 idle seconds, so the
+server waits longer; and before it closes it checks whether a request has arrived that the event loop has not read yet,
+since the loop runs timers before it reads.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from service.metrics import Metrics
 from service.telemetry import CUT_SHORT
 
 REQUEST_S = 8.0
-"""From the first byte of a request, or the opening of the connection, to the last byte of its body. Ten seconds are the
-most that a connection may take up; a busy event loop comes to its timers late."""
+"""From the first byte of a request, or the opening of the connection, to the last byte of its body. A connection may
+take ten seconds at most, and a busy event loop runs its timers late."""
 
 READING_S = 10.0
 """How long a client may leave an answer unread that no longer fits into the buffers."""
@@ -39,10 +39,10 @@ IDLE_S = 75
 """How long a connection may wait for its next request."""
 
 MOST_HEAD_BYTES = 64 << 10
-"""Longest address and headers of a request together, and longest piece of anything else that is not its body."""
+"""Greatest size of the address and headers of a request together, and of any other data that is not its body."""
 
 MOST_AHEAD = 500
-"""Requests that a client may send before the first of them is answered. Hardly any client sends a second."""
+"""Requests that a client may pipeline before the first is answered. Hardly any client sends a second."""
 
 _MORE_S = 1.0
 _SPARE_FILES = 128
@@ -88,7 +88,7 @@ class Unacceptable(Exception):
 
 
 def raise_file_limit() -> int:
-    """Allow as many open files as the system lets us have; gives how many connections that is good for."""
+    """Raise the limit on open files as far as the system allows; gives the number of connections that it admits."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if soft < hard:
         resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
@@ -96,13 +96,13 @@ def raise_file_limit() -> int:
 
 
 class ImpatientProtocol(HttpToolsProtocol):
-    """HTTP/1.1 with an end to every wait for the client, and to what it may send."""
+    """HTTP/1.1 with a limit on every wait for the client and on all that it may send."""
 
     most: ClassVar[int] = 1 << 20
-    """Connections at once; one more is closed at once, since files that run out would hit the store as well."""
+    """Open connections at most; a further one is closed at once, since the store needs open files too."""
 
     metrics: ClassVar[Metrics | None] = None
-    """Where requests are counted that are refused before any operation sees them."""
+    """Counts the requests that are refused before they reach an operation."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -128,7 +128,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Bytes have come. The parser keeps them until it can make something of them."""
+        """Bytes have arrived. The parser buffers them until they complete a part of a request."""
         self._unread += len(data)
         super().data_received(data)
         if self._unread > MOST_HEAD_BYTES:
@@ -156,7 +156,7 @@ class ImpatientProtocol(HttpToolsProtocol):
         super().on_header(name, value)
 
     def on_headers_complete(self) -> None:
-        """The head of a request is there."""
+        """The head of a request is complete."""
         if len(self.pipeline) >= MOST_AHEAD:
             self.transport.abort()
             raise Unacceptable
@@ -168,14 +168,14 @@ class ImpatientProtocol(HttpToolsProtocol):
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """A request is there, whole."""
+        """A request is complete."""
         self._unread = 0
         self._cancel(self._request_due)
         self._request_due = None
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """An answer is given. Nothing more is read while requests wait for theirs."""
+        """An answer is complete. Reading pauses while further requests wait for theirs."""
         super().on_response_complete()
         if self.pipeline:
             self.flow.pause_reading()
@@ -214,7 +214,7 @@ class ImpatientProtocol(HttpToolsProtocol):
             or _has_arrived(self.transport)
             or (of_an_earlier_request and not cycle.response_complete)
         ):
-            # It is the server that has not come to it.
+            # The delay is the server's own.
             self._await_request(_MORE_S)
             return
         if self.scope is None:  # a connection without a request is just closed
@@ -230,14 +230,14 @@ class ImpatientProtocol(HttpToolsProtocol):
             raise Unacceptable
 
     def _refuse(self, fault: Fault) -> None:
-        """Answer the request that is coming in, where its answer has not begun, and close the connection."""
+        """Answer the incoming request, unless its answer has begun, and close the connection."""
         if self.transport.is_closing():
             return
         cycle = self.cycle
         seen = cycle is not None and cycle.scope is self.scope and self._request_due is not None
         if seen and not cycle.response_started:
             self.transport.write(fault.answer())
-            # The operation that waits for the rest is told that there is none; it counts as answered with this.
+            # The operation stops waiting for the rest of the body; telemetry records this status as its answer.
             cycle.scope["state"][CUT_SHORT] = (fault.status, fault.type)
             cycle.disconnected = True
             cycle.message_event.set()
@@ -255,7 +255,7 @@ class ImpatientProtocol(HttpToolsProtocol):
 
 
 def _has_arrived(transport: asyncio.Transport) -> bool:
-    """Whether there is something to read that nobody has read yet."""
+    """Whether the socket has data that the event loop has not read yet."""
     connection = transport.get_extra_info("socket")
     if connection is None or connection.fileno() < 0:
         return False

@@ -201,7 +201,7 @@ async def _store_error(request: Request, error: Exception) -> Response:
 
 
 async def _defect(request: Request, _error: Exception) -> Response:
-    # The server logs the exception with its traceback after this; none of it is the client's business.
+    # The server logs the exception with its traceback after this; the client gets none of it.
     detail = "The service failed on this request by a defect of its own; its log has the details."
     return _answer(request, 500, "/problems/internal-error", "Internal error", detail)
 
@@ -240,8 +240,10 @@ def _place(fault: Mapping[str, Any], body: Any) -> str:
 
 
 def _steps(location: Sequence[str | int], body: Any, missing: bool) -> list[str | int]:
-    """The way of a location into the body. Which of several models has read a part is told between, and that it is
-    the key of an object after its name; both are no steps of the body."""
+    """The steps of a validation error's location that exist in the body.
+
+    The location also names the member of a union that was tried, and marks keys of objects; these are left out.
+    """
     steps: list[str | int] = []
     value = body
     for step in location:
@@ -271,12 +273,12 @@ def _counted(faults: int) -> str:
 
 
 def _method(request: Request) -> str:
-    # Some other method may be any word of the client's; it is not repeated.
+    # An unknown method is text from the client and is not repeated.
     known = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
     return request.method if request.method in known else "this method"
 
 
 def _allowed_methods(request: Request) -> list[str]:
-    # The framework names the methods of one route only, where several may share the path.
+    # The framework names the methods of a single route, but several may share the path.
     matching = (route for route in request.app.state.routes if route.matches(request.scope)[0] is not Match.NONE)
     return sorted({method for route in matching for method in getattr(route, "methods", None) or ()})

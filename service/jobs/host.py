@@ -1,9 +1,9 @@
 """A worker host: takes jobs from the broker and runs them in workers of its own (``mechsynth worker``).
 
-The lanes and workers are those of the local executor (:mod:`service.jobs.lane`), with all that they know of cancelling,
-timeouts, memory and death; Celery only brings the ids of the jobs. Its task waits until a lane is done with the job, so
-that a host has as many messages as workers and no more. While a job runs the host renews its lease in the store, and is
-told there when the job is not wanted any more.
+The lanes and workers are those of the local executor (:mod:`service.jobs.lane`), which handle cancelling, timeouts,
+memory and death; Celery only delivers the ids of the jobs. Its task waits until a lane is done with the job, so that a
+host holds no more messages than it has workers. While a job runs the host renews its lease in the store, which tells
+it in return which claims no longer count: their jobs are dropped.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from service.metrics import HostMetrics
 from service.settings import Settings
 
 BEAT_PERIOD_S = 0.5
-"""How often a host renews its leases and looks for jobs that were cancelled: that has to be within two seconds."""
+"""Period at which a host renews its leases and looks for cancelled jobs, which must stop within two seconds."""
 
 log = structlog.get_logger(__name__)
 
@@ -41,7 +41,7 @@ class HostError(Exception):
 
 
 class Host:
-    """The lanes of a host, and who waits for their jobs."""
+    """The lanes of a host, and the tasks that wait for their jobs."""
 
     def __init__(self, settings: Settings, metrics: HostMetrics) -> None:
         self.id = str(ULID())
@@ -75,7 +75,7 @@ class Host:
                 return
 
     def waiting(self) -> int:
-        """How many jobs the host has that no lane has begun."""
+        """Number of jobs of the host that no lane has started."""
         with self._lock:
             taken = set(self._waiting)
         return len(taken.difference(self.lanes.claims().values()))
@@ -89,7 +89,7 @@ class Host:
         self.lanes.stop()
         try:
             self._leases.host_is_gone(self.id)
-        except SQLAlchemyError as error:  # then its signs of life grow old
+        except SQLAlchemyError as error:  # then its last sign of life expires
             log.warning("the store does not answer", error=type(error).__name__)
         self._publisher.close()
 
@@ -183,12 +183,12 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
 
 def _announce(host: Host) -> None:
     while host.lanes.ready() == 0:
-        time.sleep(BEAT_PERIOD_S / 10)  # lanes tell nobody that they are ready; this is the host's start only
+        time.sleep(BEAT_PERIOD_S / 10)  # lanes announce nothing when they are ready; this polls at the start only
     print(f"mechsynth worker {host.id} is ready", flush=True)
 
 
 def _pool_of(host: Host) -> type[TaskPool]:
-    """A pool of Celery whose tasks wait in threads for the lanes of a host; what they tell Celery goes to its loop."""
+    """A pool of Celery whose tasks wait in threads for the lanes of a host and report to Celery's event loop."""
 
     class LanePool(TaskPool):
         """Ends the lanes first when it is stopped, so that the tasks end."""

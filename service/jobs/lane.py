@@ -1,11 +1,10 @@
 """A lane: a thread of the server that has one worker process and gives it one job after the other.
 
-Each lane has a pebble pool of a single worker, not a share in a pool of many, for two reasons. The workers of one pool
-take their tasks from one pipe under one lock, and a worker that is killed while it holds the lock stops the others for
-a minute. And a worker that is killed while it has nothing to do makes pebble declare the whole pool broken, with the
-jobs of the other workers. With a pool for each worker both end at the lane that they happen in, and the cure for
-everything that can go wrong (cancel, timeout, memory, death) is the same: stop the pool, which kills the worker, and
-make another.
+Each lane has a pebble pool of a single worker, not a share in a pool of many, for two reasons. The workers of a pool
+share a pipe under a lock, and a worker that is killed while it holds the lock blocks the others for a minute. And a
+worker that is killed while it is idle makes pebble declare the whole pool broken, with the jobs of the other workers.
+With a pool for each worker both failures stay within a lane, and the remedy is the same for all of them (cancel,
+timeout, memory, death): stop the pool, which kills the worker, and start another.
 
 Words: a *lane* runs *jobs*; its *worker* is a process; a lane is *ready* when its worker has finished starting.
 """
@@ -34,8 +33,8 @@ from service.jobs.store import JobStore
 from service.metrics import WorkerMetrics
 
 CHECK_PERIOD_S = 1.0
-"""A lane looks this often whether its worker is alive: one that is idle, so that a job seldom meets a dead one, and
-one that waits for an answer, because pebble forgets a call that comes while it finds the worker dead."""
+"""Period at which a lane checks that its worker is alive: while idle, so that a job seldom meets a dead worker, and
+while it waits for a result, because pebble drops a call that arrives while it detects that the worker is dead."""
 
 START_TIMEOUT_S = 300.0
 """A worker may compile all kernels when it starts for the first time; that takes a minute, not five."""
@@ -43,15 +42,15 @@ START_TIMEOUT_S = 300.0
 RETRY_PERIOD_S = 1.0
 """Pause before a failed start of a worker, or a failed write to the store, is tried again."""
 
-# pebble asks a worker to end and kills it after this many seconds. The workers end at once when asked, except one that
-# is suspended, and that one does not get better by waiting.
+# Seconds from pebble's request that a worker end to its kill. Workers end at once when asked, unless they are
+# suspended, and waiting does not help a suspended worker.
 pebble.CONSTS.term_timeout = 0.3
 
 log = structlog.get_logger(__name__)
 
 
 class WorkerLost(Exception):
-    """The worker died, or could not be started; ``killed``: from outside, by what need not be the job's fault."""
+    """The worker died or could not be started; ``killed`` from outside, which need not be the job's fault."""
 
     def __init__(self, reason: str, *, killed: bool = False) -> None:
         self.killed = killed
@@ -61,8 +60,8 @@ class WorkerLost(Exception):
 class Lane(threading.Thread):
     """Runs the jobs of a queue, one at a time, in a worker process of its own.
 
-    The thread lives as long as the lane does, and it is the thread that creates the worker; so the worker dies with it
-    (see :func:`service.jobs.orphans.die_with`).
+    The thread lives as long as the lane. The thread starts the worker, so the worker dies with it
+    (:func:`service.jobs.orphans.die_with`).
     """
 
     def __init__(
@@ -90,7 +89,7 @@ class Lane(threading.Thread):
         self._future: Any = None
         self._job_id: str | None = None
         self._claim = ""
-        self._seen_to: str | None = None
+        self._current: str | None = None
         self.ready = False
         """Whether the worker has finished starting."""
         self.settled = threading.Event()
@@ -104,9 +103,9 @@ class Lane(threading.Thread):
 
     @property
     def held(self) -> tuple[str, str] | None:
-        """The claim and the job that this lane sees to, from before the claim is made until the last is written."""
+        """The current claim and job, from before the claim is made until the last change of the job is stored."""
         with self._lock:
-            return None if self._seen_to is None else (self._claim, self._seen_to)
+            return None if self._current is None else (self._claim, self._current)
 
     def drop(self, claim: str) -> None:
         """Stop the job if this lane is running it under this claim."""
@@ -136,12 +135,12 @@ class Lane(threading.Thread):
             except WorkerLost as loss:
                 self._could_not_start(str(loss))
                 continue
-            except Exception as error:  # whatever it is, the lane must be there for the jobs that come
+            except Exception as error:  # whatever it is, later jobs need the lane
                 log.exception("the lane failed", lane=self.name)
                 self._could_not_start(f"{type(error).__name__} in the server")
                 continue
             if job_id is not None:
-                self._see_to(job_id)
+                self._serve(job_id)
         self._discard_worker()
 
     def _could_not_start(self, reason: str) -> None:
@@ -150,25 +149,25 @@ class Lane(threading.Thread):
         self.settled.set()
         self._stopping.wait(RETRY_PERIOD_S)
 
-    def _see_to(self, job_id: str) -> None:
-        """Run a job and tell of it. A defect on the way fails the job; it does not end the lane."""
+    def _serve(self, job_id: str) -> None:
+        """Run a job and announce its change. A defect of the lane fails the job; it does not end the lane."""
         try:
             with self._lock:
-                self._claim, self._seen_to = str(ULID()), job_id
+                self._claim, self._current = str(ULID()), job_id
             self._run_job(job_id)
-        except Exception:  # a defect of the lane's own: it is this job's end, not that of all that come after
+        except Exception:  # a defect of the lane's own fails this job, and none of the later ones
             log.exception("the lane failed", lane=self.name, job=job_id)
             self._replace_worker("defect")
             try:
                 self._stored(self._store.give_up, job_id, self._claim, faults.INTERNAL_ERROR.as_json(job_id))
-            except Exception:  # then the job is taken up again at the next start of the service
+            except Exception:  # then the next start of the service requeues the job
                 log.exception("a job could not be failed", lane=self.name, job=job_id)
         with self._lock:
-            self._seen_to = None
+            self._current = None
         try:
             self._changed(job_id)
-        except Exception:  # the store has the truth; who waits for the news finds it there when the wait is over
-            log.exception("a change could not be told", lane=self.name, job=job_id)
+        except Exception:  # the store has the new state, which subscribers read when their wait ends
+            log.exception("a change could not be announced", lane=self.name, job=job_id)
 
     def _ensure_worker(self) -> None:
         if self._pool is not None and self._pool.active:
@@ -194,7 +193,7 @@ class Lane(threading.Thread):
         log.info("worker ready", lane=self.name, pid=pid)
 
     def _replace_worker(self, reason: str) -> None:
-        """End the worker; the next look after it makes another."""
+        """End the worker; the next check starts another."""
         self._metrics.worker_restart(reason)
         self._discard_worker()
 
@@ -206,7 +205,7 @@ class Lane(threading.Thread):
         try:
             pool.stop()
             pool.join()
-        except Exception:  # a worker that not even the kernel gets rid of must not take the lane with it
+        except Exception:  # a worker that cannot be killed must not end the lane
             log.exception("the worker could not be stopped", lane=self.name)
 
     def _run_job(self, job_id: str) -> None:
@@ -236,7 +235,7 @@ class Lane(threading.Thread):
         else:
             self._metrics.attempt(ran.outcome, ran.kind, ran.seconds)
             if ran.outcome == "out of memory":
-                # Libraries that were refused memory half-way through may be left in any state.
+                # A library that was refused memory in the middle of a call may be left in any state.
                 self._replace_worker("out_of_memory")
 
     def _call(self, timeout_s: float, function: Any, *args: Any, job_id: str | None = None) -> Any:
@@ -266,9 +265,9 @@ class Lane(threading.Thread):
         except pebble.ProcessExpired as error:
             killed = error.exitcode == -signal.SIGKILL
             raise WorkerLost(f"{error}; exit code {error.exitcode}", killed=killed) from None
-        except BrokenProcessPool as error:  # it had not begun the job
+        except BrokenProcessPool as error:  # it had not started the job
             raise WorkerLost(str(error), killed=True) from None
-        except Exception as error:  # whatever the worker could not store or handle: it is of no more use
+        except Exception as error:  # the worker could neither store nor handle it: its state is unknown
             log.exception("the worker raised", lane=self.name, job=job_id)
             raise WorkerLost(f"{type(error).__name__} in the worker") from None
         finally:
@@ -277,7 +276,7 @@ class Lane(threading.Thread):
                 self._future = None
 
     def _answer(self, timeout_s: float) -> Any:
-        # Not pebble's own timeout, which goes by the wall clock and so by whoever sets it.
+        # Not pebble's own timeout, which follows the wall clock and so any adjustment of it.
         end = time.monotonic() + timeout_s
         while True:
             done = self._future.done()
@@ -295,7 +294,7 @@ class Lane(threading.Thread):
                 raise WorkerLost("the worker had died before", killed=True)
 
     def _stored(self, write: Any, *args: Any, **options: Any) -> Any:
-        """Write to the store, and keep trying while it is out of reach: else the job would be lost until a restart."""
+        """Write to the store, retrying while it cannot be reached: else the job would be lost until a restart."""
         while True:
             try:
                 return write(*args, **options)
