@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { el, shown, words } from "./dom.js";
 
-/** @typedef {{name: string, mechanism: any, note: string}} Choice */
+/** @typedef {{name: string, mechanism: any, note: string, metrics: Record<string, any>}} Choice with what was measured of it */
 
 /** Kinds whose answer is the curve of P and not the turning of the body. */
 const BY_CURVE = ["path", "straight_line"];
@@ -14,16 +14,20 @@ const BY_CURVE = ["path", "straight_line"];
  */
 export async function cognates(design, problem, signal) {
   const { mechanism } = design;
-  const own = { name: "Design", mechanism, note: design.cognate_choice ?? "" };
+  const own = { name: "Design", mechanism, note: design.cognate_choice ?? "", metrics: design.metrics ?? {} };
   if (mechanism.type !== "fourbar" || !BY_CURVE.includes(problem.kind)) return [own];
   if (design.cognates?.length) {
-    return [own, ...design.cognates.map((/** @type {any} */ one) => ({ name: `${words(one.side)} cognate`, mechanism: one.mechanism, note: told(one) }))];
+    return [own, ...design.cognates.map((/** @type {any} */ cognate) => {
+      const { side, mechanism: its, ...metrics } = cognate;
+      return { name: `${words(side)} cognate`, mechanism: its, note: told(cognate), metrics };
+    })];
   }
   const question = { mechanism, motion: { at: mechanism.reference_input_angle }, include: ["cognates"] };
-  const found = await api.analysis(question, signal).then((answer) => answer.fourbar.cognates, () => null);
-  if (!found) return [own];
-  return [own, { name: "Left cognate", mechanism: found.left, note: "It traces the same curve; its input turns with the design's coupler." },
-    { name: "Right cognate", mechanism: found.right, note: "It traces the same curve; its input turns with the design's input." }];
+  const pair = await api.analysis(question, signal).then((answer) => answer.fourbar.cognates, () => null);
+  if (!pair) return [own];
+  return [own,
+    { name: "Left cognate", mechanism: pair.left, metrics: {}, note: "It traces the same curve; its input turns with the design's coupler." },
+    { name: "Right cognate", mechanism: pair.right, metrics: {}, note: "It traces the same curve; its input turns with the design's input." }];
 }
 
 /** @param {any} one a cognate as measured */

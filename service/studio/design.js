@@ -62,11 +62,17 @@ export class Shown {
     this.drawing = el("figure", { class: "drawing" });
     this.title.replaceChildren(`${title}: ${words(this.design.mechanism.type)}`);
     this.before.replaceChildren();
-    this.exploring.replaceChildren(...this.explored());
-    this.numbers.replaceChildren(downloads(job, n, this.drawing),
-      el("div", { class: "columns" }, checks(this.design, job.problem), table("Quantities", figures(this.design)), dimensions(this.design)), this.drawing);
+    this.exploring.replaceChildren(...this.explored(this.design));
+    this.numbers.replaceChildren(...this.tabulated());
     this.move(this.gone.signal);
     this.draw(this.gone.signal);
+  }
+
+  /** The numbers of the design, with its drawing and files. */
+  tabulated() {
+    const { design, job } = this;
+    return [downloads(job, this.n, this.drawing),
+      el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design)), dimensions(design)), this.drawing];
   }
 
   /** @param {AbortSignal} gone */
@@ -114,10 +120,14 @@ export class Shown {
     if (this.explorer) this.moving.pause?.();
   }
 
-  /** The motion of a cognate; null where it cannot be driven. @param {import("./cognates.js").Choice} choice @returns {Promise<Film | null>} */
+  /**
+   * The motion of a cognate; null where it cannot be driven. Of the design it shares the curve only: it has numbers of its own.
+   * @param {import("./cognates.js").Choice} choice @returns {Promise<Film | null>}
+   */
   async film(choice) {
-    const found = await overTheCycle(choice.mechanism, STEPS, this.gone.signal).catch(() => null);
-    return found && { ...found, choice, design: { ...this.design, mechanism: withSkeleton(choice.mechanism, found.motion) } };
+    const cycle = await overTheCycle(choice.mechanism, STEPS, this.gone.signal).catch(() => null);
+    return cycle && { ...cycle, choice,
+      design: { mechanism: withSkeleton(choice.mechanism, cycle.motion), metrics: choice.metrics, placement: this.design.placement } };
   }
 
   /** Show the design, with its cognates to switch to: all in one frame, so that the curve stays where it is. @param {Film[]} films */
@@ -127,13 +137,19 @@ export class Shown {
     const show = (/** @type {Film} */ film) => this.show(() => new Mover(this.stage, film.design, film.motion, this.job.problem, film.circuits, around));
     show(films[0]);
     if (films.length > 1) {
-      this.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => show(films.find((film) => film.choice === choice) ?? films[0])));
+      this.before.replaceChildren(picker(films.map((film) => film.choice), (choice) => {
+        const film = films.find((one) => one.choice === choice) ?? films[0];
+        show(film);
+        this.leaveExplorer();
+        this.exploring.replaceChildren(...this.explored(film.design));
+        this.numbers.replaceChildren(...(film === films[0] ? this.tabulated() : cognateNumbers(film)));
+      }));
     }
   }
 
-  /** The place where a linkage's pins are dragged. */
-  explored() {
-    const { mechanism } = this.design;
+  /** The place where a linkage's pins are dragged. @param {any} design the design or a cognate of it */
+  explored(design) {
+    const { mechanism } = design;
     const { problem } = this.job;
     if (!mechanism.skeleton) return [];
     const inside = el("div");
@@ -141,7 +157,7 @@ export class Shown {
       this.explorer?.stop();
       // Two motions at once are one too many, for the eye and for the display.
       if (details.open) this.moving?.pause?.();
-      this.explorer = details.open ? new Explorer(inside, mechanism, problem, demanded(problem, this.design), this.state) : null;
+      this.explorer = details.open ? new Explorer(inside, mechanism, problem, demanded(problem, design), this.state) : null;
     } }, el("summary", {}, "Explore: drag its pins"), inside);
     return [details];
   }
@@ -159,11 +175,16 @@ export class Shown {
     return [details];
   }
 
+  leaveExplorer() {
+    this.explorer?.stop();
+    this.explorer = null;
+  }
+
   leave() {
     this.gone.abort();
     this.moving?.stop();
-    this.explorer?.stop();
-    [this.moving, this.explorer] = [null, null];
+    this.moving = null;
+    this.leaveExplorer();
     if (this.url) URL.revokeObjectURL(this.url);
     this.url = "";
   }
@@ -172,4 +193,13 @@ export class Shown {
     this.leave();
     this.curves?.stop();
   }
+}
+
+/** The numbers of a cognate: what was measured of it, and its dimensions. @param {Film} film */
+function cognateNumbers({ choice, design }) {
+  const measured = figures(design);
+  return [
+    el("p", { class: "note" }, "Checks, drawing and files are those of the design: choose it above to see them."),
+    el("div", { class: "columns" }, measured.length > 0 && table(`Quantities of the ${choice.name.toLowerCase()}`, measured), dimensions(design)),
+  ];
 }

@@ -120,6 +120,8 @@ export class Explorer {
 
   /** Ask for the motion; while an answer is awaited only the newest question is kept. */
   async ask() {
+    // What is written beneath is of the linkage before, until the answer is there.
+    for (const place of [this.facts, this.checks]) place.setAttribute("aria-busy", "true");
     if (this.asking) {
       this.stale = true;
       return;
@@ -143,6 +145,7 @@ export class Explorer {
         this.buttons.replaceChildren();
       }
     } while (this.stale);
+    for (const place of [this.facts, this.checks]) place.removeAttribute("aria-busy");
     this.asking = false;
   }
 

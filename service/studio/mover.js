@@ -37,7 +37,7 @@ export class Mover {
       reading: (at) => this.reading(at), show: (at) => this.show(at) });
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
       ? new Gauge("Transmission angle", motion.transmission_angle, {
-        limit: problem.constraints?.min_transmission_angle, used: design.targets?.length > 1 ? design.metrics?.min_transmission_angle : null }) : null;
+        limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
     /** @type {{figure: HTMLElement, show: (at: number) => void}[]} */
     this.marks = [];
     this.build(place, design, problem);
@@ -177,6 +177,14 @@ export function demanded(problem, design) {
   const turn = (placed.rotation * Math.PI) / 180;
   const [c, s] = [placed.size * Math.cos(turn), placed.size * Math.sin(turn)];
   return listed.map((/** @type {Target} */ { x, y }) => ({ x: c * x - s * y + placed.shift[0], y: s * x + c * y + placed.shift[1] }));
+}
+
+/**
+ * Whether a limit was measured over a part of the motion: between the targets of a design, or over what its cognate uses.
+ * @param {any} design
+ */
+function partly(design) {
+  return Number.isFinite(design.metrics?.min_transmission_angle) && (design.targets === undefined || design.targets.length > 1);
 }
 
 /** Whether the last configuration is the first again. @param {any} motion @param {number} count */

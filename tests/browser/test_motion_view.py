@@ -154,6 +154,51 @@ def test_cognates_are_switched_in_place(studio):
     assert curve(page, ".canvas > .curve") == own
 
 
+def least_transmission(lengths):
+    """Of a crank-rocker over a whole turn, in degrees: the law of cosines at the crank's two places along the ground."""
+    crank, coupler, rocker, ground = (lengths[name] for name in ("input", "coupler", "output", "ground"))
+    angles = [
+        math.degrees(math.acos((coupler**2 + rocker**2 - base**2) / (2.0 * coupler * rocker)))
+        for base in (ground - crank, ground + crank)
+    ]
+    return min(min(angle, 180.0 - angle) for angle in angles)
+
+
+def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
+    page = studio.page
+    solved(studio, TIMED)
+    job = server.job(re.search(r"#job=(\w+)", page.url).group(1))
+    design = job["result"]["designs"][0]
+    cognate = next(each for each in design["cognates"] if each["side"] == "left")
+    used, own = round(cognate["min_transmission_angle"], 1), round(design["metrics"]["min_transmission_angle"], 1)
+    assert abs(used - own) > 5.0, "the test could not tell them apart"
+
+    def gauge():
+        return page.inner_text(".gauge").replace("\n", " ")
+
+    def dimensions():
+        return page.locator("table.figures", has_text="Links").last.inner_text()
+
+    checked = page.locator("#design .checks li").count()
+    assert checked > 0
+    assert f"least {own:g}°" in gauge()
+    page.get_by_label("Left cognate").check()
+    until(lambda: f"least {used:g}°" in gauge(), what="the cognate's own angle")
+    assert str(round(design["mechanism"]["links"]["input"], 3)) not in dimensions()
+    assert page.locator("#design .checks li").count() == 0, "its checks are the design's"
+    assert page.locator(".drawing img").count() == 0
+    assert f"{cognate['min_transmission_angle']:.4g}"[:4] in page.inner_text("#design table.figures >> nth=0")
+    page.locator("#explore summary").click()
+    facts = page.locator("#explore .facts")
+    whole = least_transmission(cognate["mechanism"]["links"])
+    until(lambda: re.search(r"Least transmission angle\s+[\d.]+°", facts.inner_text()), what="the explorer's answer")
+    told = float(re.search(r"Least transmission angle\s+([\d.]+)°", facts.inner_text()).group(1))
+    assert told == pytest.approx(whole, abs=0.1)
+    page.check("#cognate-0")
+    until(lambda: f"least {own:g}°" in gauge(), what="the design's angle again")
+    assert page.locator("#design .checks li").count() == checked
+
+
 @pytest.mark.parametrize(
     ("kind", "n", "kind_of_link"),
     [
