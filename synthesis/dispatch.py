@@ -6,11 +6,15 @@ from typing import Any
 
 from kinematics.linkage import warm
 from synthesis.model.answer import Result
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.statement import StatedProblem
+from synthesis.nearest_miss import nearest_miss
 from synthesis.registry import KINDS
 
 __all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
+
+SEARCH_SHARE = 0.9
+"""Share of the progress that the search counts for; the rest is that for the nearest miss where nothing passed."""
 
 
 def _silent(_fraction: float, _message: str) -> None:
@@ -33,8 +37,15 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
         Where ``problem.contradictions()`` is not empty.
     """
     problem.require_consistent()
-    result = KINDS[problem.kind].solve(problem, _silent if progress is None else progress)
+    told = _silent if progress is None else progress
+    kind = KINDS[problem.kind]
+    result = kind.solve(problem, part_of(told, 0.0, SEARCH_SHARE))
     assert isinstance(result, Result)
+    if not any(design.verification.passed for design in result.designs):
+        told(SEARCH_SHARE, "no design found; looking for what comes nearest")
+        miss = nearest_miss(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0))
+        result = result.model_copy(update={"nearest_miss": miss})
+    told(1.0, "verified")
     return result
 
 

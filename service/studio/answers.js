@@ -1,9 +1,9 @@
 /** The answer of a job: what is known, the designs as cards, and the selected design in full. */
 
 import * as api from "./api.js";
-import { el, words } from "./dom.js";
+import { el, shown, words } from "./dom.js";
 import { Shown } from "./design.js";
-import { figures, text } from "./figures.js";
+import { amount, figures, text } from "./figures.js";
 import { thumbnail } from "./thumbnail.js";
 
 /** How long keys must rest on a card before it is shown. */
@@ -38,6 +38,7 @@ export function answer(place, job, state) {
   place.append(
     el("p", { class: "summary" }, summary),
     el("p", { class: "note" }, known(search, designs.length)),
+    job.result.nearest_miss && missed(job.result.nearest_miss, job.problem),
     el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards),
     detail);
   cards[0]?.click();
@@ -66,6 +67,17 @@ function known(search, found) {
     ? found ? "Complete: the search has left out nothing that the problem allows; the best are shown." : "Complete: no design exists."
     : found ? "Not complete: there may be others." : "None found; that is no proof that none exists.";
   return `${sure} ${counted.length ? `Left out: ${counted.join(", ")}.` : ""}`;
+}
+
+/** What comes nearest where no design satisfies all demands. @param {any} miss @param {any} problem */
+function missed({ design, gaps, reachable }, problem) {
+  const within = Object.entries(reachable).map(([name, value]) => `${words(name).toLowerCase()} ${shown(Number(value.toPrecision(4)))}`);
+  return el("section", { id: "miss", class: "card" }, thumbnail(design),
+    el("strong", {}, `Nearest miss: ${words(design.mechanism.type)}`),
+    ...gaps.map((/** @type {any} */ gap) => el("span", { class: "bad" }, `✗ ${words(gap.check)}`,
+      typeof gap.value === "number" && ` ${amount(gap.value, gap, problem)}`,
+      typeof gap.limit === "number" && `, demanded ${amount(gap.limit, gap, problem)}`)),
+    within.length > 0 && el("span", { class: "note" }, `Within reach beside all other demands: ${within.join("; ")}.`));
 }
 
 /** @param {any} design @param {number} n @param {() => void} choose */

@@ -20,7 +20,7 @@ export function text(value) {
 }
 
 /** A number of a check with the unit of what the check measures. @param {number} value @param {any} check @param {any} problem */
-function amount(value, check, problem) {
+export function amount(value, check, problem) {
   const unit = symbolOf(check.dimension, problem);
   return `${shown(value)}${unit === "" || unit === "°" ? unit : ` ${unit}`}`;
 }

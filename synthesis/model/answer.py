@@ -68,9 +68,33 @@ class Search(Answer):
 Design = TypeVar("Design", bound=Answer)
 
 
+class Gap(Answer):
+    """By how much a check is broken; of a demand without a measure, such as a class of linkage, there is the name."""
+
+    check: str
+    value: float | None = Field(default=None, exclude_if=blank)
+    limit: float | None = Field(default=None, exclude_if=blank)
+    dimension: Dimension | None = Field(
+        default=None, exclude_if=blank, description="What value and limit measure; left out for a pure number."
+    )
+
+
+class NearestMiss(Answer, Generic[Design]):
+    """Where no design satisfies all demands: the one that was found to break them least."""
+
+    design: Design
+    gaps: list[Gap] = Field(description="The checks that it breaks.")
+    reachable: dict[str, float] = Field(
+        description="By the name of a constraint: the best value met where all other demands hold, in its own unit."
+    )
+
+
 class Result(Answer, Generic[Design]):
     """The answer to a problem: designs, best first, and how they were found."""
 
     designs: list[Design]
     search: Search
     summary: str
+    nearest_miss: NearestMiss[Design] | None = Field(
+        default=None, description="Where no design passed: what comes nearest. Null where one passed."
+    )

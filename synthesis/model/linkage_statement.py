@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from typing import Annotated, Literal, Self
 
@@ -35,6 +36,17 @@ class Region(Statement):
         slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
         across = left - slack <= point.real <= right + slack
         return across and low - slack <= point.imag <= high + slack
+
+    def widened(self, margin: float) -> Self:
+        """The region with a margin on all sides, in length units."""
+        (left, right), (low, high) = self.x, self.y
+        return self.model_copy(update={"x": (left - margin, right + margin), "y": (low - margin, high + margin)})
+
+    def distance(self, point: complex) -> float:
+        """How far a point lies outside the region; 0 within."""
+        (left, right), (low, high) = self.x, self.y
+        across = max(left - point.real, 0.0, point.real - right)
+        return 0.0 if self.contains(point) else math.hypot(across, max(low - point.imag, 0.0, point.imag - high))
 
 
 class LengthLimits(Statement):

@@ -58,5 +58,6 @@ def constraint_checks(
         ("moving_pivot_region", constraints.moving_pivot_region, moving_pivots),
     ):
         if region is not None:
-            checks.append(Check(name=name, passed=all(map(region.contains, pivots))))
+            outside = max(map(region.distance, pivots))
+            checks.append(Check(name=name, passed=outside == 0.0, value=outside, limit=0.0, dimension=LENGTH))
     return checks

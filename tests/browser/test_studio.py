@@ -288,3 +288,17 @@ def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
     print(f"the picture follows a dragged pin in {median:.1f} ms (median of {len(taken)} moves)")
     assert median <= 50.0
     assert len(curves) >= 10, "the curve follows while the pin is dragged, not when it is let go"
+
+
+def test_where_nothing_is_found_the_page_shows_what_comes_nearest(studio):
+    page = studio.page
+    state(page, {**examples("quick_return")[0], "constraints": {"min_transmission_angle": 88.5}})
+    studio.solve()
+    page.wait_for_selector("#miss")
+    told = page.inner_text("#miss")
+    gap = re.search(r"Transmission angle ([\d.]+)°, demanded 88.5°", told)
+    reach = re.search(r"min transmission angle ([\d.]+)", told, re.IGNORECASE)
+    assert gap is not None, told
+    assert float(gap.group(1)) == pytest.approx(float(reach.group(1)), abs=0.01)
+    assert page.locator("#miss svg").count() == 1
+    studio.screen("nearest-miss")

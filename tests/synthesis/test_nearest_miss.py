@@ -1,0 +1,115 @@
+"""Where no design satisfies all demands the answer says what comes nearest, and what is within reach."""
+
+import math
+
+import pytest
+
+from synthesis import parse_problem, solve
+from synthesis.dispatch import SEARCH_SHARE
+from synthesis.registry import examples
+
+POSITIONS = [{"x": x, "y": y, "angle": a} for x, y, a in ((0.0, 0.0, 0.0), (20.0, 10.0, 25.0), (45.0, 8.0, 60.0))]
+
+
+def limited(statement, **constraints):
+    return {**statement, "constraints": {**statement.get("constraints", {}), **constraints}}
+
+
+def motion(**constraints):
+    return limited({"kind": "motion", "positions": POSITIONS}, **constraints)
+
+
+OUT_OF_REACH = {
+    "path": limited(examples("path")[1], min_transmission_angle=88.5),
+    "function": limited(examples("function")[1], min_transmission_angle=88.5),
+    "quick_return": limited(examples("quick_return")[0], min_transmission_angle=88.5),
+    "straight_line": limited(examples("straight_line")[0], min_transmission_angle=88.5),
+    "dwell": limited(examples("dwell")[1], min_transmission_angle=88.5),
+    "parallel_motion": limited(examples("parallel_motion")[0], min_transmission_angle=88.5),
+}
+
+
+@pytest.mark.parametrize("kind", OUT_OF_REACH)
+def test_a_limit_out_of_reach_is_told_with_the_design_that_comes_nearest(kind):
+    result = solve(parse_problem(OUT_OF_REACH[kind]))
+    assert result.designs == []
+    miss = result.nearest_miss
+    (gap,) = miss.gaps
+    assert (gap.check, gap.limit, gap.dimension) == ("transmission_angle", 88.5, "angle")
+    assert gap.value == miss.design.metrics.min_transmission_angle < 88.5
+    assert miss.reachable == {"min_transmission_angle": gap.value}
+    assert [check.name for check in miss.design.verification.checks if not check.passed] == ["transmission_angle"]
+
+
+@pytest.mark.parametrize("kind", ["path", "quick_return", "straight_line"])
+def test_what_is_said_to_be_within_reach_is(kind):
+    reachable = solve(parse_problem(OUT_OF_REACH[kind])).nearest_miss.reachable["min_transmission_angle"]
+    within = limited(OUT_OF_REACH[kind], min_transmission_angle=reachable - 1e-6)
+    result = solve(parse_problem(within))
+    assert result.designs
+    assert result.nearest_miss is None
+    assert result.designs[0].verification.passed
+
+
+def test_where_all_designs_are_known_nothing_beyond_is_within_reach():
+    statement = OUT_OF_REACH["quick_return"]
+    result = solve(parse_problem(statement))
+    assert result.search.complete
+    reachable = result.nearest_miss.reachable["min_transmission_angle"]
+    assert solve(parse_problem(limited(statement, min_transmission_angle=reachable + 1e-6))).designs == []
+
+
+def test_the_gap_of_a_zone_is_the_distance_of_the_pivots_from_it():
+    zone = {"x": [300.0, 310.0], "y": [-5.0, 5.0]}
+    result = solve(parse_problem(motion(fixed_pivot_region=zone)))
+    assert result.designs == []
+    (gap,) = result.nearest_miss.gaps
+    joints = result.nearest_miss.design.mechanism.skeleton.joints
+    outside = max(
+        math.hypot(max(300.0 - x, 0.0, x - 310.0), max(-5.0 - y, 0.0, y - 5.0)) for x, y in (joints["O2"], joints["O4"])
+    )
+    assert (gap.check, gap.limit, gap.dimension) == ("fixed_pivot_region", 0.0, "length")
+    assert gap.value == pytest.approx(outside, rel=1e-12)
+    # Nearer than where designs lie that nothing draws there.
+    free = solve(parse_problem(motion()))
+    assert gap.value < min(300.0 - design.mechanism.skeleton.joints["O4"][0] for design in free.designs)
+
+
+def test_two_limits_each_out_of_reach_are_told_with_what_the_other_leaves():
+    result = solve(parse_problem(motion(min_transmission_angle=85.0, max_link_ratio=1.05)))
+    assert result.designs == []
+    reachable = result.nearest_miss.reachable
+    assert set(reachable) == {"min_transmission_angle", "max_link_ratio"}
+    assert reachable["min_transmission_angle"] < 85.0
+    assert reachable["max_link_ratio"] > 1.05
+
+
+@pytest.mark.parametrize(
+    ("statement", "check", "measure"),
+    [
+        ({"kind": "gear_train", "ratio": "pi", "tolerance": 0.0, "max_stages": 1}, "ratio_error", "relative_error"),
+        ({**examples("planetary_train")[0], "ratio": 5.4321, "tolerance": 0.0}, "ratio", "error"),
+        ({**examples("layshaft_gearbox")[0], "tolerance": 0.0001}, "ratios", "max_error"),
+    ],
+    ids=["gear_train", "planetary_train", "layshaft_gearbox"],
+)
+def test_of_gears_it_is_the_most_exact_ratio(statement, check, measure):
+    result = solve(parse_problem(statement))
+    assert result.designs == []
+    (gap,) = result.nearest_miss.gaps
+    assert (gap.check, gap.limit) == (check, statement["tolerance"])
+    assert gap.value == abs(getattr(result.nearest_miss.design.metrics, measure)) > statement["tolerance"]
+    rougher = solve(parse_problem({**statement, "tolerance": gap.value * (1.0 + 1e-9)}))
+    assert rougher.designs
+
+
+def test_there_is_none_where_a_design_passes():
+    assert solve(parse_problem(motion())).nearest_miss is None
+
+
+def test_progress_never_goes_back():
+    shares = []
+    solve(parse_problem(motion(min_transmission_angle=89.9)), lambda share, _: shares.append(share))
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert SEARCH_SHARE in shares
