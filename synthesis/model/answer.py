@@ -72,11 +72,9 @@ class Gap(Answer):
     """By how much a check is broken; of a demand without a measure, such as a class of linkage, there is the name."""
 
     check: str
-    value: float | None = Field(default=None, exclude_if=blank)
-    limit: float | None = Field(default=None, exclude_if=blank)
-    dimension: Dimension | None = Field(
-        default=None, exclude_if=blank, description="What value and limit measure; left out for a pure number."
-    )
+    value: float | None = optional()
+    limit: float | None = optional()
+    dimension: Dimension | None = optional("What value and limit measure; left out for a pure number.")
 
 
 class NearestMiss(Answer, Generic[Design]):

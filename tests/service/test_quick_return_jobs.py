@@ -55,6 +55,23 @@ def test_a_pair_out_of_reach_is_answered_with_the_range(client):
     (reach,) = job["result"]["reachable"]
     assert math.isclose(reach["greatest"], 580.0 / 140.0)
     assert "4.14286" in job["result"]["summary"]
+    assert job["result"]["nearest_miss"] is None, "no demand is the trouble"
+
+
+def test_a_limit_out_of_reach_is_answered_with_the_nearest_miss(client):
+    statement = {**EXAMPLES[0], "constraints": {"min_transmission_angle": 88.5}}
+    miss = solved(client, statement)["result"]["nearest_miss"]
+    (gap,) = miss["gaps"]
+    assert gap == {
+        "check": "transmission_angle",
+        "value": miss["design"]["metrics"]["min_transmission_angle"],
+        "limit": 88.5,
+        "dimension": "angle",
+    }
+    statement["constraints"]["min_transmission_angle"] = miss["reachable"]["min_transmission_angle"] - 1e-6
+    result = solved(client, statement)["result"]
+    assert result["designs"]
+    assert result["nearest_miss"] is None
 
 
 @pytest.mark.parametrize(
