@@ -155,7 +155,7 @@ def test_cognates_are_switched_in_place(studio):
 
 
 def least_transmission(lengths):
-    """Of a crank-rocker over a whole turn, in degrees: the law of cosines at the crank's two places along the ground."""
+    """Of a crank-rocker over a turn, degrees: the law of cosines at the two places of the crank along the ground."""
     crank, coupler, rocker, ground = (lengths[name] for name in ("input", "coupler", "output", "ground"))
     angles = [
         math.degrees(math.acos((coupler**2 + rocker**2 - base**2) / (2.0 * coupler * rocker)))
