@@ -26,7 +26,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "gearbox": ("svg", "dxf", "csv"),
     "layshaft_gearbox": ("svg", "dxf", "csv"),
 }
-"""The forms of files that there are of a type of mechanism that is no linkage; linkages have all."""
+"""The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
 
 class NoSuchExport(LookupError):
@@ -34,10 +34,10 @@ class NoSuchExport(LookupError):
 
 
 class NotBuilt(ValueError):
-    """The design is of a size that is not taken for a mechanism's: one for lengths at the end of what can be stated."""
+    """The design cannot be rebuilt: its lengths are at the limits of what a statement may hold."""
 
 
-# A server that starts does not wait for a drawing library: the makers of a form are imported when one is asked for.
+# The makers of a form are imported when one is first used, so that a starting server loads no drawing library.
 
 
 def _sheets() -> dict[str, Maker]:
@@ -115,7 +115,7 @@ _MAKERS: dict[Form, Callable[[], dict[str, Maker]]] = {
 
 
 def forms(mechanism: str) -> list[Form]:
-    """The forms of files that there are of a type of mechanism."""
+    """The forms of files of a type of mechanism."""
     return list(FILES.get(mechanism, get_args(Form)))
 
 

@@ -21,7 +21,7 @@ RESIDUAL = 1e-3
 
 
 def compared(check: Check, units: Mapping[Dimension, str]) -> tuple[str, str]:
-    """Value and limit of a check with their unit; empty where there is none.
+    """Value and limit of a check with their unit; empty where the check has none.
 
     Where the check fails although both would read the same, they have as many digits as tell them apart.
     """
@@ -45,7 +45,7 @@ def checks(verification: Verification, problem: StatedProblem) -> blocks.Block:
     for check in verification.checks:
         value, limit = compared(check, units)
         if check.value is not None and check.limit is not None:
-            # Two digits tell all of what is rounding, or within a tolerance, and leave room for the check's name.
+            # Two digits suffice for a rounding error or a tolerance, and leave room for the check's name.
             unit = "" if check.dimension is None else units[check.dimension]
             tolerance = check.passed and not unit and abs(check.limit) < RESIDUAL
             if tolerance or abs(check.value) < RESIDUAL * abs(check.limit):

@@ -24,7 +24,7 @@ from synthesis.model.dimension import Dimension, dimensions
 from synthesis.model.statement import StatedProblem
 
 MOST_ROWS = 40
-"""Rows of a list at most; of longer ones so many are shown, evenly spread, with both ends."""
+"""Rows of a list at most; longer lists are thinned to this number, evenly, keeping both ends."""
 
 MOST_NUMBERS = 16
 """Numbers that stand in one row at most."""

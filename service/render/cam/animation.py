@@ -135,6 +135,6 @@ def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -
 
 
 def _passing(points: Points, moved: float, turn: float) -> Points:
-    """A wall over one turn around x = 0, moved back by so much."""
+    """A wall over one turn around x = 0, moved back by a length."""
     several = np.concatenate([points + turn * k for k in (-1, 0, 1)]) - moved
     return np.asarray(several[np.abs(several.real) <= 0.5 * turn])

@@ -17,7 +17,7 @@ from synthesis.kinds.cam.problem import CamProblem
 
 
 def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
-    """The inspection table of a cam design; numbers in full precision, nothing where there is none."""
+    """The inspection table of a cam design; numbers to twelve digits, cells empty where the follower has no contact."""
     scene, unit = CamScene(design.mechanism), problem.length_unit
     contact = scene.contact
     pitch, profile = scene.pitch_curve, contact.point
@@ -49,7 +49,7 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
 
 
 def barrel_table(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:
-    """The table of a barrel cam design; numbers in full precision."""
+    """The table of a barrel cam design; numbers to twelve digits."""
     mechanism, unit = design.mechanism, problem.length_unit
     program, radius = mechanism.program, mechanism.cylinder_radius
     columns = _program(program, unit, unit) | {

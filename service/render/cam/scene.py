@@ -87,7 +87,7 @@ class CamScene:
         return isinstance(self.follower, OscillatingRoller | OscillatingFlat)
 
     def station(self, degrees: float) -> complex:
-        """Unit vector, in the cam's frame, of the ground's +x axis when the cam has turned so far."""
+        """Unit vector, in the cam's frame, of the ground's +x axis when the cam has turned by an angle."""
         turn = -self.sense * math.radians(degrees)
         return complex(math.cos(turn), math.sin(turn))
 
@@ -119,7 +119,7 @@ class CamScene:
         return [(foot, point + FACE_SHARE * self.base_radius * along), (foot, self.pivot)]
 
     def faces(self, every: int) -> list[tuple[complex, complex]]:
-        """A flat face around its contact, in each so many positions of the table."""
+        """A flat face around its contact, at every ``every``-th position of the table."""
         faces = []
         for degrees, point in zip(self.angle[::every].tolist(), self.contact.point[::every].tolist(), strict=True):
             half = FACE_SHARE * self.base_radius * self.face_direction(point, self.station(degrees))

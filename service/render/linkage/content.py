@@ -26,7 +26,7 @@ class Picture(Protocol):
         """Whether it takes the whole width, with the tables below it."""
 
     def draw(self, width: float) -> tuple[list[Element], float]:
-        """Its parts at the left border below the title, so many pixels wide, and the y below them."""
+        """Its parts at the left border below the title, in a width in pixels, and the y below them."""
 
 
 @dataclass(frozen=True)

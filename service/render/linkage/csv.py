@@ -22,7 +22,7 @@ STEPS = 360
 
 
 def linkage_table(design: Any, problem: LinkageProblem, title: str) -> str:
-    """The motion of a linkage design; numbers in full precision, nothing where there is none."""
+    """The motion of a linkage design; numbers in full precision, cells empty where it cannot be assembled."""
     linkage, unit = DrivenLinkage.of(design), problem.length_unit
     slide = linkage.mechanism.driven_by_slide
     inputs = np.linspace(*linkage.cycle, STEPS + 1)

@@ -26,8 +26,8 @@ from synthesis.model.linkages import DrivenFourbar, driven_fourbar
 Real = NDArray[np.float64]
 
 MEETS = 1e-6
-"""A configuration meets a position when it misses by less than this share of the task's size, and radians: far below
-what the eye sees, far above rounding."""
+"""A configuration meets a position when it misses by less than this share of the task's size, and than this angle in
+radians: far below what is visible, far above rounding."""
 
 AT_LIMIT, INSIDE = 1e-6, 1e-9
 """Input angles, radians, beyond a limit by less than the first count as at the limit, and are moved inside it by the
@@ -49,7 +49,7 @@ OTHERS = 9
 """Linkages that are drawn beside the first at most: none where more points are demanded, some of more positions."""
 
 MARKED = 24
-"""Targets that are drawn and listed at most: of more, so many, evenly spread, with the first and the last."""
+"""Targets that are drawn and listed at most; more are thinned to this number, evenly, keeping first and last."""
 
 SMALL_MOTION, SMALL_PART = 0.15, 0.04
 """All moving joints together, or one group of joints, within this share of the drawing's diagonal get a detail."""
@@ -189,7 +189,7 @@ def scene(design: LinkageDesign, problem: MotionProblem | PathProblem, motion: D
 
 
 def spread(count: int, most: int) -> list[int]:
-    """At most so many of ``count`` places, evenly spread, with both ends.
+    """At most ``most`` of ``count`` places, evenly spread, with both ends.
 
     >>> spread(3, 5), spread(200, 5)
     ([0, 1, 2], [0, 50, 100, 149, 199])
@@ -235,7 +235,7 @@ def _configurations(design: LinkageDesign, driven: DrivenFourbar, demands: list[
 def _assembled(
     linkage: Fourbar, toggles: Real, angle: float, assembly: int
 ) -> tuple[complex, complex, complex, float] | None:
-    """A, B, P and coupler angle; a hair inside a limit where the angle is a hair outside; None if it cannot close."""
+    """A, B, P and coupler angle; None if it cannot close. An angle at a limit (``AT_LIMIT``) is moved inside it."""
     off = np.remainder(toggles - angle + np.pi, 2.0 * np.pi) - np.pi
     nearest = float(off[np.argmin(np.abs(off))]) if off.size else math.inf
     shifts = (0.0, nearest + INSIDE, nearest - INSIDE) if abs(nearest) < AT_LIMIT else (0.0,)

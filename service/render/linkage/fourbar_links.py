@@ -29,7 +29,7 @@ LINK_WIDTH, JOINT_RADIUS, PIVOT_RADIUS = 5.0, 5.0, 6.0
 """Sizes of the bold linkage, pixels, where there is room."""
 
 SEEN_BEYOND = 40.0
-"""Plates are cut so many pixels outside their panel."""
+"""Plates are cut at this distance outside their panel, pixels."""
 
 BAR_HEIGHT = 2.5
 """A coupler triangle lower than this many pixels is drawn as a bar."""

@@ -31,13 +31,13 @@ ARC_LENGTH = 26.0
 """That arc is moved outwards along the input link where it would be shorter than this, pixels."""
 
 LEAST_ROTATION = 1e-9
-"""A rotation smaller than this, radians, is none."""
+"""A rotation smaller than this, radians, is not drawn."""
 
 TICK = 9.0
 """Length of the tick at an input limit, pixels."""
 
 SEEN_MISS = 1.0
-"""A point that is missed by less than so many pixels is seen to be met."""
+"""A miss shorter than this on the sheet, pixels, is not drawn."""
 
 LARGEST_ARC = 4.0
 """Arcs of a larger radius, in panel diagonals, are left out: in a detail they would be straight lines of no meaning."""

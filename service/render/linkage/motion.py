@@ -33,12 +33,12 @@ class DrivenLinkage:
 
     @classmethod
     def of(cls, design: Any) -> DrivenLinkage:
-        """The linkage of a design, from its dimensions and its skeleton, as anybody who has only those would build it.
+        """The linkage of a design, rebuilt from its dimensions and its skeleton alone.
 
         Raises
         ------
         NotBuilt
-            Where it is none that the analysis core would be given.
+            Where these make no mechanism that the analysis core accepts.
         """
         mechanism = rebuilt(design.mechanism, from_skeleton=True)
         if mechanism is None:
@@ -79,7 +79,7 @@ class DrivenLinkage:
         return stated if self.mechanism.driven_by_slide else np.radians(stated)
 
     def targets(self, design: Any) -> Real:
-        """Inputs at the targets of a design, or that of the reference configuration where it has none."""
+        """Inputs at the targets of a design; without targets, the input of the reference configuration."""
         targets = getattr(design, "targets", None) or []
         stated = [target.at if isinstance(target, DrivenTo) else target.input_angle for target in targets]
         return self.inputs(stated) if stated else np.atleast_1d(self.mechanism.reference_input)

@@ -27,7 +27,7 @@ STEP_MS = 50
 """Time of a frame, milliseconds: browsers slow down what is faster than 20 ms."""
 
 FINER = 2
-"""Each pixel is drawn as so many by so many."""
+"""Oversampling: pixels drawn for each pixel of the frame, in each direction."""
 
 MARGIN = 0.05
 """Room around what is shown, as a share of its longer side."""
@@ -81,7 +81,7 @@ def animated(frames: Iterable[Sequence[Stroke]], shown: Box) -> bytes:
 
 
 def _placed(points: Points, box: Box, scale: float, size: Sequence[int]) -> NDArray[np.float64]:
-    """Corners on the enlarged picture, y down, at most so many, all within reach of the picture."""
+    """Corners on the enlarged picture, y down, at most :data:`MOST_CORNERS`, clipped to its surroundings."""
     every = -(-len(points) // MOST_CORNERS)
     kept = np.append(points[:-1:every], points[-1:]) if every > 1 else points
     middle = 0.5 * FINER * np.asarray(size, dtype=np.float64)

@@ -27,7 +27,7 @@ Block = Callable[[float, float, float], tuple[Element, float]]
 """Draws itself at left, top and width; returns its element and the y below it."""
 
 Sample = Callable[[str, float, float], Element | None]
-"""Draws the line style of what a row names, at left and the base line of the row; None where it has none."""
+"""Draws a sample of the line style that a row names, at the left on the row's base line; None without a style."""
 
 SAMPLE = 34.0
 """Width of the samples of line styles, pixels."""

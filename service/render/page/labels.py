@@ -157,7 +157,7 @@ class Labels:
     def _best(
         self, point: complex, width: float, height: float, clearance: float, away: complex, rings: tuple[float, ...]
     ) -> tuple[Placed, float]:
-        """Cheapest place and its cost; rings that cannot be cheaper than the best so far are not looked at."""
+        """Cheapest place and its cost; rings that cannot be cheaper than the best place yet are skipped."""
         preferred = away / abs(away) if abs(away) > 0.0 else 1j
         turned_away = TURN_COST * (1.0 - (DIRECTIONS * preferred.conjugate()).real)
         # The box touches the circle of radius clearance + gap about the point in the label's direction.

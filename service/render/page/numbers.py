@@ -14,10 +14,10 @@ NONE = "–"
 
 
 def length(value: float, size: float = 0.0, digits: int = 6, most: int = 15) -> str:
-    """A length to so many significant digits.
+    """A length to ``digits`` significant digits.
 
-    Beside a ``size`` a value is zero where it is rounding, and has more digits (``most`` at most) where it is larger,
-    so that coordinates far from the origin still tell points of the mechanism apart.
+    ``size`` is that of the mechanism: a value that is a rounding error of it is written as zero, and one beyond it
+    gets more digits, up to ``most``, so that coordinates far from the origin still distinguish its points.
     """
     if not math.isfinite(value):
         return NONE

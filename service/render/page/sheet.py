@@ -60,7 +60,7 @@ def stacked(
 
 
 def in_columns(columns: Sequence[Sequence[Block]], widths: Sequence[float], top: float) -> tuple[list[Element], float]:
-    """Columns of blocks side by side from the left border, so many pixels wide each, and the y below the longest."""
+    """Columns of blocks side by side from the left border, of widths in pixels, and the y below the longest."""
     parts, left, bottom = [], EDGE, top
     for blocks, width in zip(columns, widths, strict=True):
         drawn, y = stacked(blocks, left, top, width)

@@ -1,6 +1,7 @@
 """Tables as CSV: lines of remarks that begin with ``#``, the columns' names with their units, rows of numbers.
 
-Numbers are written in full precision, so that reading them gives the same numbers; a cell is empty where there is none.
+Numbers are written in full precision, so that reading them gives the same numbers; a number that is not finite is an
+empty cell.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ def table(heads: Iterable[str], rows: Iterable[Sequence[Cell]]) -> str:
 
 
 def written(value: float) -> str:
-    """A number in full precision; nothing for what is none."""
+    """A number in full precision; an empty cell where it is not finite."""
     return repr(value) if math.isfinite(value) else ""
 
 
 def short(value: float) -> str:
-    """A number to twelve digits, of what was rounded before; nothing for what is none."""
+    """A number to twelve digits, for values that were rounded before; an empty cell where it is not finite."""
     return f"{value:.12g}" if math.isfinite(value) else ""
 
 
