@@ -22,6 +22,7 @@ from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.loading import IMPORTS
 from service.render import Form
+from service.stated import read
 from service.telemetry import span
 from synthesis.registry import KINDS
 
@@ -127,7 +128,7 @@ def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
     kind = KINDS[job.kind]
     designs = kind.result.model_validate_json(result).designs
     n = _design_index(number, len(designs))
-    problem = kind.problem.model_validate_json(job.problem)
+    problem = read(job.kind, job.problem)
     title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
     try:
         return render.exported(designs[n], problem, title, form)
@@ -196,7 +197,7 @@ def _report(job: JobRow, result: str, most: int) -> tuple[str, str]:
 
     kind = KINDS[job.kind]
     occasion = Occasion(job.id, job.kind, job.label, job.created_at, job.finished_at, version("mechsynth"))
-    problem = kind.problem.model_validate_json(job.problem)
+    problem = read(job.kind, job.problem)
     return report(problem, kind.result.model_validate_json(result), occasion, most), POLICY
 
 

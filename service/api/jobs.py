@@ -22,6 +22,7 @@ from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
 from service.jobs.states import Status
 from service.jobs.store import KeyReused, QueueFull
+from service.stated import written
 from synthesis.registry import KINDS, example
 
 TAG = {"name": "jobs", "description": "State a problem, follow the job, read the answer."}
@@ -135,7 +136,7 @@ async def create_job(
             tenant=tenant,
             kind=body.problem.kind,
             label=body.label,
-            problem=body.problem.model_dump_json(),
+            problem=written(body.problem),
             wait_s=wait_s,
             repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
         )

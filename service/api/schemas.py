@@ -10,6 +10,7 @@ from pydantic_core import to_json
 from service.api.errors import ProblemDetails
 from service.jobs.schema import JobRow, JobSummary
 from service.jobs.states import Status
+from service.stated import filled_in
 from synthesis.model.answer import Result
 from synthesis.registry import KINDS, Problem, example
 
@@ -72,7 +73,7 @@ class Job(JobListItem):
 
     model_config = ConfigDict(title="Job")
 
-    problem: Problem = Field(description="The problem as accepted, defaults filled in.")
+    problem: Problem = Field(description="The problem as stated, defaults filled in; posted again it is the same one.")
     result: AnyResult | None = Field(description="The answer of a job that has succeeded.")
     error: ProblemDetails | None = Field(description="Why a job has failed.")
 
@@ -139,6 +140,8 @@ def progress(job: JobSummary) -> dict[str, Any]:
 
 
 def whole_job(job: JobRow) -> bytes:
-    """A job as :class:`Job`, in JSON; problem, result and error go out as the models wrote them into the store."""
-    stored = f'"problem":{job.problem},"result":{job.result or "null"},"error":{job.error or "null"}'
+    """A job as :class:`Job`, in JSON; result and error go out as the models wrote them into the store."""
+    stored = (
+        f'"problem":{filled_in(job.kind, job.problem)},"result":{job.result or "null"},"error":{job.error or "null"}'
+    )
     return to_json(list_item(job))[:-1] + b"," + stored.encode() + b"}"

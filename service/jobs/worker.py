@@ -151,10 +151,10 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
 
 
 def _solve(writer: ProgressWriter, job_id: str, claim: Claim) -> str:
+    from service.stated import read
     from synthesis import dispatch
-    from synthesis.registry import KINDS
 
-    problem = KINDS[claim.kind].problem.model_validate_json(claim.problem)
+    problem = read(claim.kind, claim.problem)
     with writer.attempt(job_id, claim.attempt) as progress:
         return dispatch.solve(problem, progress).model_dump_json()
 

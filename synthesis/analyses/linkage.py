@@ -60,7 +60,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
     mechanism: GivenMechanism
     motion: StatedMotion = Field(
         default=Sweep(),
-        description="By default a full turn in 360 steps; a driven slider goes between toggles.",
+        description="By default a full turn in 360 steps; a driven slider goes from toggle to toggle.",
     )
     include: list[Topic | Literal["branches"]] = Field(
         default=[],
@@ -97,9 +97,10 @@ class LinkageAnalysisRequest(AnalysisRequest):
         slide, motion = mechanism.driven_by_slide, self.motion
         if slide and motion.speed_rpm is not None:
             raise MechanismError("", "a slider drives this; state its speed as `speed`, length units a second")
-        if slide and "motion" not in self.model_fields_set:
-            low, high = cycle_of(mechanism)
-            motion = Sweep(start=low, end=high)
+        if slide and isinstance(motion, Sweep) and None in (motion.start, motion.end):
+            toggles = dict(zip(("start", "end"), cycle_of(mechanism), strict=True))
+            stated = {name: getattr(motion, name) for name in toggles if getattr(motion, name) is not None}
+            motion = motion.model_copy(update=toggles | stated)
         at, speed, time = motion.inputs(slide=slide)
         topics = [topic for topic in self.include if topic != "branches"]
         points = {name: (point.link, point.vector) for name, point in self.points.items()}

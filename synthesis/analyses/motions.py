@@ -17,6 +17,8 @@ MAX_POSITIONS = 10_000
 ROUNDING = 1e-12
 """Share of a number of steps by which it may fall short of a whole one: 0.3/0.1 is three steps."""
 
+FULL_TURN = 360.0
+
 RAD_PER_S = math.pi / 30.0
 """One revolution a minute in rad/s."""
 
@@ -51,17 +53,24 @@ class _Motion(Statement):
 
 
 class Sweep(_Motion):
-    """Equal steps of the input from one angle to another, both included."""
+    """Equal steps of the input from one angle to another, both included; a full turn where neither is stated."""
 
     model_config = ConfigDict(populate_by_name=True)
 
-    start: Number = Field(default=0.0, alias="from", description="First input angle, degrees.")
-    end: Number = Field(default=360.0, alias="to", description="Last input angle, degrees.")
+    start: Number | None = Field(
+        default=None,
+        alias="from",
+        description="First input angle, degrees; by default 0, of a slider its first toggle.",
+    )
+    end: Number | None = Field(
+        default=None, alias="to", description="Last input angle, degrees; by default 360, of a slider its last toggle."
+    )
     steps: Annotated[Count, Field(ge=1, le=MAX_POSITIONS - 1)] = 360
 
     def inputs(self, *, slide: bool = False) -> tuple[Real, Real, Real | None]:
         """Inputs, speeds and no times."""
-        at = np.asarray(np.linspace(self.start, self.end, self.steps + 1), np.float64)
+        start, end = self.start or 0.0, FULL_TURN if self.end is None else self.end
+        at = np.asarray(np.linspace(start, end, self.steps + 1), np.float64)
         return at, np.full(len(at), self.rate), None
 
 
@@ -108,9 +117,10 @@ class Run(_Motion):
 
 
 def _motion_tag(statement: Any) -> str:
-    if isinstance(statement, dict) and "time" in statement:
+    stated = statement if isinstance(statement, dict) else getattr(type(statement), "model_fields", {})
+    if "time" in stated:
         return "<run>"
-    return "<position>" if isinstance(statement, dict) and "at" in statement else "<sweep>"
+    return "<position>" if "at" in stated else "<sweep>"
 
 
 StatedMotion = Annotated[

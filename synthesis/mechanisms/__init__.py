@@ -33,6 +33,8 @@ def _model_of(statement: Any) -> type[GivenByDimensions | GivenSkeleton]:
 
     Whatever is no statement of a mechanism is the skeleton's to refuse.
     """
+    if isinstance(statement, GivenByDimensions):
+        return type(statement)
     if not isinstance(statement, dict) or not isinstance(statement.get("type"), str):
         return GivenSkeleton
     if "skeleton" in statement and not {"fixed_pivots", "fixed_pivot"} & statement.keys():

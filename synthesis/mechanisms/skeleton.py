@@ -167,6 +167,7 @@ class GivenSkeleton(Statement):
 class GivenByDimensions(Statement, ABC):
     """A type whose dimensions say it all. A skeleton beside them must have the same links, and is what is driven."""
 
+    type: str
     reference_input_angle: Degrees | None = Field(
         default=None, description="Input angle of the reference configuration, absolute, degrees."
     )

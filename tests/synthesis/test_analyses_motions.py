@@ -1,8 +1,9 @@
 """What every family of analyses refuses of a motion."""
 
 import pytest
+from pydantic_core import to_json
 
-from synthesis.analyses import families
+from synthesis.analyses import families, parse_request
 
 DRIVEN = [family.request for family in families() if "motion" in family.request.model_fields]
 LONG = {"time": {"end": 1e9, "step": 1e-25}}
@@ -28,3 +29,30 @@ def test_a_motion_that_cannot_be_meant_is_refused_at_its_field(request_, motion,
 @pytest.mark.parametrize("request_", DRIVEN, ids=lambda model: model.__name__)
 def test_the_documented_example_has_no_faults(request_):
     assert request_.example().faults() == []
+
+
+@pytest.mark.parametrize("family", families(), ids=lambda family: family.request.__name__)
+def test_a_default_that_is_written_out_states_nothing(family):
+    request = family.request.example()
+    written = family.request.model_validate(request.model_dump(mode="json", by_alias=True))
+    assert written == request
+    assert written.faults() == request.faults() == []
+    assert to_json(written.answer()) == to_json(request.answer())
+
+
+@pytest.mark.parametrize(
+    ("motion", "ends"),
+    [({}, (15.0, 25.0)), ({"speed": 2.0, "steps": 8}, (15.0, 25.0)), ({"from": 17.0}, (17.0, 25.0))],
+    ids=["default", "without ends", "one end"],
+)
+def test_an_end_that_is_left_out_is_a_toggle_of_a_slider(motion, ends):
+    slider_crank = {
+        "type": "slider_crank",
+        "fixed_pivot": [0.0, 0.0],
+        "links": {"crank": 5.0, "coupler": 20.0},
+        "slide": {"point": [0.0, 0.0], "angle": 0.0},
+        "driven_by": "slider",
+    }
+    stated = {"mechanism": slider_crank, "motion": motion}
+    places = parse_request(stated).answer()["input_angle"]
+    assert (places[0], places[-1]) == pytest.approx(ends)

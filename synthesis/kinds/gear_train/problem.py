@@ -96,9 +96,10 @@ class GearTrainProblem(StatedProblem):
         "two meshes with it keep the demands on meshes, and driver and driven gear the limit of the stage ratio.",
     )
     max_stages: Annotated[Count, Field(ge=1, le=4)] = 3
-    teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] = Field(
-        default=TeethRange(),
-        description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ...",
+    teeth: TeethRange | Annotated[list[TeethRange], Field(min_length=2, max_length=8)] | None = Field(
+        default=None,
+        description="Range of tooth numbers; or one range for each position: driver and driven gear of stage 1, 2, ... "
+        f"Left out, without a stock: the fewest that no mate can undercut to {DEFAULT_MOST_TEETH}.",
     )
     stock: list[ToothNumber | StockedGear] | None = Field(
         default=None,
@@ -170,9 +171,14 @@ class GearTrainProblem(StatedProblem):
         """Fewest teeth that a rack of the pressure angle does not undercut: 2 / sin² φ, rounded up."""
         return math.ceil(2.0 / math.sin(math.radians(self.pressure_angle)) ** 2 * (1.0 - ROUNDING))
 
+    @property
+    def ranges(self) -> list[TeethRange]:
+        """The ranges of tooth numbers: one for each position, or one for all of them."""
+        return self.teeth if isinstance(self.teeth, list) else [self.teeth or TeethRange()]
+
     def position_ranges(self) -> list[tuple[int, int]]:
         """Fewest and most teeth of driver and driven gear of each stage up to ``max_stages``."""
-        stated = self.teeth if isinstance(self.teeth, list) else [self.teeth] * (2 * self.max_stages)
+        stated = self.ranges if isinstance(self.teeth, list) else self.ranges * (2 * self.max_stages)
         return [(self.fewest_teeth if r.min is None else r.min, r.max) for r in stated]
 
     def stocked(self) -> dict[int, int]:
@@ -211,7 +217,7 @@ class GearTrainProblem(StatedProblem):
             contradictions.append(
                 Contradiction("/diametral_pitch", "the module already states the pitch; give one of them")
             )
-        if self.stock is not None and "teeth" in self.model_fields_set:
+        if self.stock is not None and self.teeth is not None:
             contradictions.append(
                 Contradiction("/stock", "the stock already states the tooth numbers; drop teeth or stock")
             )
@@ -231,8 +237,7 @@ class GearTrainProblem(StatedProblem):
                     f"got {len(self.teeth)}",
                 )
             )
-        stated = self.teeth if isinstance(self.teeth, list) else [self.teeth]
-        for place, one in enumerate(stated):
+        for place, one in enumerate(self.ranges):
             if one.min is None and self.fewest_teeth > one.max:
                 path = f"/teeth/{place}/max" if isinstance(self.teeth, list) else "/teeth/max"
                 detail = f"below the least sound tooth number {self.fewest_teeth}; state min as well"

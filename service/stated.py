@@ -1,0 +1,37 @@
+"""What a client has stated: written into the store, read from there, and shown.
+
+The store has the fields that were stated and no others, so that what a client sends, what is stored and what a worker
+solves are one statement. A job shows its problem with the defaults of all that was left out; a default that is written
+out states nothing, so that this problem, posted again, is the same one.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from synthesis.model.statement import StatedProblem
+from synthesis.registry import KINDS
+
+
+def written(problem: StatedProblem) -> str:
+    """A problem as the store has it: what was stated, in JSON."""
+    return problem.model_dump_json(exclude_unset=True)
+
+
+def read(kind: str, stored: str) -> Any:
+    """The problem that :func:`written` has written; raises pydantic's ValidationError where it is none."""
+    return KINDS[kind].problem.model_validate_json(stored)
+
+
+def filled_in(kind: str, stored: str) -> str:
+    """The same with all defaults, in JSON.
+
+    What an earlier version has taken and this one would refuse is shown as it was stated.
+    """
+    try:
+        problem = read(kind, stored)
+    except ValidationError:
+        return stored
+    return str(problem.model_dump_json())
