@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -110,16 +111,25 @@ def test_three_stages_of_the_usual_range() -> None:
         assert error == pytest.approx(best_of_three(float(value), 12, 100), abs=3e-14)
 
 
+def gears_of(train: Sequence[tuple[int, int, int]], reverted: bool) -> tuple[object, ...]:
+    """What tells a train (driver, driven gear, module of each stage) from others."""
+    if reverted:
+        return tuple(sorted(train))
+    return tuple(sorted(a for a, _, _ in train)), tuple(sorted(b for _, b, _ in train))
+
+
 def brute(
     stated: GearTrainProblem, stages: tuple[int, ...], ranges: list[range]
-) -> tuple[list[tuple[Fraction, int]], dict[int, Fraction], int]:
+) -> tuple[list[tuple[Fraction, int]], dict[int, Fraction], int, dict[tuple[object, ...], Fraction]]:
     """Errors and sizes of every train that keeps the demands, least error by size, and the number of the nearest.
 
+    And of every choice of gears the smallest largest stage ratio of all pairings.
     ``ranges`` are the tooth numbers of all positions; the demands are read from the statement and tried anew.
     """
     target = stated.target.rational
     assert target is not None
     seen: dict[tuple[object, ...], tuple[Fraction, int]] = {}
+    pairings: dict[tuple[object, ...], Fraction] = {}
     limit = stated.max_stage_ratio and Fraction(str(stated.max_stage_ratio))
     stock = stated.stocked()
     modules = stated.modules()
@@ -143,18 +153,16 @@ def brute(
             if stated.max_total_teeth and sum(gears) > stated.max_total_teeth:
                 continue
             ratio = Fraction(math.prod(b for _, b, _ in train), math.prod(a for a, _, _ in train))
-            key: tuple[object, ...] = tuple(sorted(train))
-            if isinstance(stated.teeth, list):
-                key = train
-            elif not stated.reverted:
-                key = (tuple(sorted(a for a, _, _ in train)), tuple(sorted(b for _, b, _ in train)))
+            key = gears_of(train, stated.reverted)
+            widest = max(Fraction(max(a, b), min(a, b)) for a, b, _ in train)
+            pairings[key] = min(widest, pairings.get(key, widest))
             seen[key] = (abs(ratio - target) / target, max(gears) if stated.size == "largest_gear" else sum(gears))
     listed = sorted(seen.values())
     least: dict[int, Fraction] = {}
     for error, size in listed:
         least.setdefault(size, error)
     nearest = sum(error == listed[0][0] for error, _ in listed) if listed else 0
-    return listed, least, nearest
+    return listed, least, nearest, pairings
 
 
 SMALL = {"min": 8, "max": 15}
@@ -175,6 +183,21 @@ DEMANDS = {
         "max_stages": 2,
         "teeth": [{"min": 8, "max": 12}, {"min": 14, "max": 20}, {"min": 8, "max": 10}, {"min": 9, "max": 20}],
         "hunting_tooth": "require",
+    },
+    "positions_alike": {
+        "max_stages": 2,
+        "teeth": [{"min": 8, "max": 12}, {"min": 8, "max": 14}, {"min": 9, "max": 13}, {"min": 10, "max": 13}],
+    },
+    "positions_limited": {
+        "max_stages": 2,
+        "teeth": [{"min": 8, "max": 12}, {"min": 8, "max": 14}, {"min": 9, "max": 13}, {"min": 10, "max": 13}],
+        "max_stage_ratio": 1.4,
+    },
+    "reverted_alike": {
+        "max_stages": 2,
+        "teeth": [{"min": 8, "max": 12}, {"min": 8, "max": 14}, {"min": 8, "max": 13}, {"min": 8, "max": 13}],
+        "reverted": True,
+        "module": [1.0, 1.25],
     },
     "reverted": {"max_stages": 2, "teeth": {"min": 8, "max": 17}, "reverted": True},
     "reverted_3": {"max_stages": 3, "teeth": {"min": 8, "max": 12}, "reverted": True},
@@ -215,7 +238,7 @@ def test_every_demand_against_plain_search(
         ranges = [sorted(stated.stocked())] * (2 * k)
     else:
         ranges = [range(low, high + 1) for low, high in stated.position_ranges()]
-    listed, least, nearest = brute(stated, (2, 3)[: k - 1] if stated.reverted else (1, 2)[:k], ranges)
+    listed, least, nearest, pairings = brute(stated, (2, 3)[: k - 1] if stated.reverted else (1, 2)[:k], ranges)
     outcome = searched(8, ratio=ratio, **demands)
     tolerance = stated.exact_tolerance
     if tolerance is not None:
@@ -241,7 +264,13 @@ def test_every_demand_against_plain_search(
             (abs(train.ratio - target) / target, train.size(stated.size == "largest_gear")) for train in outcome.pareto
         ]
         assert pareto == front
-    for train in outcome.trains:
+    keys = [
+        gears_of([(*mesh, mark) for mesh, mark in zip(train.meshes, train.marks, strict=True)], stated.reverted)
+        for train in outcome.trains
+    ]
+    assert len(set(keys)) == len(keys), "the same gears are listed twice"
+    for key, train in zip(keys, outcome.trains, strict=True):
+        assert max(Fraction(max(mesh), min(mesh)) for mesh in train.meshes) == pairings[key]
         assert all(a in ranges[2 * i] and b in ranges[2 * i + 1] for i, (a, b) in enumerate(train.meshes))
         if stated.max_stage_ratio:
             assert all(max(mesh) <= stated.max_stage_ratio * min(mesh) for mesh in train.meshes)

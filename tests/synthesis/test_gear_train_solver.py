@@ -397,3 +397,31 @@ def test_preferences_against_plain_loops() -> None:
         assert keys == sorted(keys), fields
         answered += bool(own)
     assert answered > 25
+
+
+def test_a_stock_reaches_no_farther_than_its_gears() -> None:
+    """Two stages of 20:100 would give 25; of one gear each the most is 30·100 / (20·25), and the gears are few."""
+    stock = [20, 25, 30, 100]
+    assert solved(ratio="4", max_stages=2, stock=stock).designs
+    beyond = solved(ratio="24", max_stages=2, stock=stock)
+    assert beyond.designs == []
+    assert "0.166667 to 6 in 2 stages" in beyond.summary
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"ratio": "7", "max_stages": 2, "stock": [20, 100, 30, 90, 25]},
+        {"ratio": "1.037", "max_stages": 1, "teeth": {"min": 18, "max": 22}},
+        {"ratio": "1.037", "max_stages": 1, "teeth": {"min": 18, "max": 30}},
+        {"ratio": "1.037", "max_stages": 2, "teeth": {"min": 18, "max": 22}, "reverted": True},
+        {"ratio": "1.037", "max_stages": 1, "teeth": {"min": 18, "max": 30}, "tolerance": 0.002},
+    ],
+)
+def test_the_pareto_set_is_within_what_the_page_says(fields: dict[str, Any]) -> None:
+    """Within the tolerance, or within 1 % where none is stated, also where all trains are farther off."""
+    result = solved(**fields)
+    bound = fields.get("tolerance", 0.01)
+    assert all(abs(train.relative_error) <= bound for train in result.pareto)
+    near = [design for design in result.designs if abs(design.metrics.relative_error) <= bound]
+    assert bool(result.pareto) == bool(near)

@@ -73,7 +73,8 @@ class Rule(NamedTuple):
     ``allowed[a, b]`` tells which meshes may be, where ``by_mesh``; ``stock[t]`` how many gears of t teeth there are,
     where ``by_stock``. ``with_idler``: in one stage, of the pairs ``idled``, an idler stands between the gears, and has
     to mesh soundly (``sound``) with both; of a stock it takes one more gear. ``most_total`` bounds the sum of all
-    teeth. ``ordered``: stages have ranges of their own and keep their places. ``by_size``: the smallest trains first,
+    teeth. ``ordered``: stages have ranges of their own, of the place i of a train's teeth from ``least[i]`` to
+    ``most[i]``. ``by_size``: the smallest trains first,
     else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth.
     """
 
@@ -83,6 +84,8 @@ class Rule(NamedTuple):
     by_size: bool
     largest: bool
     ordered: bool
+    least: Integers
+    most: Integers
     by_mesh: bool
     allowed: NDArray[np.bool_]
     with_idler: bool
@@ -158,41 +161,111 @@ def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
-    """Bring the driven gears of a train into the first order in which all stages are allowed; False: there is none.
-
-    The first tried is both in rising order, whose largest stage ratio is the least of all pairings.
-    """
+def may_be(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Whether all stages of a train, as its gears are paired, are allowed."""
     if not rule.by_mesh:
         return True
-    b, chosen = np.zeros(MOST_STAGES, np.int64), np.zeros(MOST_STAGES, np.int64)
     for i in range(k):
-        b[i] = teeth[MOST_STAGES + i]
-    chosen[0] = -1
-    stage = 0
-    while stage >= 0:
-        used = -1
-        for candidate in range(chosen[stage] + 1, k):
-            free = True
-            for j in range(stage):
-                free = free and chosen[j] != candidate
-            a = teeth[stage]
-            fits = rule.allowed[a, b[candidate]] or (rule.with_idler and rule.idled[a, b[candidate]])
-            if free and (not rule.ordered or candidate == stage) and fits:
-                used = candidate
-                break
-        chosen[stage] = used
-        if used < 0:
-            stage -= 1
-        elif stage == k - 1:
-            for j in range(k):
-                teeth[MOST_STAGES + j] = b[chosen[j]]
-            if not rule.with_idler or takes_idler(teeth, k, rule):
-                return True
-        else:
-            stage += 1
-            chosen[stage] = -1
-    return False
+        a, b = teeth[i], teeth[MOST_STAGES + i]
+        if not (rule.allowed[a, b] or (rule.with_idler and rule.idled[a, b])):
+            return False
+    return not rule.with_idler or takes_idler(teeth, k, rule)
+
+
+@njit(cache=True, nogil=True)
+def widest(teeth: Integers, k: int) -> float:
+    """The largest stage ratio, larger over smaller gear; equal for equal ratios, which are rounded once."""
+    ratio = 1.0
+    for i in range(k):
+        a, b = teeth[i], teeth[MOST_STAGES + i]
+        ratio = max(ratio, max(a, b) / min(a, b))
+    return ratio
+
+
+@njit(cache=True, nogil=True)
+def orders(k: int) -> int:
+    """How many orders k things have."""
+    count = 1
+    for i in range(2, k + 1):
+        count *= i
+    return count
+
+
+@njit(cache=True, nogil=True)
+def rearrange(teeth: Integers, start: int, k: int, order: int, moved: Integers) -> None:
+    """Write k of the numbers, from ``start`` on, in one of their orders; 0 is the one that they have."""
+    for i in range(k):
+        moved[start + i] = teeth[start + i]
+    for i in range(k):
+        rest = orders(k - 1 - i)
+        chosen, order = start + i + order // rest, order % rest
+        value = moved[chosen]
+        for j in range(chosen, start + i, -1):
+            moved[j] = moved[j - 1]
+        moved[start + i] = value
+
+
+@njit(cache=True, nogil=True)
+def in_ranges(teeth: Integers, start: int, k: int, rule: Rule) -> bool:
+    """Whether the drivers, or the driven gears, of a train lie within the ranges of their places."""
+    inside = True
+    for i in range(start, start + k):
+        inside = inside and rule.least[i] <= teeth[i] <= rule.most[i]
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
+    """Whether a train stands for all that have its gears in other places (``coaxial``: its meshes).
+
+    Of those within the ranges it has the smallest largest stage ratio, and of such ones the smallest first numbers.
+    """
+    if not may_be(teeth, k, rule):
+        return False
+    own, count = widest(teeth, k), orders(k)
+    other = np.zeros(3 * MOST_STAGES, np.int64)
+    for order in range(count):
+        rearrange(teeth, 0, k, order, other)
+        if not in_ranges(other, 0, k, rule):
+            continue
+        rearrange(teeth, 2 * MOST_STAGES, k, order, other)
+        for mates in range(order if coaxial else 0, order + 1 if coaxial else count):
+            rearrange(teeth, MOST_STAGES, k, mates, other)
+            if not in_ranges(other, MOST_STAGES, k, rule) or not may_be(other, k, rule):
+                continue
+            ratio = widest(other, k)
+            if ratio > own:
+                continue
+            if ratio < own:
+                return False
+            for i in range(len(teeth)):
+                if other[i] != teeth[i]:
+                    if other[i] < teeth[i]:
+                        return False
+                    break
+    return True
+
+
+@njit(cache=True, nogil=True)
+def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Bring the driven gears of a train into the order of the smallest largest stage ratio; False: none is allowed.
+
+    Without ranges by place both come in rising order, and of all pairings that has the smallest largest stage ratio;
+    where it is not allowed the others are tried. With ranges every order comes by itself, and the foremost is taken.
+    """
+    if rule.ordered:
+        return foremost(teeth, k, rule, False)
+    if may_be(teeth, k, rule):
+        return True
+    trial, best = teeth.copy(), teeth.copy()
+    least = np.inf
+    for order in range(1, orders(k)):
+        rearrange(teeth, MOST_STAGES, k, order, trial)
+        if may_be(trial, k, rule) and widest(trial, k) < least:
+            least = widest(trial, k)
+            best[:] = trial
+    teeth[:] = best
+    return least < np.inf
 
 
 @njit(cache=True, nogil=True)
@@ -450,7 +523,8 @@ def combine(
     In a group the stages' lists are ``groups[g, i]`` to ``groups[g, i + 1]``, in the order of the ratio b/a; without
     ``rule.ordered`` they are one list, and every multiset is met once. All stages but one are enumerated and the
     fitting meshes of the last are found by bisection. ``least_size`` of the groups must not fall. ``coaxial``: the
-    pairing is what it is; else only the pairing that ``pair_up`` would choose counts, so that gears are met once.
+    pairing is what it is, and of the places of the meshes one choice counts; else only the pairing that ``pair_up``
+    would choose counts, so that gears are met once.
 
     With fractions in the rows of ``tied`` nothing is entered, but the trains of exactly these ratios are counted.
     """
@@ -526,6 +600,8 @@ def combine(
                             sort(canonical, 0, k)
                             sort(canonical, MOST_STAGES, k)
                             sound = pair_up(canonical, k, rule) and same_meshes(teeth, canonical, k)
+                        elif sound and rule.ordered:
+                            sound = foremost(teeth, k, rule, coaxial)
                         if sound and wanted_tie:
                             shortlist.ties[0] += 1
                         elif sound:

@@ -202,9 +202,12 @@ def _reach(task: Task, k: int) -> tuple[Fraction, Fraction] | None:
     spans = stage_reach(task, k)
     if not spans:
         return None
-    return math.prod((low for low, _ in spans), start=Fraction(1)), math.prod(
-        (high for _, high in spans), start=Fraction(1)
-    )
+    low, high = (math.prod(ends, start=Fraction(1)) for ends in zip(*spans, strict=True))
+    if len(task.stock):
+        gears = np.repeat(np.arange(len(task.stock)), task.stock).tolist()
+        most = Fraction(math.prod(gears[-k:]), math.prod(gears[:k]))
+        low, high = max(low, 1 / most), min(high, most)
+    return low, high
 
 
 def _reaches(target: Target, span: tuple[Fraction, Fraction], near: float) -> bool:
@@ -265,5 +268,6 @@ def _pareto(task: Task, shortlist: Found, tolerance: Fraction | None) -> list[Tr
     """The nearest train of each size that is nearer than all smaller ones."""
     near = cmp_to_key(task.target.nearer)
     trains = (_train(row) for row in shortlist.least_teeth[np.isfinite(shortlist.least_error)])
-    kept = (train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance))
+    within = NEAR if tolerance is None else tolerance
+    kept = (train for train in trains if task.target.within(train.ratio, within))
     return pareto(kept, lambda train: near(train.ratio))

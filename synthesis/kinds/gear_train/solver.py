@@ -65,8 +65,8 @@ def solve_gear_train(problem: GearTrainProblem, progress: Progress) -> GearTrain
 
 def _gears(task: Task, train: Train) -> tuple[object, ...]:
     """What tells a train from others: its meshes where the pairing is part of it, else its drivers and driven gears."""
-    if task.ordered or task.reverted:
-        return tuple(train)
+    if task.reverted:
+        return tuple(sorted(zip(*train, strict=True)))
     return tuple(sorted(train.drivers)), tuple(sorted(train.driven))
 
 

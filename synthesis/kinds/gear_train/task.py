@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.teeth import largest_gear
-from synthesis.kinds.gear_train.kernels import Integers, Rule
+from synthesis.kinds.gear_train.kernels import MOST_STAGES, Integers, Rule
 from synthesis.kinds.gear_train.problem import GearTrainProblem
+from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal
 
 UNLIMITED = 1e9
@@ -22,8 +23,8 @@ UNLIMITED = 1e9
 class Task:
     """What is searched.
 
-    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; stages that are ``ordered`` have their own,
-    the others have the same and may change places. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
+    ``drivers[i]``, ``driven[i]`` are the tooth numbers of stage i, rising; where stages are ``ordered`` they have their
+    own, else the same. ``stock[t]`` is empty without a stock. ``pitches`` are the modules
     in a unit in which all are whole numbers.
 
     Trains of ``idler_counts`` stages need one of the ``idlers`` in a stage. Its driver and driven gear do not mesh with
@@ -70,6 +71,8 @@ class Task:
             by_size=self.by_size,
             largest=self.largest,
             ordered=self.ordered,
+            least=_in_places([values.min(initial=MOST_TEETH) for values in (*self.drivers, *self.driven)]),
+            most=_in_places([values.max(initial=0) for values in (*self.drivers, *self.driven)]),
             by_mesh=self.by_mesh,
             allowed=self.allowed,
             with_idler=k in self.idler_counts,
@@ -79,6 +82,14 @@ class Task:
             stock=self.stock if stocked else np.zeros(1, np.int64),
             most_total=2 * len(self.drivers) * self.most_teeth if self.most_total is None else self.most_total,
         )
+
+
+def _in_places(numbers: list[int]) -> Integers:
+    """One number for each driver and driven gear, as the teeth of a train stand in the compiled loops."""
+    placed = np.zeros(2 * MOST_STAGES, np.int64)
+    k = len(numbers) // 2
+    placed[:k], placed[MOST_STAGES : MOST_STAGES + k] = numbers[:k], numbers[k:]
+    return placed
 
 
 def gear_train_task(problem: GearTrainProblem, coprime: bool) -> Task:
