@@ -226,7 +226,7 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
     inner, outer, error = (
         np.array([getattr(target, quantity) for target in targets]) for quantity in ("inner", "outer", "error")
     )
-    over, limit = (0.0, float(inner[-1])), metrics.steering_error
+    limit = metrics.steering_error
     met = [
         (f"inner {angle(target.inner, 2)}: outer {angle(target.outer, 3)}", f"error {angle(target.error, 4)}")
         for target in targets
@@ -240,8 +240,8 @@ def steering(design: SteeringDesign, problem: SteeringProblem, linkage: DrivenLi
         left_out={"tie_rod"},
         standing="when straight",
         diagrams=[
-            Diagram("outer wheel (°) over the inner wheel's angle", "outer", inner, outer, CURVE, interval=over),
-            Diagram("steering error (°)", "error", inner, error, OUTPUT, (-limit, limit), over),
+            Diagram("outer wheel (°) over the inner wheel's angle", "outer", inner, outer, CURVE),
+            Diagram("steering error (°)", "error", inner, error, OUTPUT, (-limit, limit)),
         ],
     )
 
@@ -257,7 +257,7 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
     box = Box.around(np.concatenate([scene.places(), [start, end], scene.used]))
     turned, sense = np.linspace(0.0, abs(last - first), SAMPLES), math.copysign(1.0, last - first)
     point, rate = linkage.driven(first + sense * turned, order=1).joints["P"]
-    at, over = np.degrees(turned), (0.0, math.degrees(abs(last - first)))
+    at = np.degrees(turned)
 
     def demanded(view: Viewport) -> list[Element]:
         ends = view.point(start), view.point(end)
@@ -283,8 +283,8 @@ def straight_line(design: StraightLineDesign, problem: StraightLineProblem, link
         titles={"deviation": "greatest deviation", "middle velocity": "velocity in the middle"},
         standing="at the start",
         diagrams=[
-            Diagram(heading, "deviation", at, across, CURVE, interval=over),
-            Diagram(per, "velocity", at, sense * (rate * along.conjugate()).real, OUTPUT, interval=over),
+            Diagram(heading, "deviation", at, across, CURVE),
+            Diagram(per, "velocity", at, sense * (rate * along.conjugate()).real, OUTPUT),
         ],
     )
 
@@ -371,7 +371,6 @@ def parallel_motion(design: ParallelMotionDesign, problem: ParallelMotionProblem
                 np.degrees(turned),
                 np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0))),
                 OUTPUT,
-                interval=(0.0, math.degrees(abs(last - first))),
             )
             for link, sine in sines.items()
         ],

@@ -42,12 +42,11 @@ class Diagram:
     name : str
         Marks the group as ``data-diagram``.
     at, values : float, shape (n,)
-        Degrees where it is over an angle, and the quantity; NaN interrupts the curve.
+        Degrees where it is over an angle, whose range is that of the diagram, and the quantity; NaN interrupts the
+        curve.
     colour : str
     limits : sequence of float
         Levels drawn as dashed lines.
-    interval : pair of float
-        From where to where the diagram goes.
     turned : bool
         Whether it is over an angle, whose quarters are numbered; of another quantity round numbers are.
     from_zero : bool
@@ -66,7 +65,6 @@ class Diagram:
     values: Real
     colour: str
     limits: Sequence[float] = ()
-    interval: tuple[float, float] = (0.0, 360.0)
     turned: bool = True
     from_zero: bool = True
     stems: bool = False
@@ -122,6 +120,11 @@ class Diagram:
             style = {"fill": "none", "stroke": DEMANDED, "data_target": repr(float(ring.real))}
             group.add(circle(complex(place(ring.real, ring.imag)), 4.5, stroke_width=1.5, **style))
         return group
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """From where to where the diagram goes."""
+        return float(self.at.min()), float(self.at.max())
 
     def _numbered(self) -> list[tuple[float, str]]:
         """Where the horizontal axis is numbered, and how."""
