@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from types import ModuleType
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,7 +51,10 @@ def block(rows: tuple[NDArray[Any], ...], designs: Shape, dtype: Any) -> NDArray
 class DesignBatch:
     """A batch of designs as a value: its fields are read-only views of the two blocks that the kernels take."""
 
-    def _keep(self, points: dict[str, ArrayLike], lengths: dict[str, ArrayLike]) -> tuple[Complex, Real]:
+    _FIELDS: ClassVar[tuple[str, str, str, str, str, str]]
+    """Names of the fields: three points and three lengths."""
+
+    def _keep(self, *fields: ArrayLike) -> tuple[Complex, Real]:
         """Copy the fields, three points and three lengths, into blocks of one shape; the blocks with designs in a row.
 
         Raises
@@ -59,16 +62,17 @@ class DesignBatch:
         ShapeError
             For fields that do not broadcast.
         """
-        p, q, r = (np.asarray(value, np.complex128) for value in points.values())
-        a, b, c = (np.asarray(value, np.float64) for value in lengths.values())
+        p, q, r = (np.asarray(value, np.complex128) for value in fields[:3])
+        a, b, c = (np.asarray(value, np.float64) for value in fields[3:])
         if p.shape == q.shape == r.shape == a.shape == b.shape == c.shape:
             designs = a.shape
         else:
-            fields = zip((*points, *lengths), (p, q, r, a, b, c), strict=True)
-            designs = one_shape(**{name: field.shape for name, field in fields})
+            named = zip(self._FIELDS, (p, q, r, a, b, c), strict=True)
+            designs = one_shape(**{name: field.shape for name, field in named})
         at, long = block((p, q, r), designs, np.complex128), block((a, b, c), designs, np.float64)
         # Written out: as a loop over the six it costs a tenth of the constructor.
-        (point_1, point_2, point_3), (length_1, length_2, length_3), attributes = points, lengths, self.__dict__
+        point_1, point_2, point_3, length_1, length_2, length_3 = self._FIELDS
+        attributes = self.__dict__
         attributes[point_1], attributes[point_2], attributes[point_3] = at[0, ...], at[1, ...], at[2, ...]
         attributes[length_1], attributes[length_2], attributes[length_3] = long[0, ...], long[1, ...], long[2, ...]
         attributes["_blocks"] = at, long

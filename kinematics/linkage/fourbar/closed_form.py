@@ -97,6 +97,8 @@ class Fourbar(DesignBatch):
         For fields that do not broadcast.
     """
 
+    _FIELDS = "input_pivot", "output_pivot", "coupler_point", "input", "coupler", "output"
+
     input_pivot: Complex
     output_pivot: Complex
     input: Real
@@ -113,8 +115,7 @@ class Fourbar(DesignBatch):
         output: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        points = {"input_pivot": input_pivot, "output_pivot": output_pivot, "coupler_point": coupler_point}
-        if not kernels.sound_dimensions(*self._keep(points, {"input": input, "coupler": coupler, "output": output})):
+        if not kernels.sound_dimensions(*self._keep(input_pivot, output_pivot, coupler_point, input, coupler, output)):
             self._refuse()
 
     def _refuse(self) -> None:

@@ -65,6 +65,8 @@ class SliderCrank(DesignBatch):
         For fields that do not broadcast.
     """
 
+    _FIELDS = "pivot", "slide_point", "coupler_point", "crank", "coupler", "slide_angle"
+
     pivot: Complex
     slide_point: Complex
     slide_angle: Real
@@ -81,12 +83,11 @@ class SliderCrank(DesignBatch):
         coupler: ArrayLike,
         coupler_point: ArrayLike = 0.0,
     ) -> None:
-        points = {"pivot": pivot, "slide_point": slide_point, "coupler_point": coupler_point}
-        lengths = {"crank": crank, "coupler": coupler, "slide_angle": slide_angle}
-        if not kernels.sound_dimensions(*self._keep(points, lengths)):
+        blocks = self._keep(pivot, slide_point, coupler_point, crank, coupler, slide_angle)
+        if not kernels.sound_dimensions(*blocks):
             for name, length in (("crank", self.crank), ("coupler", self.coupler)):
                 require(name, "positive and finite", length, np.isfinite(length) & (length > 0.0))
-            for name in (*points, "slide_angle"):
+            for name in ("pivot", "slide_point", "coupler_point", "slide_angle"):
                 require(name, "finite", getattr(self, name), np.isfinite(getattr(self, name)))
 
     @classmethod
