@@ -222,9 +222,9 @@ def drive(
             valid, smooth = _exists(x, length)
             masks[0, design, at], masks[1, design, at] = valid, smooth
             known = length if smooth else (1 if valid else 0)
-            _write_joints(x, origin, size, points, known, design, at)
-            _write_rotations(rotation, unit, turned, link_angles[m], angles, known, design, at)
-            _write_travels(x, unit, shift, slides, line, along, size, travels, known, design, at)
+            _write_joints(x, origin, size, points, known, length, design, at)
+            _write_rotations(rotation, unit, turned, link_angles[m], angles, known, length, design, at)
+            _write_travels(x, unit, shift, slides, line, along, size, travels, known, length, design, at)
             if not valid:
                 for closing in range(sines.shape[0]):
                     sines[closing, design, at] = np.nan
@@ -336,25 +336,35 @@ def _exists(x: Complex, length: int) -> tuple[bool, bool]:
 
 
 @njit(**STEP)
-def _write_joints(x: Complex, origin: complex, size: float, points: Complex, known: int, design: int, at: int) -> None:
+def _write_joints(
+    x: Complex, origin: complex, size: float, points: Complex, known: int, length: int, design: int, at: int
+) -> None:
     """Joints in the mechanism's own coordinates; NaN from the derivative ``known`` on."""
     for joint in range(len(x)):
-        for n in range(points.shape[1]):
+        points[joint, 0, design, at] = x[joint, 0] * size + origin if known else complex(np.nan, np.nan)
+        for n in range(1, length):
             points[joint, n, design, at] = x[joint, n] * size if n < known else complex(np.nan, np.nan)
-        points[joint, 0, design, at] += origin
 
 
 @njit(**STEP)
 def _write_rotations(
-    rotation: Real, unit: Complex, turned: Mask, reference: Real, angles: Real, known: int, design: int, at: int
+    rotation: Real,
+    unit: Complex,
+    turned: Mask,
+    reference: Real,
+    angles: Real,
+    known: int,
+    length: int,
+    design: int,
+    at: int,
 ) -> None:
     """Angles of the links: their rotations from those of the reference; NaN from the derivative ``known`` on."""
     for link in range(1, len(rotation)):
         if not turned[link]:
             rotation[link, 0] = math.atan2(unit[link, 0].imag, unit[link, 0].real)
-        for n in range(angles.shape[1]):
+        angles[link, 0, design, at] = rotation[link, 0] + reference[link] if known else np.nan
+        for n in range(1, length):
             angles[link, n, design, at] = rotation[link, n] if n < known else np.nan
-        angles[link, 0, design, at] += reference[link]
 
 
 @njit(**STEP)
@@ -368,13 +378,14 @@ def _write_travels(
     size: float,
     travels: Real,
     known: int,
+    length: int,
     design: int,
     at: int,
 ) -> None:
     """Places of the slides' joints along their lines; NaN from the derivative ``known`` on."""
     for slide in range(len(slides)):
         joint, link = slides[slide, 0], slides[slide, 1]
-        for n in range(travels.shape[1]):
+        for n in range(length):
             travels[slide, n, design, at] = np.nan
             if n < known:
                 travel = _travel(x, unit, shift, joint, link, line[slide], along[slide], n)
