@@ -150,8 +150,8 @@ class Contour:
     def crossings(self) -> Complex:
         """Points where the profile crosses itself; none on a sound cam."""
         p = self.points
-        found = np.empty(len(p), dtype=np.complex128)
-        return found[: _crossings(p, found)]
+        crossings = np.empty(len(p), dtype=np.complex128)
+        return crossings[: _crossings(p, crossings)]
 
     def follow(self, follower: Follower, angle: ArrayLike, rotation: Rotation = "ccw") -> ContactMotion:
         """Lay a follower against the profile.

@@ -199,8 +199,8 @@ class Camshaft:
     @cached_property
     def breaks(self) -> Real:
         """Shaft angles from 0 to 2π between which the torque is smooth."""
-        found = [np.mod(cam.program.breaks + cam.phase, TURN) for cam in self.cams]
-        angles = np.unique(np.concatenate([[0.0], *found, [TURN]]))
+        shifted = [np.mod(cam.program.breaks + cam.phase, TURN) for cam in self.cams]
+        angles = np.unique(np.concatenate([[0.0], *shifted, [TURN]]))
         kept: Real = angles[np.append(True, np.diff(angles) > SAME)]
         kept[-1] = TURN
         return kept

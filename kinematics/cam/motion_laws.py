@@ -65,15 +65,15 @@ class Law:
         """
         v, a = self.pieces.derivative(), self.pieces.derivative().derivative()
         jerk = a.derivative()
-        found = [_extremes(f, self.pieces.start) for f in (v, a, jerk)]
+        extremes = [_extremes(f, self.pieces.start) for f in (v, a, jerk)]
         inner = self.pieces.start[1:-1]
         jump = self.pieces.motion(inner).a - self.pieces.motion(inner, before=True).a
-        if np.any(np.abs(jump) > JUMP * found[1].largest):
+        if np.any(np.abs(jump) > JUMP * extremes[1].largest):
             down, up = float(inner[jump.argmin()]), float(inner[jump.argmax()])
-            least = (-math.inf, down) if jump.min() < 0.0 else (found[2].least, found[2].at_least)
-            greatest = (math.inf, up) if jump.max() > 0.0 else (found[2].greatest, found[2].at_greatest)
-            found[2] = Extremes(least[0], greatest[0], least[1], greatest[1])
-        return found[0], found[1], found[2]
+            least = (-math.inf, down) if jump.min() < 0.0 else (extremes[2].least, extremes[2].at_least)
+            greatest = (math.inf, up) if jump.max() > 0.0 else (extremes[2].greatest, extremes[2].at_greatest)
+            extremes[2] = Extremes(least[0], greatest[0], least[1], greatest[1])
+        return extremes[0], extremes[1], extremes[2]
 
     def reversed(self, name: str) -> Law:
         """1 − s(1 − u): the law whose fall is this one's rise seen in a mirror."""

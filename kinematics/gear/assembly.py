@@ -39,7 +39,7 @@ def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[st
 
     Coaxial: all of one planet are equal. For a bevel differential they are the pitch radii of the side gears.
     """
-    found: dict[str, list[Fraction]] = {planet: [] for planet in arrangement.carriers}
+    distances: dict[str, list[Fraction]] = {planet: [] for planet in arrangement.carriers}
     for planet, own, central in _central_meshes(arrangement):
         if arrangement.bevel:
             twice = teeth[central]
@@ -47,8 +47,8 @@ def pin_distances(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[st
             twice = teeth[central] - teeth[own]
         else:
             twice = teeth[central] + teeth[own]
-        found[planet].append(Fraction(twice, 2))
-    return found
+        distances[planet].append(Fraction(twice, 2))
+    return distances
 
 
 def is_coaxial(arrangement: Arrangement, teeth: Mapping[str, int]) -> bool:
@@ -65,15 +65,15 @@ def pins(arrangement: Arrangement, teeth: Mapping[str, int]) -> dict[str, comple
     if any(len(asked) != 1 or min(asked) <= 0 for asked in distances.values()):
         return None
     radius = {planet: float(min(asked)) for planet, asked in distances.items()}
-    found: dict[str, complex] = {}
+    placed: dict[str, complex] = {}
     for members in arrangement.planet_sets:
-        found[members[0]] = complex(radius[members[0]])
+        placed[members[0]] = complex(radius[members[0]])
         for planet in members[1:]:
-            placed = _beside(arrangement, teeth, radius, found, planet)
-            if placed is None:
+            pin = _beside(arrangement, teeth, radius, placed, planet)
+            if pin is None:
                 return None
-            found[planet] = placed
-    return found
+            placed[planet] = pin
+    return placed
 
 
 def _beside(
@@ -195,7 +195,7 @@ def _bevel_gaps(
 
     The pitch circle of a planet's large end lies at the side gear's pitch radius from the axis.
     """
-    found = []
+    gaps = []
     for planet, side, *_ in ((own, central) for _, own, central in _central_meshes(arrangement)):
         cone = math.atan2(teeth[planet], teeth[side])
         places = sorted(turns[arrangement.places[planet].body])
@@ -203,9 +203,9 @@ def _bevel_gaps(
         for share in between:
             if share < 0.5:
                 half = 0.5 * teeth[side] * math.tan(math.pi * share)
-                found.append(Gap(planet, planet, 2.0 * (half - 0.5 * teeth[planet] - addendum * math.cos(cone))))
+                gaps.append(Gap(planet, planet, 2.0 * (half - 0.5 * teeth[planet] - addendum * math.cos(cone))))
         break
-    return found
+    return gaps
 
 
 def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
@@ -213,5 +213,5 @@ def _central_meshes(arrangement: Arrangement) -> list[tuple[str, str, str]]:
     return [(planet, *pair) for planet in arrangement.carriers for pair in arrangement.central_meshes(planet)]
 
 
-def _share_plane(arrangement: Arrangement, one: str, other: str) -> bool:
-    return bool(set(arrangement.places[one].planes) & set(arrangement.places[other].planes))
+def _share_plane(arrangement: Arrangement, first: str, second: str) -> bool:
+    return bool(set(arrangement.places[first].planes) & set(arrangement.places[second].planes))

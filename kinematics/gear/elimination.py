@@ -37,12 +37,14 @@ class Elimination:
 
     def values(self) -> dict[str, Fraction | None]:
         """The unknowns that the equations determine; None for the others."""
-        found: dict[str, Fraction | None] = dict.fromkeys(self._unknowns)
+        solution: dict[str, Fraction | None] = dict.fromkeys(self._unknowns)
         for pivot, (row, right) in self._rows.items():
             if all(name == pivot or not c for name, c in row.items()):
-                found[pivot] = right
-        return found
+                solution[pivot] = right
+        return solution
 
 
-def _less(row: dict[str, Fraction], other: dict[str, Fraction], share: Fraction) -> dict[str, Fraction]:
-    return {name: row.get(name, Fraction(0)) - share * other.get(name, Fraction(0)) for name in {**row, **other}}
+def _less(row: dict[str, Fraction], subtrahend: dict[str, Fraction], share: Fraction) -> dict[str, Fraction]:
+    return {
+        name: row.get(name, Fraction(0)) - share * subtrahend.get(name, Fraction(0)) for name in {**row, **subtrahend}
+    }

@@ -61,13 +61,13 @@ def spindle_speeds(input_speed: Fraction | int, stages: Sequence[Sequence[tuple[
         for driver, driven in pairs:
             if min(driver, driven) < 1:
                 raise DimensionError("teeth", "a count of at least 1", (driver, driven))
-    found = []
+    speeds = []
     for engaged in itertools.product(*(range(len(pairs)) for pairs in stages)):
         speed = Fraction(input_speed)
         for pairs, choice in zip(stages, engaged, strict=True):
             speed *= Fraction(*pairs[choice])
-        found.append(SpindleSpeed(speed, engaged))
-    return sorted(found)
+        speeds.append(SpindleSpeed(speed, engaged))
+    return sorted(speeds)
 
 
 def progression(lowest: float, highest: float, count: int) -> tuple[float, list[float]]:

@@ -167,8 +167,8 @@ def speed_ratio(train: Train, driver: str, driven: str, held: Iterable[str] = ()
 
     None where the driven body stands still, is free, or the train is locked.
     """
-    found = speeds(train, {**dict.fromkeys(held, 0), driver: 1})
-    driven_speed = found.values[driven]
-    if found.contradiction is not None or not driven_speed:
+    solution = speeds(train, {**dict.fromkeys(held, 0), driver: 1})
+    driven_speed = solution.values[driven]
+    if solution.contradiction is not None or not driven_speed:
         return None
     return 1 / driven_speed

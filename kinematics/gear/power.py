@@ -174,8 +174,8 @@ def _known_speed(body: str, speeds: Mapping[str, Exact]) -> Fraction:
 
 def _torques(mesh: Mesh, share: Fraction) -> tuple[Fraction, Fraction, Fraction]:
     """Torques of a mesh on first gear, second gear and carrier for a unit force."""
-    one, other = Fraction(mesh.first_teeth), share * -mesh.sense * mesh.second_teeth
-    return one, other, -one - other
+    first, second = Fraction(mesh.first_teeth), share * -mesh.sense * mesh.second_teeth
+    return first, second, -first - second
 
 
 def _balance(
@@ -197,9 +197,9 @@ def _balance(
     for body, stated in known.items():
         if not system.add({f"torque {body}": Fraction(1)}, Fraction(stated)):
             return None
-    found = system.values()
-    forces = [found[name] for name in meshes]
-    torques = {body: found[f"torque {body}"] for body in loads}
+    solution = system.values()
+    forces = [solution[name] for name in meshes]
+    torques = {body: solution[f"torque {body}"] for body in loads}
     if any(value is None for value in (*forces, *torques.values())):
         return None
     return [f for f in forces if f is not None], {body: t for body, t in torques.items() if t is not None}

@@ -64,14 +64,14 @@ class OrdinaryTrain:
     @cached_property
     def speeds(self) -> tuple[tuple[Fraction, ...], ...]:
         """Speeds of the gears of each stage, as fractions of the input's; a negative one turns the other way."""
-        speed, found = Fraction(1), []
+        speed, stages = Fraction(1), []
         for stage in self.stages:
             at = [speed]
-            for one, next_one in itertools.pairwise(stage.gears):
-                at.append(-at[-1] * one / next_one)
-            found.append(tuple(at))
+            for driver, driven in itertools.pairwise(stage.gears):
+                at.append(-at[-1] * driver / driven)
+            stages.append(tuple(at))
             speed = at[-1]
-        return tuple(found)
+        return tuple(stages)
 
     @property
     def ratio(self) -> Fraction:
@@ -92,10 +92,10 @@ class OrdinaryTrain:
         mesh_efficiency : tuple
             Share of the power that each mesh passes on, in the shape of :attr:`meshes`.
         """
-        found = [input_torque]
+        shafts = [input_torque]
         for speeds, shares in zip(self.speeds, mesh_efficiency, strict=True):
             passed = 1.0
             for share in shares:
                 passed *= share
-            found.append(found[-1] * float(speeds[0] / speeds[-1]) * passed)
-        return tuple(found)
+            shafts.append(shafts[-1] * float(speeds[0] / speeds[-1]) * passed)
+        return tuple(shafts)

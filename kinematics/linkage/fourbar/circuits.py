@@ -55,9 +55,9 @@ def input_limits(linkage: Fourbar) -> InputLimits:
 def toggle_angles(linkage: Fourbar) -> Real:
     """Absolute input angles of all toggles of one design, radians in (−π, π], ascending; empty for a crank."""
     limits = input_limits(linkage)
-    found = [limits.lower] * bool(limits.folded_toggle) + [limits.upper] * bool(limits.extended_toggle)
-    twofold = [(1.0, -1.0) if 0.0 < t < np.pi else (1.0,) for t in found]
-    signed = np.array([s * float(t) for t, signs in zip(found, twofold, strict=True) for s in signs])
+    inclinations = [limits.lower] * bool(limits.folded_toggle) + [limits.upper] * bool(limits.extended_toggle)
+    twofold = [(1.0, -1.0) if 0.0 < t < np.pi else (1.0,) for t in inclinations]
+    signed = np.array([s * float(t) for t, signs in zip(inclinations, twofold, strict=True) for s in signs])
     wrapped = np.pi - np.mod(np.pi - (signed + linkage.ground_angle), FULL_TURN)
     return np.unique(np.where(wrapped <= -np.pi, np.pi, wrapped))
 

@@ -96,10 +96,10 @@ def barker_class(linkage: Fourbar) -> BarkerClass:
     DimensionError
         For a linkage that no position assembles, which is of no class.
     """
-    found = int(barker_type(linkage))
-    if found == 0:
+    number = int(barker_type(linkage))
+    if number == 0:
         raise DimensionError("lengths", "such that the longest is at most the sum of the others", _listed(linkage))
-    return BARKER[found - 1]
+    return BARKER[number - 1]
 
 
 def _listed(linkage: Fourbar) -> list[float]:

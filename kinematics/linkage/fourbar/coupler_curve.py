@@ -240,15 +240,15 @@ def _roots(polynomial: Real) -> Complex:
     return np.asarray(np.linalg.eigvals(companion), np.complex128)
 
 
-def _product(one: Complex, other: Complex) -> Complex:
+def _product(first: Complex, second: Complex) -> Complex:
     """Product of polynomials in two variables, powers on the last two axes."""
-    (j, k), (m, n) = one.shape[-2:], other.shape[-2:]
-    batch = np.broadcast_shapes(one.shape[:-2], other.shape[:-2])
-    found = np.zeros((*batch, j + m - 1, k + n - 1), np.complex128)
+    (j, k), (m, n) = first.shape[-2:], second.shape[-2:]
+    batch = np.broadcast_shapes(first.shape[:-2], second.shape[:-2])
+    product = np.zeros((*batch, j + m - 1, k + n - 1), np.complex128)
     for row in range(j):
         for column in range(k):
-            found[..., row : row + m, column : column + n] += one[..., row : row + 1, column : column + 1] * other
-    return found
+            product[..., row : row + m, column : column + n] += first[..., row : row + 1, column : column + 1] * second
+    return product
 
 
 def _adjoint(grid: Complex) -> Complex:

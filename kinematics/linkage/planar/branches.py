@@ -103,14 +103,14 @@ def dyadic_branches(mechanism: Mechanism) -> list[Branch]:
         )
     closures = Closures(mechanism, decomposition)
     curves = configuration_curves(mechanism, closures, period)
-    found = [
+    pieces = [
         branch
         for curve, circuit in zip(curves, circuits(curves), strict=True)
         for branch in _branches_of(curve, circuit, closures.links, period)
     ]
     signs = assembly_signs(mechanism, decomposition.steps)
     choice = tuple(int(signs[n]) for n in closures.position)
-    return reference_first(found, _holding(found, choice, float(mechanism.reference_input), period))
+    return reference_first(pieces, _holding(pieces, choice, float(mechanism.reference_input), period))
 
 
 def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) -> list[Branch]:
@@ -124,34 +124,34 @@ def _branches_of(curve: Curve, circuit: int, links: list[str], period: float) ->
     else:
         low, high = ((end.theta, links[end.point.level]) for end in curve.ends)
         cuts = [(curve.low, *low), *cuts, (curve.high, *high)]
-    middles = curve.place(np.array([0.5 * (one[0] + other[0]) for one, other in pairwise(cuts)])).signs
-    found = []
-    rising = [other[1] > one[1] for one, other in pairwise(cuts)]
-    if any(one == other for one, other in pairwise(rising)) or (curve.closed and len(rising) % 2):
+    middles = curve.place(np.array([0.5 * (start_cut[0] + end_cut[0]) for start_cut, end_cut in pairwise(cuts)])).signs
+    branches = []
+    rising = [end_cut[1] > start_cut[1] for start_cut, end_cut in pairwise(cuts)]
+    if any(before == after for before, after in pairwise(rising)) or (curve.closed and len(rising) % 2):
         raise TopologyError("two limits lie closer together than they can be told apart; circuits are not known")
-    for n, (one, other) in enumerate(pairwise(cuts)):
-        (_, low_at, low_link), (_, high_at, high_link) = (one, other) if rising[n] else (other, one)
+    for n, (start_cut, end_cut) in enumerate(pairwise(cuts)):
+        (_, low_at, low_link), (_, high_at, high_link) = (start_cut, end_cut) if rising[n] else (end_cut, start_cut)
         start = float(np.mod(low_at, period))
         signs = tuple(int(s) for s in middles[:, n])
-        found.append(Branch(circuit, start, start + high_at - low_at, False, signs, low_link, high_link))
-    return found
+        branches.append(Branch(circuit, start, start + high_at - low_at, False, signs, low_link, high_link))
+    return branches
 
 
-def _holding(found: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
+def _holding(branches: list[Branch], choice: tuple[int, ...], at: float, period: float) -> int:
     """Index of the branch that holds the reference configuration."""
-    for n, branch in enumerate(found):
+    for n, branch in enumerate(branches):
         within = branch.high - branch.low + 2.0 * SAME_END
         if branch.signs == choice and np.mod(at - branch.low + SAME_END, period) <= within:
             return n
     return 0
 
 
-def reference_first(found: list[Branch], first: int) -> list[Branch]:
+def reference_first(branches: list[Branch], first: int) -> list[Branch]:
     """The branches by circuits, which are counted from the first one's."""
-    if not found:
+    if not branches:
         return []
-    numbers = {found[first].circuit: 0}
-    for branch in found:
+    numbers = {branches[first].circuit: 0}
+    for branch in branches:
         numbers.setdefault(branch.circuit, len(numbers))
-    numbered = [branch._replace(circuit=numbers[branch.circuit]) for branch in found]
+    numbered = [branch._replace(circuit=numbers[branch.circuit]) for branch in branches]
     return sorted(numbered, key=lambda branch: (branch.circuit, branch.low))

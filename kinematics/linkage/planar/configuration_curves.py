@@ -246,7 +246,7 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
     """The curves of the next closure over a curve's arcs."""
     if not arcs and closures.always_folded(level, curve):
         raise TopologyError(f"{closures.links[level]!r} is folded flat at every input; its circuits are not known")
-    found: list[Curve] = []
+    curves: list[Curve] = []
     points: dict[float, ChangePoint] = {}
     length = curve.high - curve.low
 
@@ -275,18 +275,18 @@ def _next(closures: Closures, level: int, curve: Curve, arcs: list[Arc]) -> list
             if arc.at_low == "whole" or low < turn.at + k * length < high
         ]
         if arc.at_low == "whole":
-            found += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
+            curves += [replace(curve, below=curve, shape="straight", sign=sign, turns=curve.turns) for sign in (1, -1)]
         elif arc.at_low == arc.at_high == "zero":
-            found.append(_round(curve, level, low, high, turns))
+            curves.append(_round(curve, level, low, high, turns))
         elif "zero" not in (arc.at_low, arc.at_high):
             ends = end(low, arc.at_low, 0), end(high, arc.at_high, 1)
             inner = tuple(t for t in turns if INSIDE < (t.at - low) / (high - low) < 1.0 - INSIDE)
-            found += [Curve(curve, "straight", low, high, sign, low, high, False, inner, ends) for sign in (1, -1)]
+            curves += [Curve(curve, "straight", low, high, sign, low, high, False, inner, ends) for sign in (1, -1)]
         elif arc.at_low == "zero":
-            found.append(_bend(curve, level, low, high, turns, end(high, arc.at_high, 1)))
+            curves.append(_bend(curve, level, low, high, turns, end(high, arc.at_high, 1)))
         else:
-            found.append(_bend(curve, level, high, low, turns, end(low, arc.at_low, 0)))
-    return found
+            curves.append(_bend(curve, level, high, low, turns, end(low, arc.at_low, 0)))
+    return curves
 
 
 def _round(curve: Curve, level: int, a: float, b: float, turns: list[Turn]) -> Curve:

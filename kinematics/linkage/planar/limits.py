@@ -41,24 +41,24 @@ def branches(mechanism: Mechanism) -> list[Branch]:
     return dyadic_branches(mechanism)
 
 
-def toggles(mechanism: Mechanism, found: list[Branch]) -> list[float]:
+def toggles(mechanism: Mechanism, branches: list[Branch]) -> list[float]:
     """Inputs of all toggles, ascending, each once: radians in [0, cycle), or positions along the input slide."""
-    ends = [x for branch in found if not branch.full for x in (branch.low, branch.high)]
+    ends = [x for branch in branches if not branch.full for x in (branch.low, branch.high)]
     if not mechanism.driven_by_slide:
         ends = [float(np.mod(x, cycle(mechanism))) for x in ends]
     ends.sort()
     return [x for n, x in enumerate(ends) if n == 0 or x - ends[n - 1] > SAME_TOGGLE]
 
 
-def holding_reference(mechanism: Mechanism, found: list[Branch]) -> Branch | None:
+def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | None:
     """The branch that the reference configuration lies on; None where the reference is at a toggle of several.
 
-    Of ``found``, the reference's circuit comes first, as in :func:`branches`.
+    Of ``branches``, the reference's circuit comes first, as in :func:`branches`.
     """
     at = float(mechanism.reference_input)
     steps = decompose(mechanism)
     period = np.inf if mechanism.driven_by_slide else cycle(mechanism)
-    for branch in found:
+    for branch in branches:
         length = branch.high - branch.low
         offset = at - branch.low if mechanism.driven_by_slide else float(np.mod(at - branch.low, period))
         if not -SAME_TOGGLE <= offset <= length + SAME_TOGGLE:

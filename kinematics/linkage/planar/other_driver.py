@@ -62,9 +62,9 @@ def other_driver(mechanism: Mechanism) -> Mechanism:
             if order_of_closures(links, driver, slides, ()).left:
                 continue
             try:
-                other = Mechanism(dict(mechanism.joints), links, driver, slides)
-                program_of(other)
-                return other
+                redriven = Mechanism(dict(mechanism.joints), links, driver, slides)
+                program_of(redriven)
+                return redriven
             except DimensionError:  # pivots on each other make no link that can drive or be driven
                 continue
     raise TopologyError("no pair of links closes this mechanism by dyads")
@@ -91,9 +91,9 @@ def branches_by_other_driver(mechanism: Mechanism) -> list[Branch]:
     choice = np.array([int(signs[n]) for n in closures.position])
     at = float(other.reference_input)
     held = {n for n, curve in enumerate(curves) if _passes(curve, at, choice)}
-    found = [(branch, n in held) for n in range(len(curves)) for branch in true_input.branches(n, numbers[n])]
-    first = next((k for k, (_, holds) in enumerate(found) if holds), 0)
-    return reference_first([branch for branch, _ in found], first)
+    branches = [(branch, n in held) for n in range(len(curves)) for branch in true_input.branches(n, numbers[n])]
+    first = next((k for k, (_, holds) in enumerate(branches) if holds), 0)
+    return reference_first([branch for branch, _ in branches], first)
 
 
 def _passes(curve: Curve, theta: float, choice: Rows) -> bool:
@@ -186,14 +186,14 @@ class _TrueInput:
             known, value = np.insert(known, place, between), np.insert(value, place, self._value(curve, between))
         smooth = value if self.slide else np.unwrap(value)
         ends = np.clip(cuts, known[0], known[-1])
-        found = smooth[np.searchsorted(known, ends)]
+        inputs = smooth[np.searchsorted(known, ends)]
         if not curve.closed:
             # Where curves cross the assembly may be lost to rounding; from a hair beside it the series leads there.
             at = np.array([known[0], known[-1]])
             hair = np.array([cuts[0], cuts[-1]]) - at
             rate, second = self._rates(np.full(2, self.curves.index(curve)), at)
-            found[[0, -1]] += hair * rate + 0.5 * hair**2 * second
-        return [float(x) for x in found]
+            inputs[[0, -1]] += hair * rate + 0.5 * hair**2 * second
+        return [float(x) for x in inputs]
 
     def _value(self, curve: Curve, at: Real) -> Real:
         """The true input, at folded places where rounding takes the assembly away from a hair beside them."""

@@ -151,9 +151,9 @@ class _Numbers:
         self._know(GROUND)
 
     def _know(self, link: str) -> None:
-        made = [joint for joint in self.mechanism.links[link] if joint not in self.known]
-        self.known.update(made)
-        self.gives[self.link[link], : len(made) + 1] = len(made), *(self.joint[joint] for joint in made)
+        joints = [joint for joint in self.mechanism.links[link] if joint not in self.known]
+        self.known.update(joints)
+        self.gives[self.link[link], : len(joints) + 1] = len(joints), *(self.joint[joint] for joint in joints)
 
     def drive(self) -> list[int]:
         mechanism = self.mechanism

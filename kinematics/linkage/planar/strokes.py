@@ -108,11 +108,11 @@ def reversals(mechanism: Mechanism, output: str) -> Reversals:
     inputs = np.empty(0)
     if len(left):
         inputs = find_roots(lambda at: jets(at, 1)[1], grid[left], grid[left + 1], rate[left], rate[left + 1])[0]
-    found = jets(inputs, 0)[0] if len(left) else inputs
+    turned = jets(inputs, 0)[0] if len(left) else inputs
     if output in mechanism.links:
         # Angles are known to full turns; along the grid they are followed.
-        found = found + 2.0 * np.pi * np.round((np.unwrap(outputs)[left] - found) / (2.0 * np.pi))
-    return Reversals(inputs, found, full)
+        turned = turned + 2.0 * np.pi * np.round((np.unwrap(outputs)[left] - turned) / (2.0 * np.pi))
+    return Reversals(inputs, turned, full)
 
 
 def strokes(mechanism: Mechanism, output: str) -> Strokes | None:

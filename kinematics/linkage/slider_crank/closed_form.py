@@ -245,8 +245,8 @@ def toggle_angles(linkage: SliderCrank) -> Real:
     The coupler is square to the slide there: a sin(θ2 − φ) = c ∓ b.
     """
     limits, a = crank_limits(linkage), float(linkage.crank)
-    found = [float(limits.lower)] * bool(limits.lower_toggle) + [float(limits.upper)] * bool(limits.upper_toggle)
-    first = np.array([np.arctan2(y, np.sqrt((a - y) * (a + y))) for y in found])
+    heights = [float(limits.lower)] * bool(limits.lower_toggle) + [float(limits.upper)] * bool(limits.upper_toggle)
+    first = np.array([np.arctan2(y, np.sqrt((a - y) * (a + y))) for y in heights])
     angles = np.concatenate([first, np.pi - first]) + linkage.slide_angle
     wrapped = np.pi - np.mod(np.pi - angles, 2.0 * np.pi)
     return np.unique(np.where(wrapped <= -np.pi, np.pi, wrapped))

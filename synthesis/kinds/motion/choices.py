@@ -188,20 +188,20 @@ def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -
 
 def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
     """The dyads of as many conditions as a dyad has freedoms, each once; or a cloud where they repeat one another."""
-    found = section(task, conditions)
-    if not found.finite:
+    intersection = section(task, conditions)
+    if not intersection.finite:
         cloud = _of_random_sections(task, conditions, rng)
         return cloud._replace(remark="A whole family of dyads satisfies the positions and choices of the side.")
-    dyads = found.dyads
+    dyads = intersection.dyads
     if conditions.count() == 5 - len(task.points):
         refined, converged = solve_dyads(task, conditions, dyads)
-        kept = converged & ~found.double
+        kept = converged & ~intersection.double
         dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
     remark = ""
-    if found.double.any():
+    if intersection.double.any():
         remark = "Two dyads of the side coincide (a double root) and are counted as one."
     text = "No dyad with two pins satisfies the positions and choices of the side."
-    return Cloud(dyads, False, found.proved, text, remark, found.sliders)
+    return Cloud(dyads, False, intersection.proved, text, remark, intersection.sliders)
 
 
 def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
@@ -216,10 +216,10 @@ def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.ra
             if k % 2
             else replace(conditions, moving_lines=(*conditions.moving_lines, line))
         )
-        found = section(task, lines)
-        near = np.maximum(np.abs(found.dyads.fixed), np.abs(found.dyads.moving)) <= CURVE_REACH
-        fixed.append(found.dyads.fixed[near])
-        moving.append(found.dyads.moving[near])
+        intersection = section(task, lines)
+        near = np.maximum(np.abs(intersection.dyads.fixed), np.abs(intersection.dyads.moving)) <= CURVE_REACH
+        fixed.append(intersection.dyads.fixed[near])
+        moving.append(intersection.dyads.moving[near])
     text = "A family of dyads satisfies the positions and choices of the side, but none was met within reach."
     return Cloud(Dyads(np.concatenate(fixed), np.concatenate(moving)), True, False, text)
 
@@ -253,10 +253,10 @@ def _of_draws(
     for _ in range(REGION_DRAWS):
         start = _sampled_pivots(task, constraints, rng, count)
         for pinned, share in _pinned(task, conditions, start, constraints, rng):
-            dyads, found = solve_dyads(task, pinned, share)
-            found &= _in_regions(task, constraints, dyads)
-            fixed.append(dyads.fixed[found])
-            moving.append(dyads.moving[found])
+            dyads, kept = solve_dyads(task, pinned, share)
+            kept &= _in_regions(task, constraints, dyads)
+            fixed.append(dyads.fixed[kept])
+            moving.append(dyads.moving[kept])
         if sum(map(len, fixed)) >= count // 2:
             break
     cloud = Dyads(np.concatenate(fixed)[:count], np.concatenate(moving)[:count])

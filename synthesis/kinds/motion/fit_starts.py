@@ -90,9 +90,9 @@ def _circle(demands: PoseDemands, inverted: bool, point: complex) -> list[Start]
     """The circle nearest to the images of a stated pivot, by linear least squares of |z|² − 2Re(conj(m)z) + k."""
     images = _images(demands, inverted, point)
     rows = np.stack([2.0 * images.real, 2.0 * images.imag, np.ones(len(images))], axis=1)
-    found, *_ = np.linalg.lstsq(rows, np.abs(images) ** 2, rcond=None)
-    centre = complex(found[0], found[1])
-    radius = math.sqrt(max(float(found[2]) + abs(centre) ** 2, 0.0))
+    solution, *_ = np.linalg.lstsq(rows, np.abs(images) ** 2, rcond=None)
+    centre = complex(solution[0], solution[1])
+    radius = math.sqrt(max(float(solution[2]) + abs(centre) ** 2, 0.0))
     if not radius > SHORTEST:
         return []
     arm = images[0] - centre
@@ -111,18 +111,18 @@ def _slider(task: MotionTask, demands: PoseDemands, choices: DyadChoices, *, inv
         fixed[2] = True
     stated = _stated(task, choices)
     if stated is not None:
-        point, found = stated[1], normal
+        point, angle = stated[1], normal
         fixed[:2] = True
-        if found is None:
+        if angle is None:
             images = _images(demands, inverted, point)
             gaps = images - images.mean()
-            found = 0.5 * float(np.angle(np.sum(gaps * gaps))) + 0.5 * math.pi
+            angle = 0.5 * float(np.angle(np.sum(gaps * gaps))) + 0.5 * math.pi
     else:
-        point, found = _best_slider(demands, inverted, normal)
+        point, angle = _best_slider(demands, inverted, normal)
     images = _images(demands, inverted, point)
     origin = complex(images.mean())
     surface = Surface(inverted, origin, False)
-    numbers = np.array([point.real, point.imag, found, 0.0, 0.0])
+    numbers = np.array([point.real, point.imag, angle, 0.0, 0.0])
     return [Start("RP" if inverted else "PR", surface, numbers, fixed)]
 
 
@@ -144,8 +144,8 @@ def _best_slider(demands: PoseDemands, inverted: bool, normal: float | None) -> 
         n = np.array([math.cos(normal), math.sin(normal)])
     c = np.linalg.lstsq(rest, -with_n @ n, rcond=None)[0]
     unit = complex(n[0], n[1])
-    found = complex(c[0], c[1])
-    return (-unit * found.conjugate() if inverted else unit * found), normal
+    point = complex(c[0], c[1])
+    return (-unit * point.conjugate() if inverted else unit * point), normal
 
 
 def _all_dyads(demands: PoseDemands, rng: np.random.Generator) -> tuple[Complex, Complex]:

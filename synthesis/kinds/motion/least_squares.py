@@ -199,7 +199,7 @@ def _pairs(
     sound = _sound(problem, task, inputs, outputs)
     if alike:
         sound |= sound.T
-    found = []
+    pairs = []
     for i, one in enumerate(inputs):
         for j, other in enumerate(outputs):
             if (alike and j <= i) or (one.dyad != "RR" and other.dyad != "RR"):
@@ -208,14 +208,14 @@ def _pairs(
             point = fitting.start(one.numbers, other.numbers)
             cost = fitting.cost(point, first_order=True)
             if math.isfinite(cost):
-                found.append((not sound[i, j], _Pair(one, other, fitting, point, cost)))
+                pairs.append((not sound[i, j], _Pair(one, other, fitting, point, cost)))
     partners: Counter[int] = Counter()
     kept: dict[int, _Pair] = {}
     count = PAIRS_HELD if demands.held.max() > 1 else PAIRS
-    by_cost = sorted(range(len(found)), key=lambda n: found[n][1].cost)
-    for order, size in ((by_cost, count // 2), (sorted(by_cost, key=lambda n: found[n][0]), count)):
+    by_cost = sorted(range(len(pairs)), key=lambda n: pairs[n][1].cost)
+    for order, size in ((by_cost, count // 2), (sorted(by_cost, key=lambda n: pairs[n][0]), count)):
         for n in order:
-            pair = found[n][1]
+            pair = pairs[n][1]
             if len(kept) == size:
                 break
             if n not in kept and max(partners[id(pair.one)], partners[id(pair.other)]) < PARTNERS:

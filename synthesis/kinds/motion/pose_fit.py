@@ -116,8 +116,8 @@ class PoseFit:
 
     def cost(self, x: Real, *, first_order: bool = False) -> float:
         """Half the sum of squared weighted distances; held equations are not counted."""
-        found = self._residuals(x, 1 if first_order else MAX_LINEARIZATIONS)
-        return 0.5 * float(found @ found)
+        residuals = self._residuals(x, 1 if first_order else MAX_LINEARIZATIONS)
+        return 0.5 * float(residuals @ residuals)
 
     def gradient(self, x: Real) -> Real:
         """Derivatives of the cost by all unknowns, held equations apart."""

@@ -399,14 +399,16 @@ class MotionProblem(LinkageProblem):
             return [
                 Contradiction("/positions", f"less than {LEAST_LENGTH} {self.length_unit} apart; take a smaller unit")
             ]
-        found = []
+        contradictions = []
         for k, later in enumerate(self.positions):
             for j, earlier in enumerate(self.positions[:k]):
                 turn = math.remainder(later.angle - earlier.angle, 360.0)
                 near = abs(later.point - earlier.point) <= EQUAL_POSITIONS * size
                 if near and abs(math.radians(turn)) <= EQUAL_POSITIONS:
-                    found.append(Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ"))
-        return found
+                    contradictions.append(
+                        Contradiction(f"/positions/{k}", f"equal to position {j}; positions must differ")
+                    )
+        return contradictions
 
     def _misplaced_tolerances(self) -> list[Contradiction]:
         return [
@@ -428,24 +430,24 @@ class MotionProblem(LinkageProblem):
 
     def _choices_of_fits(self) -> list[Contradiction]:
         """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""
-        found = []
+        contradictions = []
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
             if not self.approximate:
                 break
             vector = side.coupler_vector
             if side.rotations is not None or side.link_angle is not None:
                 field = "link_angle" if side.rotations is None else "rotations"
-                found.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
+                contradictions.append(Contradiction(f"/{name}/{field}", "cannot be stated where positions are fitted"))
             if vector is not None and (vector.length is None or vector.angle is None):
-                found.append(
+                contradictions.append(
                     Contradiction(f"/{name}/coupler_vector", "state length and angle where positions are fitted")
                 )
             if side.fixed_pivot is not None and (side.moving_pivot is not None or vector is not None):
-                found.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
-            found += self._partial_pivots(name, side, "where positions are fitted")
+                contradictions.append(Contradiction(f"/{name}", "state one pivot where positions are fitted, not both"))
+            contradictions += self._partial_pivots(name, side, "where positions are fitted")
         if self.approximate and self.ground_line is not None:
-            found.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
-        return found
+            contradictions.append(Contradiction("/ground_line", "cannot be stated where positions are fitted"))
+        return contradictions
 
     @staticmethod
     def _partial_pivots(name: str, side: DyadChoices, where: str) -> list[Contradiction]:
@@ -457,32 +459,38 @@ class MotionProblem(LinkageProblem):
 
     def _choices_of_sliders(self) -> list[Contradiction]:
         """A slider has one pivot, no link, and one free choice less than a link with two pins."""
-        found = []
+        contradictions = []
         sides = ("input_side", self.input_side), ("output_side", self.output_side)
         for name, side in sides:
             if side.slide_angle is not None and side.dyad not in ("PR", "RP"):
-                found.append(Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP"))
+                contradictions.append(
+                    Contradiction(f"/{name}/slide_angle", "belongs to a slider; state dyad as PR or RP")
+                )
             if side.dyad not in ("PR", "RP"):
                 continue
             absent = ["link_angle", "rotations"]
             absent += ["fixed_pivot"] if side.dyad == "PR" else ["moving_pivot", "coupler_vector"]
             for field in absent:
                 if getattr(side, field) is not None:
-                    found.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
-            found += self._partial_pivots(name, side, "of a slider's pivot")
+                    contradictions.append(Contradiction(f"/{name}/{field}", f"a {side.dyad} dyad has none"))
+            contradictions += self._partial_pivots(name, side, "of a slider's pivot")
             if self.ground_line is not None:
-                found.append(Contradiction("/ground_line", "cannot be stated with a slider"))
+                contradictions.append(Contradiction("/ground_line", "cannot be stated with a slider"))
             free = max(4 - len(self.positions), 0)
             if not self.approximate and side.count() > free and not side.one_pivot:
                 detail = f"states {side.count()} numbers, but {len(self.positions)} positions leave a slider {free}"
-                found.append(Contradiction(f"/{name}", detail))
+                contradictions.append(Contradiction(f"/{name}", detail))
         if self.driver is not None and any(side.dyad in ("PR", "RP") for _, side in sides):
-            found.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
+            contradictions.append(Contradiction("/driver_dyad", "is added to fourbars; leave the slider out"))
         if self.input_side.dyad == "RP":
-            found.append(Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side"))
+            contradictions.append(
+                Contradiction("/input_side/dyad", "a block cannot drive; state RP on the output side")
+            )
         if all(side.dyad in ("PR", "RP") for _, side in sides):
-            found.append(Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins"))
-        return found
+            contradictions.append(
+                Contradiction("/output_side/dyad", "a slider stands on one side only; the other has pins")
+            )
+        return contradictions
 
     def _class_of_sliders(self) -> list[Contradiction]:
         if all(side.dyad not in ("PR", "RP") for side in (self.input_side, self.output_side)):
@@ -491,12 +499,12 @@ class MotionProblem(LinkageProblem):
 
     def _overstated_sides(self) -> list[Contradiction]:
         free = 5 - len(self.positions)
-        found = []
+        contradictions = []
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
             if self.approximate or side.dyad in ("PR", "RP"):
                 continue
             if side.rotations is not None and len(side.rotations) != len(self.positions) - 1:
-                found.append(
+                contradictions.append(
                     Contradiction(
                         f"/{name}/rotations",
                         f"expected {len(self.positions) - 1} rotations (one for each later position), "
@@ -504,13 +512,13 @@ class MotionProblem(LinkageProblem):
                     )
                 )
             if side.moving_pivot is not None and side.coupler_vector is not None:
-                found.append(
+                contradictions.append(
                     Contradiction(
                         f"/{name}/coupler_vector", "moving_pivot already states the coupler vector; give one of them"
                     )
                 )
             elif side.count() > free and not (len(self.positions) > 3 and side.one_pivot):
-                found.append(
+                contradictions.append(
                     Contradiction(
                         f"/{name}",
                         f"states {side.count()} numbers, but {len(self.positions)} positions leave {free} free choices "
@@ -518,25 +526,27 @@ class MotionProblem(LinkageProblem):
                     )
                 )
             elif self.ground_line is not None and whole_point(side.fixed_pivot) is None and side.count() >= free:
-                found.append(
+                contradictions.append(
                     Contradiction(
                         "/ground_line",
                         f"is one number more than the {free} free choices that {len(self.positions)} positions leave "
                         f"for {name}, which states {side.count()}",
                     )
                 )
-        return found
+        return contradictions
 
     def _pivots_outside_regions(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         for path, pivot in self._stated_pivots():
             region = getattr(self.constraints, f"{path.rsplit('/')[-1]}_region")
             # An open coordinate cannot lie outside: the region's own stands for it.
             if region is not None:
                 x, y = (region.x[0] if pivot[0] is None else pivot[0]), (region.y[0] if pivot[1] is None else pivot[1])
                 if not region.contains(complex(x, y)):
-                    found.append(Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region"))
-        return found
+                    contradictions.append(
+                        Contradiction(path, f"lies outside constraints.{path.rsplit('/')[-1]}_region")
+                    )
+        return contradictions
 
     def _stated_pivots(self) -> Iterator[tuple[str, PartialPoint]]:
         for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
@@ -548,28 +558,28 @@ class MotionProblem(LinkageProblem):
         line = self.ground_line
         if line is None:
             return []
-        found = []
+        contradictions = []
         along = cmath.rect(1.0, math.radians(line.angle))
         for path, pivot in self._stated_pivots():
             if path.endswith("/fixed_pivot"):
                 whole = whole_point(pivot)
                 parallel = abs(along.real if pivot[1] is None else along.imag) <= PARALLEL
                 if whole is not None and abs(line.offset(whole)) > ON_LINE * self.task_size:
-                    found.append(Contradiction(path, "does not lie on ground_line"))
+                    contradictions.append(Contradiction(path, "does not lie on ground_line"))
                 elif whole is None and parallel:
-                    found.append(
+                    contradictions.append(
                         Contradiction(path, "leaves open what ground_line leaves open; state the other coordinate")
                     )
-        return found
+        return contradictions
 
     def _coinciding_pivots(self) -> list[Contradiction]:
-        found = []
+        contradictions = []
         for pivot in ("fixed_pivot", "moving_pivot"):
             one, other = getattr(self.input_side, pivot), getattr(self.output_side, pivot)
             if whole_point(one) is not None and one == other:
-                found.append(
+                contradictions.append(
                     Contradiction(
                         f"/output_side/{pivot}", f"equal to the input side's {pivot}; the link between is lost"
                     )
                 )
-        return found
+        return contradictions

@@ -87,20 +87,20 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     progress(0.0, "finding sliders")
     stated = problem.output_side if problem.output_side.dyad == kind else problem.input_side
     linked = problem.input_side if stated is problem.output_side else problem.output_side
-    found = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
-    if not len(found.points):
-        return _none(problem, found.reason, complete=not found.sampled)
+    dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
+    if not len(dyads.points):
+        return _none(problem, dyads.reason, complete=not dyads.sampled)
     progress(0.1, "finding links")
-    links = side_dyads(task, problem, linked, rng, LINKS if found.sampled else ALONE)
+    links = side_dyads(task, problem, linked, rng, LINKS if dyads.sampled else ALONE)
     if not len(links.dyads.fixed):
         return _none(problem, links.reason.replace("the side", "the side with pins"), complete=links.complete)
-    if found.sampled and not links.sampled:
-        found = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
+    if dyads.sampled and not links.sampled:
+        dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
     constraints = problem.constraints
     region = constraints.moving_pivot_region if kind == "PR" else constraints.fixed_pivot_region
-    within = task.within(region, found.points)
-    found = found._replace(points=found.points[within], angles=found.angles[within])
-    return slider_linkages(problem, task, links.dyads, found, kind, progress)
+    within = task.within(region, dyads.points)
+    dyads = dyads._replace(points=dyads.points[within], angles=dyads.angles[within])
+    return slider_linkages(problem, task, links.dyads, dyads, kind, progress)
 
 
 def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progress) -> MotionResult:
@@ -111,10 +111,10 @@ def with_sliders(problem: MotionProblem, result: MotionResult, progress: Progres
     if result.search.candidates and not result.search.complete:
         return result
     for kind, asked in _asking_for_sliders(problem):
-        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
-        if found.designs:
-            text = f"{result.summary} A slider does what pins cannot: {found.summary}"
-            return found.model_copy(update={"summary": text})
+        answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        if answer.designs:
+            text = f"{result.summary} A slider does what pins cannot: {answer.summary}"
+            return answer.model_copy(update={"summary": text})
     return result
 
 
@@ -130,10 +130,10 @@ def beside_sliders(
     kinds = {slider.kind for slider in known}
     met: dict[str, bool] = {}
     for kind, asked in _asking_for_sliders(problem):
-        found = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
-        met[kind] = met.get(kind, False) or found.search.candidates > 0
-        if found.search.candidates:
-            parts.append(found)
+        answer = solve_sliders(asked, kind, lambda fraction, message: progress(1.0, message))
+        met[kind] = met.get(kind, False) or answer.search.candidates > 0
+        if answer.search.candidates:
+            parts.append(answer)
     if not met:
         return result
     missing = {kind for kind in kinds if not met.get(kind, True)}

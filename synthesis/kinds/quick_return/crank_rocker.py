@@ -101,12 +101,12 @@ class Family(NamedTuple):
     def longest(self, limit: float) -> float:
         """The ρ at which the link ratio is the limit; below 1 where every member exceeds it."""
         s, eta = math.sin(0.5 * self.psi), 0.5 * (self.phi - self.psi)
-        found = [limit]
+        bounds = [limit]
         for angle in (0.5 * self.phi, eta):
             room = (limit * s - math.sin(angle)) * (limit * s + math.sin(angle))
             # A length that does not depend on ρ bounds it nowhere, or everywhere.
-            found.append(math.sqrt(max(room, 0.0)) / max(abs(math.cos(angle)), 1e-300))
-        return min(found)
+            bounds.append(math.sqrt(max(room, 0.0)) / max(abs(math.cos(angle)), 1e-300))
+        return min(bounds)
 
     def best(self) -> float:
         """The ρ of the best transmission angle; infinite for a time ratio of 1."""

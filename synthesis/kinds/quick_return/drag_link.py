@@ -102,14 +102,14 @@ def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     """Drag-link sixbars with a slider, one for each limit of the drag link's lengths."""
     assert problem.stroke is not None
     demanded = math.radians(problem.constraints.min_transmission_angle or 0.0)
-    found = []
+    mechanisms = []
     for drag in _drag_links(problem):
         scale = 0.5 * problem.stroke / drag.output
         link = drag.output / math.cos(max(SLIDER_DYAD, demanded)) * (1.0 + 1e-12)
         turn = cmath.exp(1j * (math.radians(problem.ground_angle) - drag.start))
         end = cmath.exp(1j * drag.start) * (drag.output + link)
-        found.append(_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
-    return found
+        mechanisms.append(_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
+    return mechanisms
 
 
 def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
@@ -122,7 +122,7 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     room = (math.cos(demanded) - sine) * (math.cos(demanded) + sine)
     if room > 0.0:
         rho = max(rho, math.cos(half) / math.sqrt(room) * (1.0 + 1e-9))
-    found = []
+    mechanisms = []
     for drag in _drag_links(problem):
         c = drag.output
         along = cmath.exp(1j * drag.start)
@@ -131,8 +131,8 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
         lengths = [1.0, drag.input, drag.coupler, c, rho * c, c / sine, abs(o6 - 1.0)]
         scale = problem.scaled(min(lengths), max(lengths), c / sine)
         turn = cmath.exp(1j * math.radians(problem.ground_angle))
-        found.append(_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
-    return found
+        mechanisms.append(_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
+    return mechanisms
 
 
 def _drag_links(problem: QuickReturnProblem) -> list[DragLink]:
@@ -222,9 +222,9 @@ def _slowest(a: float, c: float) -> float:
     step = 2.0 * math.pi / STARTS
     best, most = 0.0, -1.0
     for k in range(STARTS):
-        found = _slow(a, c, k * step)
-        if found > most:
-            best, most = k * step, found
+        rotation = _slow(a, c, k * step)
+        if rotation > most:
+            best, most = k * step, rotation
     low, high = best - step, best + step
     one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     at_one, at_other = _slow(a, c, one), _slow(a, c, other)

@@ -191,21 +191,25 @@ class QuickReturnProblem(LinkageProblem):
         """An output that is not the type's, and demands that exclude one another."""
         if self.positions is not None:
             return [*self._of_positions(), *self._of_constraints()]
-        found = []
+        contradictions = []
         if self.rotopole is not None and (self.stroke is not None or self.mechanism in SLIDERS):
-            found.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
+            contradictions.append(Contradiction("/rotopole", "an output that slides has no fixed pivot; leave it out"))
         elif self.rotopole is not None and self.mechanism != "fourbar":
-            found.append(Contradiction("/rotopole", "only a crank-rocker is put at a rotopole: state the type fourbar"))
+            contradictions.append(
+                Contradiction("/rotopole", "only a crank-rocker is put at a rotopole: state the type fourbar")
+            )
         if self.rotopole is not None and self.crank_pivot is not None:
-            found.append(Contradiction("/crank_pivot", "the rotopole says where the linkage is; leave it out"))
+            contradictions.append(Contradiction("/crank_pivot", "the rotopole says where the linkage is; leave it out"))
         if self.mechanism == "auto" and (self.swing is None) == (self.stroke is None):
             which = "neither" if self.swing is None else "both"
-            found.append(Contradiction("/swing", f"state the swing or the stroke of the output; {which} is given"))
+            contradictions.append(
+                Contradiction("/swing", f"state the swing or the stroke of the output; {which} is given")
+            )
         if self.mechanism in ROCKERS:
-            found += self._one("swing", "stroke", "swings")
+            contradictions += self._one("swing", "stroke", "swings")
         if self.mechanism in SLIDERS:
-            found += self._one("stroke", "swing", "slides")
-        return [*found, *self._of_constraints()]
+            contradictions += self._one("stroke", "swing", "slides")
+        return [*contradictions, *self._of_constraints()]
 
     def _of_constraints(self) -> list[Contradiction]:
         """Classes of fourbars that the types do not have."""
@@ -216,15 +220,17 @@ class QuickReturnProblem(LinkageProblem):
 
     def _of_positions(self) -> list[Contradiction]:
         """What two positions of a body exclude."""
-        found = []
+        contradictions = []
         for name in ("swing", "stroke", "crank_pivot"):
             if getattr(self, name) is not None:
-                found.append(Contradiction(f"/{name}", f"the positions of the body say all; leave the {name} out"))
+                contradictions.append(
+                    Contradiction(f"/{name}", f"the positions of the body say all; leave the {name} out")
+                )
         if self.mechanism not in ("fourbar", "auto"):
-            found.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
+            contradictions.append(Contradiction("/mechanism", "a body is carried by the rocker of a fourbar"))
         if abs(self.rotation) < LEAST_ROTATION:
             detail = "the body must turn between its positions; a translation has no rotopole"
-            return [*found, Contradiction("/positions/1/angle", detail)]
+            return [*contradictions, Contradiction("/positions/1/angle", detail)]
         pole = self.pole
         assert pole is not None
         assert self.positions is not None
@@ -232,13 +238,17 @@ class QuickReturnProblem(LinkageProblem):
             reach = max(abs(position.point - pole) for position in self.positions)
             if abs(complex(*self.rotopole) - pole) > SAME_POLE * max(reach, abs(pole)):
                 detail = f"the positions have theirs at ({pole.real:.9g}, {pole.imag:.9g}); leave it out or correct it"
-                found.append(Contradiction("/rotopole", detail))
-        return found
+                contradictions.append(Contradiction("/rotopole", detail))
+        return contradictions
 
     def _one(self, wanted: str, other: str, does: str) -> list[Contradiction]:
-        found = []
+        contradictions = []
         if getattr(self, wanted) is None:
-            found.append(Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}: state its {wanted}"))
+            contradictions.append(
+                Contradiction(f"/{wanted}", f"the output of a {self.mechanism} {does}: state its {wanted}")
+            )
         if getattr(self, other) is not None:
-            found.append(Contradiction(f"/{other}", f"the output of a {self.mechanism} {does}; leave the {other} out"))
-        return found
+            contradictions.append(
+                Contradiction(f"/{other}", f"the output of a {self.mechanism} {does}; leave the {other} out")
+            )
+        return contradictions

@@ -44,8 +44,8 @@ def scott_russell(length: float, span: float) -> ExactLine | None:
     if not span < math.pi:
         return None
     r = length / (4.0 * math.sin(0.5 * span))
-    made = catalogue.slider_crank(0.0, 0.0, 0.0, r, r, -0.5 * span, coupler_point=-r)
-    return ExactLine(made, {"crank": r, "coupler": r})
+    linkage = catalogue.slider_crank(0.0, 0.0, 0.0, r, r, -0.5 * span, coupler_point=-r)
+    return ExactLine(linkage, {"crank": r, "coupler": r})
 
 
 def peaucellier(length: float, span: float) -> ExactLine | None:
@@ -74,8 +74,8 @@ def peaucellier(length: float, span: float) -> ExactLine | None:
         return None
     r, long, short = (float(x) * far for x in lengths[best])
     # O4 at −r: the crank's circle passes through it, and P runs on the real part D − r.
-    made = catalogue.peaucellier(0.0, -r, r, long, short, -0.5 * span)
-    return ExactLine(made, {"input": r, "arm_1": long, "arm_2": long} | {f"side_{k}": short for k in (1, 2, 3, 4)})
+    linkage = catalogue.peaucellier(0.0, -r, r, long, short, -0.5 * span)
+    return ExactLine(linkage, {"input": r, "arm_1": long, "arm_2": long} | {f"side_{k}": short for k in (1, 2, 3, 4)})
 
 
 def hart(length: float, span: float) -> ExactLine | None:
@@ -101,8 +101,8 @@ def hart(length: float, span: float) -> ExactLine | None:
     r, long, small = (float(x) * far for x in lengths[best])
     part = float(share[0, best[1], 0])
     # O4 at +r: the line is on the other side of O4.
-    made = catalogue.hart(0.0, r, r, long, small, part, math.pi - 0.5 * span)
-    return ExactLine(made, {"input": r, "long_1": long, "short_1": small, "short_2": small, "long_2": long})
+    linkage = catalogue.hart(0.0, r, r, long, small, part, math.pi - 0.5 * span)
+    return ExactLine(linkage, {"input": r, "long_1": long, "short_1": small, "short_2": small, "long_2": long})
 
 
 def _distance(length: float, span: float) -> float | None:

@@ -106,16 +106,16 @@ class StraightLineProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Ranges that a type cannot have, and demands that exclude one another."""
-        found = list(self.constraints.contradictions())
+        contradictions = list(self.constraints.contradictions())
         for name, most in MOST_RANGE.items():
             if self.mechanism == name and self.range_of(name) >= most:
                 detail = f"the crank of {name} turns by less than {most:g}°; state less or another mechanism"
-                found.append(Contradiction("/crank_range", detail))
+                contradictions.append(Contradiction("/crank_range", detail))
         if self.length < ROUNDED_OFF * max(map(abs, self.start)):
-            found.append(
+            contradictions.append(
                 Contradiction("/length", "too short beside the coordinates of the start; move the origin nearer")
             )
         if self.mechanism in EXACT_LINES:
             reason = f"classifies fourbars; a {self.mechanism} mechanism has no class"
-            found += self.constraints.of_another_class((), reason)
-        return found
+            contradictions += self.constraints.of_another_class((), reason)
+        return contradictions

@@ -149,7 +149,7 @@ def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> d
     """The best of both free proportions, and the best of Norton's family, which sets how straight it must be."""
     family = FOURBARS["hoeken"]
     norton = narrowest(values_of(NORTON, demands, nodes), np.array(NORTON.classical), *NORTON.bounds())
-    found: dict[Proportions, Real] = {}
+    shapes: dict[Proportions, Real] = {}
     start, limit = np.array(family.classical), np.inf
     if norton is not None:
         start = np.array([norton.shape[0], 1.5 * norton.shape[0] - 0.5])
@@ -166,10 +166,10 @@ def _hoeken(problem: StraightLineProblem, demands: LineLimits, nodes: Real) -> d
     fits = [narrowest(values, start, *family.bounds(), half_limit=limit) for start in starts]
     sound = [fit for fit in fits if fit is not None and fit.violation <= SLACK]
     if sound:
-        found["optimal"] = min(sound, key=lambda fit: fit.half_width).shape
+        shapes["optimal"] = min(sound, key=lambda fit: fit.half_width).shape
     if norton is not None and norton.violation <= SLACK:
-        found["classical"] = starts[0]
-    return found
+        shapes["classical"] = starts[0]
+    return shapes
 
 
 def _shapes(
@@ -221,12 +221,12 @@ def _placed(
 
 
 def _exact(problem: StraightLineProblem, name: LineMechanism) -> list[_PlacedMechanism]:
-    made = EXACT[name](problem.length, math.radians(problem.range_of(name)))
-    if made is None:
+    exact = EXACT[name](problem.length, math.radians(problem.range_of(name)))
+    if exact is None:
         return []
-    begin = complex(made.mechanism.joints["P"])
-    joints = {joint: -1j * (complex(z) - begin) for joint, z in made.mechanism.joints.items()}
-    return [_PlacedMechanism(name, "exact", joints, made)]
+    begin = complex(exact.mechanism.joints["P"])
+    joints = {joint: -1j * (complex(z) - begin) for joint, z in exact.mechanism.joints.items()}
+    return [_PlacedMechanism(name, "exact", joints, exact)]
 
 
 def _best_side(problem: StraightLineProblem, candidate: _PlacedMechanism) -> StraightLineDesign | None:
