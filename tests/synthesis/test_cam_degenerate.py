@@ -114,7 +114,6 @@ NOT_FOUND = {
     "prime circle like a planet": cam(follower=ROLLER | {"prime_radius": 1e9}),
     "hub like a planet": cam(limits={"hub_radius": 1e6}),
     "rise in an instant": cam(angles=(90.0, 1e-3, 90.0, 179.999)),
-    "jumps of velocity": cam(25.0, ("constant_velocity", "constant_velocity"), accept_discontinuity=True),
     "prime circle hardly larger than the roller": cam(follower=ROLLER | {"prime_radius": 10.0001}),
     "groove that crosses itself": cam(
         closure="form",

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.segments import Condition, polynomial_segment
+from synthesis.dispatch import solve
 from synthesis.kinds.cam.joints import END_RATES, polynomial_ends
 from synthesis.kinds.cam.segments import Law
 from synthesis.registry import KINDS, parse_problem
@@ -140,8 +141,103 @@ def test_faults_name_the_field(changes, path, detail):
     assert any(detail in fault.detail for fault in found if fault.path == path)
 
 
-def test_a_jump_is_taken_when_it_is_accepted():
-    assert stated(segments__1__law="simple_harmonic", accept_discontinuity=True).contradictions() == []
+FOLLOWERS = {
+    "translating_roller": {"roller_radius": 5.0},
+    "oscillating_roller": {"roller_radius": 5.0, "arm": 80.0, "pivot_distance": 100.0},
+    "translating_flat": {},
+    "oscillating_flat": {"pivot_distance": 120.0},
+    "barrel_roller": {"roller_radius": 5.0},
+}
+
+
+def jumping(law, follower, **fields):
+    """A double dwell by a law that jumps, for a follower."""
+    segments = [
+        {"motion": "dwell", "angle": 90.0},
+        {"motion": "rise", "angle": 90.0, "lift": 10.0, "law": law},
+        {"motion": "dwell", "angle": 90.0},
+        {"motion": "return", "angle": 90.0, "law": "cycloidal"},
+    ]
+    return parse_problem(
+        {
+            "kind": "cam",
+            "segments": segments,
+            "follower": {"type": follower, **FOLLOWERS[follower]},
+            "accept_discontinuity": True,
+            **fields,
+        }
+    )
+
+
+@pytest.mark.parametrize("follower", FOLLOWERS)
+@pytest.mark.parametrize("law", ["simple_harmonic", "constant_acceleration"])
+def test_jumps_of_acceleration_that_are_accepted_give_a_cam(law, follower):
+    result = solve(jumping(law, follower), lambda fraction, message: None)
+    (design,) = result.designs
+    assert design.verification.passed
+
+
+@pytest.mark.parametrize("follower", ["translating_flat", "oscillating_flat"])
+def test_a_velocity_that_jumps_up_is_followed_by_a_face(follower):
+    result = solve(jumping("half_harmonic_end", follower), lambda fraction, message: None)
+    assert result.designs[0].verification.passed
+
+
+@pytest.mark.parametrize(
+    ("law", "follower", "fields"),
+    [
+        *(("constant_velocity", follower, {}) for follower in FOLLOWERS),
+        *(("half_harmonic_start", follower, {}) for follower in FOLLOWERS),
+        ("half_harmonic_end", "translating_roller", {"closure": "form"}),
+        ("half_harmonic_end", "barrel_roller", {}),
+    ],
+)
+def test_jumps_that_no_follower_keeps_to_are_refused(law, follower, fields):
+    (fault, *_) = jumping(law, follower, **fields).contradictions()
+    assert "edge that no follower keeps to" in fault.detail
+
+
+@pytest.mark.parametrize("law", ["double_harmonic", "eighth_power"])
+def test_a_fall_by_the_name_of_its_rise_mirrors_it(law):
+    """Norton's rise-fall-dwell: the accelerations meet at the top, and both ends join the dwell."""
+    named, mirrored = (
+        parse_problem(
+            {
+                "kind": "cam",
+                "segments": [
+                    {"motion": "rise", "angle": 120.0, "lift": 10.0, "law": law},
+                    {"motion": "fall", "angle": 120.0, "lift": 10.0, "law": fall},
+                    {"motion": "dwell", "angle": 120.0},
+                ],
+                "follower": {"type": "translating_flat"},
+            }
+        )
+        for fall in (law, f"{law}_reversed")
+    )
+    assert named.contradictions() == []
+    assert named.program.laws() == [law, f"{law}_reversed", "dwell"]
+    found, same = (solve(problem, lambda fraction, message: None) for problem in (named, mirrored))
+    assert found.designs[0].verification.passed
+    assert found.designs[0].mechanism == same.designs[0].mechanism
+    assert found.designs[0].segments[1].law == f"{law}_reversed"
+
+
+@pytest.mark.parametrize("law", ["double_harmonic", "eighth_power"])
+def test_a_fall_that_its_neighbours_join_as_it_rises_is_taken_so(law):
+    """From a dwell down to a turn at the bottom, without rest there."""
+    problem = parse_problem(
+        {
+            "kind": "cam",
+            "segments": [
+                {"motion": "rise", "angle": 120.0, "lift": 10.0, "law": f"{law}_reversed"},
+                {"motion": "dwell", "angle": 120.0},
+                {"motion": "return", "angle": 120.0, "law": law},
+            ],
+            "follower": {"type": "translating_flat"},
+        }
+    )
+    assert problem.contradictions() == []
+    assert problem.program.laws() == [f"{law}_reversed", "dwell", law]
 
 
 def test_an_optimal_arm_is_not_sized_with_its_motion():

@@ -122,7 +122,7 @@ def compose(
     ends = problem.program.ends()
     segments: list[Segment | None] = []
     names: list[str] = []
-    for stated, (start, end), pair in zip(problem.segments, heights, ends, strict=True):
+    for stated, law, (start, end), pair in zip(problem.segments, problem.program.laws(), heights, ends, strict=True):
         angle = math.radians(stated.angle)
         if isinstance(stated, Dwell):
             segments.append(dwell(angle, start))
@@ -134,9 +134,8 @@ def compose(
         elif pair is None:
             segments.append(None)
         else:
-            law = stated.law if isinstance(stated, Move) else "constant_velocity"
             segments.append(law_segment(LAWS[law], angle, start, end))
-        names.append(stated.law if isinstance(stated, Move) else stated.motion)
+        names.append(law)
     refused = _choose_laws(problem, heights, ends, segments, names)
     if refused is not None:
         return refused

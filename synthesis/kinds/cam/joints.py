@@ -37,6 +37,9 @@ END_RATES: dict[str, tuple[float, float, float, float]] = {
 }
 """v and a at the start, v and a at the end, of a unit rise over a unit angle by each law."""
 
+MIRRORED = {"eighth_power": "eighth_power_reversed", "double_harmonic": "double_harmonic_reversed"}
+"""Laws that begin without acceleration and end with one, and what mirrors them in a fall; books name both alike."""
+
 SINGULAR = 1e-11
 """Pivot, relative to its column, below which conditions do not determine a polynomial."""
 

@@ -133,7 +133,10 @@ class CamProblem(StatedProblem):
         default="acceleration", description="The highest derivative that is continuous in optimal motions."
     )
     accept_discontinuity: Flag = Field(
-        default=False, description="Take a program with jumps in displacement, velocity or acceleration."
+        default=False,
+        description="Take a program whose acceleration jumps, or whose velocity jumps up where a force holds the "
+        "follower. Where a velocity drops at once, or jumps in a groove, the cam would need an edge that no follower "
+        "keeps to.",
     )
     profile_points: Annotated[Count, Field(ge=180, le=7200)] = Field(
         default=720,
@@ -163,7 +166,8 @@ class CamProblem(StatedProblem):
             *follower_contradictions(self.follower),
             *self._inputs(),
         ]
-        return contradictions or self.program.joint_contradictions(self.accept_discontinuity)
+        grooved = self.closure == "form" or isinstance(self.follower, BarrelRoller)
+        return contradictions or self.program.joint_contradictions(self.accept_discontinuity, grooved)
 
     def _closure(self) -> list[Contradiction]:
         """A groove guides a roller and nothing else."""

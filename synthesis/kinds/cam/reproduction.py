@@ -144,7 +144,8 @@ def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> l
     worst, start = 0.0, 0.0
     # Limits on the motion are those of automatic and optimal segments: the others are as the client states them.
     limited = np.zeros(len(angle), dtype=bool)
-    for segment, (low, high) in zip(problem.segments, problem.program.heights(), strict=True):
+    stated = zip(problem.segments, problem.program.laws(), problem.program.heights(), strict=True)
+    for segment, law, (low, high) in stated:
         span = math.radians(segment.angle)
         end = start + span
         inside = (angle >= start - ANGLE_TOLERANCE) & (angle <= end + ANGLE_TOLERANCE)
@@ -158,7 +159,6 @@ def program_checks(problem: CamProblem, program: ProgramTable, lift: float) -> l
         elif isinstance(segment, Polynomial):
             exact = polynomial_segment(span, [Condition(*c) for c in problem.program.polynomial_conditions(segment)])
         else:
-            law = segment.law if isinstance(segment, Move) else "constant_velocity"
             exact = law_segment(LAWS[law], span, low, high)
         if len(at):
             worst = max(worst, float(np.abs(exact.pieces.motion(at).s - s).max()))

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synthesis.kinds.cam.joints import Conditions, State, law_ends, polynomial_ends
+from synthesis.kinds.cam.joints import MIRRORED, Conditions, State, law_ends, polynomial_ends
 from synthesis.kinds.cam.segments import ConstantVelocity, DisplacementBand, Dwell, Move, Polynomial, Segment
 from synthesis.model.statement import Contradiction
 
@@ -60,10 +60,30 @@ class StatedProgram:
             at = end
         return heights
 
+    def laws(self) -> list[str]:
+        """The law by which each segment runs, or what else it is.
+
+        In the books the fall that mirrors a rise has its name. So a fall by such a name is the mirrored one, unless its
+        neighbours join the other alone, which begins without acceleration.
+        """
+        stated = [segment.law if isinstance(segment, Move) else segment.motion for segment in self.segments]
+        laws = [
+            MIRRORED.get(law, law) if segment.motion in ("fall", "return") else law
+            for segment, law in zip(self.segments, stated, strict=True)
+        ]
+        for k, law in enumerate(stated):
+            if laws[k] != law and not self._joins(k, laws):
+                other = [*laws[:k], law, *laws[k + 1 :]]
+                laws = other if self._joins(k, other) else laws
+        return laws
+
     def ends(self) -> list[tuple[State, State] | None]:
         """s, v, a at both ends of each segment; None for automatic and optimal motions, which follow others."""
+        return self._ends_by(self.laws())
+
+    def _ends_by(self, laws: Sequence[str]) -> list[tuple[State, State] | None]:
         ends: list[tuple[State, State] | None] = []
-        for segment, (start, end) in zip(self.segments, self.heights(), strict=True):
+        for segment, law, (start, end) in zip(self.segments, laws, self.heights(), strict=True):
             angle = math.radians(segment.angle)
             if isinstance(segment, Polynomial):
                 ends.append(polynomial_ends(angle, self.polynomial_conditions(segment)))
@@ -74,7 +94,7 @@ class StatedProgram:
             elif segment.follows_criterion:
                 ends.append(None)
             else:
-                ends.append(law_ends(segment.law, angle, start, end))
+                ends.append(law_ends(law, angle, start, end))
         return ends
 
     def segment_contradictions(self) -> list[Contradiction]:
@@ -113,9 +133,9 @@ class StatedProgram:
             contradictions.append(Contradiction("/segments", "the follower never moves; state a rise"))
         return contradictions
 
-    def joint_contradictions(self, accept_discontinuity: bool) -> list[Contradiction]:
-        """Segments that do not make one turn, or that do not meet as a cam's program must."""
-        return [*self._turn(), *self._joints(accept_discontinuity)]
+    def joint_contradictions(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
+        """Segments that do not make one turn, or that do not meet as a cam's program must; ``grooved``: in a groove."""
+        return [*self._turn(), *self._joints(accept_discontinuity, grooved)]
 
     def _turn(self) -> list[Contradiction]:
         total = math.fsum(segment.angle for segment in self.segments)
@@ -123,30 +143,52 @@ class StatedProgram:
             return [Contradiction("/segments", f"the angles add up to {total:.12g} degrees; they must make one turn")]
         return []
 
-    def _joints(self, accept_discontinuity: bool) -> list[Contradiction]:
-        """Joints where s jumps, or v or a without being accepted."""
+    def _travel(self) -> float:
+        """The size of displacements, by which jumps are measured."""
+        heights = self.heights()
+        return max(abs(b - a) for a, b in heights) or max(abs(a) for a, _ in heights) or 1.0
+
+    def _jumps(self, joint: int, ends: Sequence[tuple[State, State] | None]) -> tuple[float, float]:
+        """Steps of v and a from a segment to the next; 0 where they are rounding, or where one follows the other."""
+        before, after = ends[joint], ends[(joint + 1) % len(ends)]
+        if before is None or after is None:
+            return 0.0, 0.0
+        travel, least = self._travel(), min(math.radians(segment.angle) for segment in self.segments)
+        steps = [after[0][order] - before[1][order] for order in (1, 2)]
+        velocity, acceleration = (
+            step if abs(step) > SMOOTH * travel / least**order else 0.0 for order, step in enumerate(steps, 1)
+        )
+        return velocity, acceleration
+
+    def _joins(self, k: int, laws: Sequence[str]) -> bool:
+        """Whether v and a of a segment go on in both neighbours."""
+        ends = self._ends_by(laws)
+        return not any((*self._jumps(k - 1, ends), *self._jumps(k, ends)))
+
+    def _joints(self, accept_discontinuity: bool, grooved: bool) -> list[Contradiction]:
+        """Joints where s jumps, or v as no follower can, or v or a without being accepted."""
         heights, ends = self.heights(), self.ends()
-        travel = max(abs(b - a) for a, b in heights) or max(abs(a) for a, _ in heights) or 1.0
-        least = min(math.radians(segment.angle) for segment in self.segments)
         contradictions = []
         for k, segment in enumerate(self.segments):
             n = (k + 1) % len(self.segments)
             following = self.segments[n]
             joint = f"where segment {n} ({following.motion}) follows segment {k} ({segment.motion})"
             gap = heights[n][0] - heights[k][1]
-            if abs(gap) > SMOOTH * travel:
+            if abs(gap) > SMOOTH * self._travel():
                 hint = "; the program must come back to where it began" if n == 0 else ""
                 gap /= self.displacement_unit
                 contradictions.append(Contradiction(f"/segments/{n}", f"displacement jumps by {gap:.6g} {joint}{hint}"))
                 continue
-            before, after = ends[k], ends[n]
-            if accept_discontinuity or before is None or after is None:
+            velocity, acceleration = self._jumps(k, ends)
+            reason = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
+            if velocity < 0.0 or (velocity and grooved):
+                reason = "for which the cam would need an edge that no follower keeps to; choose laws that join"
+            elif accept_discontinuity:
                 continue
-            for order, name in ((1, "velocity"), (2, "acceleration")):
-                jump = after[0][order] - before[1][order]
-                if abs(jump) > SMOOTH * travel / least**order:
-                    law = "which breaks the fundamental law of cam design; choose other laws or accept_discontinuity"
-                    contradictions.append(Contradiction(f"/segments/{n}", f"{name} jumps by {jump:.6g} {joint}, {law}"))
+            for name, jump in (("velocity", velocity), ("acceleration", acceleration)):
+                if jump:
+                    detail = f"{name} jumps by {jump:.6g} {joint}, {reason}"
+                    contradictions.append(Contradiction(f"/segments/{n}", detail))
                     break
         if not contradictions and not accept_discontinuity:
             contradictions += self._inner_jumps()
