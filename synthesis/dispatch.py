@@ -8,8 +8,8 @@ from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.statement import StatedProblem
-from synthesis.nearest_miss import nearest_miss
 from synthesis.registry import KINDS
+from synthesis.relaxation import Relaxation, relaxation
 
 __all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
 
@@ -43,10 +43,26 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     assert isinstance(result, Result)
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
-        miss = nearest_miss(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0))
-        result = result.model_copy(update={"nearest_miss": miss})
+        result = _relaxed(problem, result, relaxation(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0)))
     told(1.0, "verified")
     return result
+
+
+def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> Result[Any]:
+    """An answer without designs, with those that were found without the demands, or with the nearest miss."""
+    if not found.sound:
+        return result.model_copy(update={"nearest_miss": found.nearest_miss})
+    designs = found.sound[: problem.max_designs]
+    count, search = len(designs), result.search
+    account = {"complete": False, "candidates": search.candidates + count, "accepted": count}
+    summary = f"{count} design{'s' * (count > 1)} found without the constraints satisfy them all the same."
+    return result.model_copy(
+        update={
+            "designs": [*designs, *result.designs][: problem.max_designs],
+            "search": search.model_copy(update=account),
+            "summary": summary,
+        }
+    )
 
 
 def warm_up() -> None:

@@ -21,6 +21,7 @@ from synthesis.model.statement import ContradictionError
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import Measures
 from synthesis.registry import parse_problem
+from synthesis.relaxation import judged
 from tests.synthesis.test_quality import CASES as CASES_OF_QUALITY
 from tests.synthesis.test_quality import motion, path
 
@@ -206,6 +207,7 @@ def test_constraints_are_checked_and_the_order_kept(name: str, rank_by: str) -> 
         checks = checks_of(design)
         assert wanted <= checks.keys()
         assert design.verification.passed
+        agrees(name, design, demands)
     values = [order_of(name, rank_by)(design) for design in designs]
     groups = [getattr(design.metrics, "full_rotation", True) for design in designs]
     if CASES[name]["kind"] != "parallel_motion":
@@ -214,10 +216,22 @@ def test_constraints_are_checked_and_the_order_kept(name: str, rank_by: str) -> 
     assert keyed == sorted(keyed)
 
 
+def agrees(name: str, design: Any, demands: dict[str, Any]) -> None:
+    """The constraints as judged by the numbers of the answer (synthesis/relaxation.py) are the checks of the design."""
+    statement = CASES[name]
+    problem = parse_problem({**statement, "constraints": {**statement.get("constraints", {}), **demands}})
+    checks = checks_of(design)
+    for name_of_check, check in checks_of(judged(problem, design).design).items():
+        own = checks[name_of_check]
+        assert (check.passed, check.limit) == (own.passed, own.limit)
+        assert check.value == (None if own.value is None else pytest.approx(own.value, rel=1e-9, abs=1e-9))
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_what_breaks_a_constraint_fails(name: str) -> None:
     """Hardly anything can meet these (Davis's gear transmits at 90°): what does not, fails the check."""
     for design in answered(name, TIGHT, include_failed=True, max_designs=3):
+        agrees(name, design, TIGHT)
         checks = [checks_of(design)[CHECKS[field][-1]] for field in TIGHT]
         for field, check in zip(TIGHT, checks, strict=True):
             if field == "min_transmission_angle":

@@ -6,7 +6,8 @@ import pytest
 
 from synthesis import parse_problem, solve
 from synthesis.dispatch import SEARCH_SHARE
-from synthesis.registry import examples
+from synthesis.registry import KINDS, examples
+from synthesis.relaxation import relaxation
 
 POSITIONS = [{"x": x, "y": y, "angle": a} for x, y, a in ((0.0, 0.0, 0.0), (20.0, 10.0, 25.0), (45.0, 8.0, 60.0))]
 
@@ -113,3 +114,22 @@ def test_progress_never_goes_back():
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert SEARCH_SHARE in shares
+
+
+def test_a_design_found_without_a_demand_that_keeps_it_is_an_answer():
+    """A solver that loses its designs when a limit is stated, though they are far within it."""
+    problem = parse_problem(motion(min_transmission_angle=5.0, max_link_ratio=50.0))
+    real = KINDS["motion"].solve
+
+    def spoilt(statement, progress):
+        result = real(statement, progress)
+        return result.model_copy(update={"designs": []}) if statement.constraints.max_link_ratio else result
+
+    found = relaxation(problem, spoilt, lambda *_: None)
+    assert found.nearest_miss is None
+    assert found.sound
+    for design in found.sound:
+        checks = {check.name: check for check in design.verification.checks}
+        assert design.verification.passed
+        assert checks["link_ratio"].value <= 50.0
+        assert checks["transmission_angle"].value >= 5.0

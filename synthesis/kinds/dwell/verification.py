@@ -23,7 +23,7 @@ from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
 from synthesis.proof.closer import extremes_of, least_angles
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import Measures, barker_of, diagonal, fixed_pivots, measured, reach_of
+from synthesis.proof.measures import Measures, barker_of, diagonal, fixed_pivots, measured, moving_pivots, reach_of
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -148,8 +148,8 @@ def _checks(
     if len(targets) == 2:
         apart = math.remainder(targets[1].input_angle - targets[0].input_angle, 360.0)
         checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
-    pins = [complex(mechanism.joints[name]) for name in ("A", "B")]
-    return [*checks, *constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), pins)]
+    pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
+    return [*checks, *constraint_checks(problem.constraints, measures, *pivots)]
 
 
 def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:

@@ -25,7 +25,16 @@ from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles, turn_from
 from synthesis.proof.constraints import constraint_checks
-from synthesis.proof.measures import TURNS_THROUGH, barker_of, diagonal, fixed_pivots, link_lengths, measured, reach_of
+from synthesis.proof.measures import (
+    TURNS_THROUGH,
+    barker_of,
+    diagonal,
+    fixed_pivots,
+    link_lengths,
+    measured,
+    moving_pivots,
+    reach_of,
+)
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
@@ -129,11 +138,9 @@ def verify_parallel_motion(
         )
     if path is not None:
         checks += path.checks
-    pins = [place[name] for name in ("A", "B", "C")]
+    pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
     # What the path demands as well as the body's motion is told once: as failed, where either is.
-    own = {
-        check.name: check for check in constraint_checks(problem.constraints, measures, fixed_pivots(mechanism), pins)
-    }
+    own = {check.name: check for check in constraint_checks(problem.constraints, measures, *pivots)}
     checks = [check for check in checks if not check.passed or check.name not in own]
     checks += [check for name, check in own.items() if name not in {check.name for check in checks}]
     return ParallelMotionDesign(

@@ -1,10 +1,11 @@
-"""The nearest miss: where no design satisfies all demands, the one that breaks them least, and what is within reach.
+"""What there is of a task that no design was found for: the design that breaks its demands least, and what is in reach.
 
 One constraint after another is left out and the task is solved again: what the designs then have of it is what can be
 reached beside all other demands. Where that gives none, all constraints are left out together. A limit that alone is
 out of reach is then approached: the task is solved with limits between what was reached and what is demanded, by
-bisection. Of gears it is the tolerance that is left out. Everything else has its nearest miss among the designs that
-were driven and failed.
+bisection. A design that satisfies all demands although it was found without one is an answer: no demand hides what the
+task without it shows. Of gears it is the tolerance that is left out. Everything else has its nearest miss among the
+designs that were driven and failed.
 """
 
 from __future__ import annotations
@@ -31,8 +32,11 @@ UNMEASURED = 1.0
 RANK_BY = {"min_transmission_angle": "transmission_angle", "link_length": "size"}
 """How designs are ordered when a constraint is left out, so that those near to it come first; others by quality."""
 
-APPROACHES = 5
-"""Steps of the bisection: a gap is known to a thirtieth of what it was."""
+APPROACHES = 4
+"""Steps of the bisection: a gap is known to a sixteenth of what it was."""
+
+FEW = 2
+"""Constraints up to which each is left out in turn, whatever the others do."""
 
 REACHABLE: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
     "min_transmission_angle": ("min_transmission_angle", max),
@@ -41,9 +45,17 @@ REACHABLE: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
 """By the constraint: the measure whose best value beside all other demands is told."""
 
 
-REACHED_BY = {"transmission_angle": "min_transmission_angle", "link_ratio": "max_link_ratio"}
-"""The constraint that a check is of, where its best value is told."""
-
+CONSTRAINT_OF = {
+    "transmission_angle": "min_transmission_angle",
+    "grashof": "grashof",
+    "full_rotation": "full_rotation",
+    "shortest_link": "link_length",
+    "longest_link": "link_length",
+    "link_ratio": "max_link_ratio",
+    "fixed_pivot_region": "fixed_pivot_region",
+    "moving_pivot_region": "moving_pivot_region",
+}
+"""The constraint that a check is of."""
 
 RATIO_ERRORS = {
     "gear_train": ("ratio_error", "relative_error"),
@@ -66,62 +78,90 @@ class _Miss(NamedTuple):
         return math.fsum(map(_relative_gap, self.broken))
 
 
-def nearest_miss(problem: StatedProblem, solve: Solve, progress: Progress) -> NearestMiss[Any] | None:
-    """What comes nearest to a problem that has no design.
+class Relaxation(NamedTuple):
+    """What a task has without its demands: designs that keep them all the same, or what comes nearest."""
+
+    sound: list[Any]
+    nearest_miss: NearestMiss[Any] | None
+
+
+def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Relaxation:
+    """What there is of a problem that no design was found for.
 
     Parameters
     ----------
     problem : StatedProblem
-        A consistent statement that ``solve`` found no design for.
+        A consistent statement.
     solve : callable
-        The solver of its kind.
+        The solver of its kind, which found no design.
     progress : callable
         Told how far the work is.
 
     Returns
     -------
-    NearestMiss or None
-        None where nothing is found without the demands either.
+    Relaxation
+        Designs that satisfy all demands although they were found without one; where there are none, the nearest miss,
+        which is None where nothing is found without the demands either.
     """
     reachable: dict[str, float] = {}
-    misses = _without_constraints(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+    sound, misses = _without_constraints(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+    if sound:
+        return Relaxation(sound, None)
     misses = misses or _without_tolerance(problem, solve, part_of(progress, 0.0, 0.8), reachable)
     misses = misses or _failed(problem, solve, part_of(progress, 0.8, 1.0))
     progress(1.0, "verified")
     if not misses:
-        return None
+        return Relaxation([], None)
     nearest = min(misses, key=lambda miss: miss.distance)
     gaps = [
         Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
         for check in nearest.broken
     ]
-    return NearestMiss(design=nearest.design, gaps=gaps, reachable=reachable)
+    return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=reachable))
 
 
-def _without_constraints(problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]) -> list[_Miss]:
-    """Designs of the task without one of its constraints; without all where that gives none."""
+def _without_constraints(
+    problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]
+) -> tuple[list[Any], list[_Miss]]:
+    """Designs of the task without one of its constraints; without all where that gives none.
+
+    Returns those that keep the constraints all the same, and those that do not. ``reachable`` is filled.
+    """
     stated = _stated(problem)
-    attempts = [[name] for name in stated] + ([stated] if len(stated) > 1 else [])
+    free: list[_Miss] = []
+    if len(stated) > FEW:
+        # Of many only those are tried one by one that the best design without any breaks.
+        relaxed = _relaxed(problem, stated, solve, progress)
+        if relaxed.sound or not relaxed.misses:
+            return relaxed.sound, []
+        free = relaxed.misses
+        stated = _constraints_of(min(free, key=lambda miss: miss.distance))
     misses: list[_Miss] = []
     exhaustive = True
-    for n, left_out in enumerate(attempts):
-        if misses and len(left_out) > 1:
-            break
-        span = part_of(progress, n / (len(attempts) + 1), (n + 1) / (len(attempts) + 1))
-        result = solve(_relaxed(problem, left_out), span)
-        designs, exhaustive = result.designs, exhaustive and result.search.complete
-        misses += [miss for design in designs if (miss := _judged(problem, design)).broken]
-        if len(left_out) == 1 and left_out[0] in REACHABLE and designs:
-            measure, best = REACHABLE[left_out[0]]
-            reachable[left_out[0]] = best([getattr(design.metrics, measure) for design in designs])
+    for n, name in enumerate(stated):
+        span = part_of(progress, n / (len(stated) + 1), (n + 1) / (len(stated) + 1))
+        relaxed = _relaxed(problem, [name], solve, span)
+        if relaxed.sound:
+            return relaxed.sound, []
+        misses += relaxed.misses
+        exhaustive &= relaxed.complete
+        if name in REACHABLE and relaxed.designs:
+            measure, best = REACHABLE[name]
+            reachable[name] = best([getattr(design.metrics, measure) for design in relaxed.designs])
+    if not misses and not free and len(stated) > 1:
+        relaxed = _relaxed(problem, stated, solve, progress)
+        return relaxed.sound, relaxed.misses
     single = [miss for miss in misses if len(miss.broken) == 1]
     if single and not exhaustive:  # where all designs are known none is nearer
         nearest = _approached(problem, min(single, key=lambda miss: miss.distance), solve)
+        if not nearest.broken:
+            return [nearest.design], []
         (check,) = nearest.broken
-        if check.name in REACHED_BY and check.value is not None:
-            reachable[REACHED_BY[check.name]] = check.value
+        name = CONSTRAINT_OF[check.name]
+        if name in REACHABLE and check.value is not None:
+            reachable[name] = check.value
         misses.append(nearest)
-    return misses
+    return [], misses or free
 
 
 def _without_tolerance(problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]) -> list[_Miss]:
@@ -165,13 +205,31 @@ def _stated(problem: StatedProblem) -> list[str]:
     ]
 
 
-def _relaxed(problem: Any, left_out: Sequence[str]) -> Any:
-    """The statement without these constraints."""
+class _Relaxed(NamedTuple):
+    """What a task has without some of its constraints."""
+
+    designs: list[Any]
+    sound: list[Any]
+    misses: list[_Miss]
+    complete: bool
+
+
+def _relaxed(problem: Any, left_out: Sequence[str], solve: Solve, progress: Progress) -> _Relaxed:
+    """Solve the task without these constraints."""
     plain = Constraints()
     constraints = problem.constraints.model_copy(update={name: getattr(plain, name) for name in left_out})
     rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
     update = {"constraints": constraints, "rank_by": rank_by, "include_failed": False, "max_designs": MAX_DESIGNS}
-    return problem.model_copy(update=update)
+    result = solve(problem.model_copy(update=update), progress)
+    verdicts = [judged(problem, design) for design in result.designs]
+    sound = [verdict.design for verdict in verdicts if verdict.design.verification.passed]
+    return _Relaxed(result.designs, sound, [verdict for verdict in verdicts if verdict.broken], result.search.complete)
+
+
+def _constraints_of(miss: _Miss) -> list[str]:
+    """The constraints that a design breaks, in the order in which they are declared."""
+    broken = {CONSTRAINT_OF[check.name] for check in miss.broken}
+    return [name for name in Constraints.model_fields if name in broken]
 
 
 def _approached(problem: Any, miss: _Miss, solve: Solve) -> _Miss:
@@ -187,9 +245,11 @@ def _approached(problem: Any, miss: _Miss, solve: Solve) -> _Miss:
             break
         update = {"constraints": eased, "include_failed": False, "max_designs": MAX_DESIGNS}
         designs = solve(problem.model_copy(update=update), _silent).designs
-        nearer = [other for design in designs if len((other := _judged(problem, design)).broken) == 1]
+        nearer = [other for design in designs if len((other := judged(problem, design)).broken) <= 1]
         if nearer:
             miss = min(nearer, key=lambda other: other.distance)
+            if not miss.broken:
+                break
             reached = miss.broken[0].value or 0.0
         else:
             unreached = limit
@@ -217,8 +277,8 @@ def _eased(constraints: Constraints, check: str, limit: float) -> Constraints | 
     return None
 
 
-def _judged(problem: Any, design: Any) -> _Miss:
-    """A design of a relaxed task with the checks of the constraints that were stated."""
+def judged(problem: Any, design: Any) -> _Miss:
+    """A design of a relaxed task with the checks of the constraints that were stated, measured on the answer."""
     joints, ground = design.mechanism.skeleton.joints, _ground(design)
     fixed = [complex(*joints[name]) for name in ground]
     moving = [complex(*place) for name, place in joints.items() if name not in (*ground, "P")]
