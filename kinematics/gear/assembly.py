@@ -84,11 +84,11 @@ def _beside(
     planet: str,
 ) -> complex | None:
     """Pin of a planet that meshes with one already placed, ahead of it around the axis."""
-    for one, other in arrangement.meshes:
-        bodies = {arrangement.places[gear].body: gear for gear in (one, other)}
+    for first, second in arrangement.meshes:
+        bodies = {arrangement.places[gear].body: gear for gear in (first, second)}
         neighbour = next((body for body in bodies if body in placed and planet in bodies), None)
         if neighbour is not None:
-            apart = 0.5 * (teeth[one] + teeth[other])
+            apart = 0.5 * (teeth[first] + teeth[second])
             near, far = radius[neighbour], radius[planet]
             cosine = (near * near + far * far - apart * apart) / (2.0 * near * far)
             if abs(cosine) > 1.0:

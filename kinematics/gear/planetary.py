@@ -66,8 +66,8 @@ class Mesh:
 
     def equation(self) -> dict[str, int]:
         """Coefficients by body of the speed equation; its right side is 0."""
-        one, other = self.first_teeth, -self.sense * self.second_teeth
-        return {self.first: one, self.second: other, self.carrier: -one - other}
+        first, second = self.first_teeth, -self.sense * self.second_teeth
+        return {self.first: first, self.second: second, self.carrier: -first - second}
 
 
 @dataclass(frozen=True)
@@ -150,8 +150,8 @@ def speeds(train: Train, known: Mapping[str, Fraction | int], locked: Iterable[t
             raise DimensionError("body", f"one of {', '.join(bodies)}", body)
     for mesh in train.meshes:
         system.add({body: Fraction(c) for body, c in mesh.equation().items() if body != GROUND}, Fraction(0))
-    for one, other in pairs:
-        locking = {one: Fraction(1), other: Fraction(-1)}
+    for first, second in pairs:
+        locking = {first: Fraction(1), second: Fraction(-1)}
         system.add({body: c for body, c in locking.items() if body != GROUND}, Fraction(0))
     freedom = len(bodies) - system.rank
     contradiction = None

@@ -368,15 +368,15 @@ def saving_shift(mesh: Mesh, least_contact_ratio: float = 1.2) -> Mesh | None:
     Mesh or None
         The same teeth, shifted; None where the pair needs no shift, is internal, or no such shift saves it.
     """
-    one, two = mesh.pinion, mesh.gear
-    if two.internal or not (mesh.interferes or one.is_undercut or two.is_undercut):
+    pinion, gear = mesh.pinion, mesh.gear
+    if gear.internal or not (mesh.interferes or pinion.is_undercut or gear.is_undercut):
         return None
-    need = max(0.0, one.least_shift), max(0.0, two.least_shift)
-    choices = [(need[0], -need[0])] if two.least_shift <= -need[0] else []
+    need = max(0.0, pinion.least_shift), max(0.0, gear.least_shift)
+    choices = [(need[0], -need[0])] if gear.least_shift <= -need[0] else []
     for shifts in [*choices, need]:
         pair = tuple(
             Gear(g.teeth, g.module, g.pressure_angle, g.addendum, g.dedendum, x)
-            for g, x in zip((one, two), shifts, strict=True)
+            for g, x in zip((pinion, gear), shifts, strict=True)
         )
         shifted = Mesh(pair[0], pair[1])
         sound = not (shifted.interferes or pair[0].is_pointed or pair[1].is_pointed)

@@ -49,14 +49,14 @@ def instant_centers(mechanism: Mechanism, motion: MechanismMotion) -> dict[tuple
     still = np.zeros_like(motion.input[1])
     spins: dict[str, Real] = {name: motion.angles[name][1] if name != GROUND else still for name in mechanism.links}
     fastest = np.max(np.abs(np.stack(list(spins.values()))), axis=0)
-    found = {}
-    for one, other in combinations(mechanism.links, 2):
-        z, velocity = (motion.joints[mechanism.links[one][0]][k] for k in (0, 1))
-        base, base_velocity = (motion.joints[mechanism.links[other][0]][k] for k in (0, 1))
-        carried = base_velocity + 1j * spins[other] * (z - base)
-        gap = spins[one] - spins[other]
+    centers = {}
+    for first, second in combinations(mechanism.links, 2):
+        z, velocity = (motion.joints[mechanism.links[first][0]][k] for k in (0, 1))
+        base, base_velocity = (motion.joints[mechanism.links[second][0]][k] for k in (0, 1))
+        carried = base_velocity + 1j * spins[second] * (z - base)
+        gap = spins[first] - spins[second]
         with np.errstate(divide="ignore", invalid="ignore"):
             finite = np.abs(gap) > PARALLEL * fastest
             point = np.where(finite, z + 1j * (velocity - carried) / gap, np.complex128(complex(np.nan, np.nan)))
-        found[(one, other)] = InstantCenter(point, finite & motion.smooth)
-    return found
+        centers[(first, second)] = InstantCenter(point, finite & motion.smooth)
+    return centers

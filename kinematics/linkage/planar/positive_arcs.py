@@ -179,12 +179,12 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
     np.maximum.at(noise, samples.row, NOISE * np.abs(samples.value))
     noise[largest <= VANISHES] = np.inf
     left, right = samples.cells()
-    found = [samples]
+    rounds = [samples]
     while len(left.row):
         width = right.at - left.at
         at = left.at + 0.5 * width
         middle = Samples(left.row, at, *_known(function, left.row, at))
-        found.append(middle)
+        rounds.append(middle)
         off = np.abs(middle.value - 0.5 * (left.value + right.value) - width * (left.rate - right.rate) / 8.0)
         slope = 1.5 * (right.value - left.value) - 0.25 * width * (left.rate + right.rate)
         off = np.maximum(off, 0.25 * np.abs(width * middle.rate - slope))
@@ -198,7 +198,7 @@ def _resolved(function: Function, domains: Sequence[Domain]) -> tuple[Samples, N
         rough &= ~crowded[left.row]
         half = [samples.part(rough) for samples in (left, middle, right)]
         left, right = half[0].merged(half[1]), half[1].merged(half[2])
-    return found[0].merged(*found[1:]), largest <= VANISHES
+    return rounds[0].merged(*rounds[1:]), largest <= VANISHES
 
 
 def _known(function: Function, row: Rows, at: Real) -> tuple[Real, Real]:

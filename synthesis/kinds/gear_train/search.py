@@ -131,16 +131,18 @@ def _searched(
         if task.most_total is not None and not task.largest:
             size = min(size, task.most_total)
         shortlist = Found.empty(capacity, size)
-        done, work = 0, sum(one.combinations for one in listed) or 1
-        for k, one, rule in zip(counts, listed, rules, strict=True):
-            parts = np.linspace(0, one.steps, min(PARTS, one.steps) + 1).astype(int)
+        done, work = 0, sum(candidates.combinations for candidates in listed) or 1
+        for k, candidates, rule in zip(counts, listed, rules, strict=True):
+            parts = np.linspace(0, candidates.steps, min(PARTS, candidates.steps) + 1).astype(int)
             for first, last in itertools.pairwise(parts):
-                if one.least(int(first)) > _last_size(task, shortlist) or one.finish(int(first), rule, shortlist):
+                if candidates.least(int(first)) > _last_size(task, shortlist) or candidates.finish(
+                    int(first), rule, shortlist
+                ):
                     break
-                one.search(int(first), int(last), rule, shortlist)
-                share = (done + one.combinations * float(last) / one.steps) / work
-                progress(0.95 * share, f"{k} stages: {one.combinations:.3g} trains")
-            done += one.combinations
+                candidates.search(int(first), int(last), rule, shortlist)
+                share = (done + candidates.combinations * float(last) / candidates.steps) / work
+                progress(0.95 * share, f"{k} stages: {candidates.combinations:.3g} trains")
+            done += candidates.combinations
         trains = [_train(row) for row in shortlist.teeth[: shortlist.kept[0]]]
         kept = [train for train in trains if tolerance is None or task.target.within(train.ratio, tolerance)]
         # Trains that only the rounded tolerance let in may have taken the places of others.
@@ -157,7 +159,7 @@ def _searched(
         best = min((train.ratio for train in [*trains, *rows]), key=cmp_to_key(task.target.nearer))
         equal = _equally_near(task, best)
         shortlist.error[0] = abs(task.target.relative_error(best))
-        ties = sum(one.ties(equal, rule, shortlist) for one, rule in zip(listed, rules, strict=True))
+        ties = sum(candidates.ties(equal, rule, shortlist) for candidates, rule in zip(listed, rules, strict=True))
     return _Pass(trains[:wanted], _pareto(task, shortlist, tolerance), ties)
 
 
@@ -189,7 +191,7 @@ def _covered(task: Task, k: int) -> int:
 
 def _choices(task: Task, values: tuple[Integers, ...], k: int) -> int:
     if task.ordered:
-        return math.prod(len(one) for one in values)
+        return math.prod(len(teeth) for teeth in values)
     return math.comb(len(values[0]) + k - 1, k)
 
 

@@ -29,7 +29,7 @@ FIXED = Group(1, 1)
 """A stage of one pair."""
 
 
-class _Made(NamedTuple):
+class _Toothed(NamedTuple):
     """A structure with its teeth, and what it is ranked by."""
 
     error: float
@@ -60,9 +60,9 @@ def solve_gearbox(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     kinds = {tuple(sorted(structure)): structure for structure in tried}
     covered, choices = 0, {}
     for k, groups in enumerate(kinds):
-        told = f"structure {formula(kinds[groups])}"
+        label = f"structure {formula(kinds[groups])}"
 
-        def within(share: float, done: int = k, message: str = told) -> None:
+        def within(share: float, done: int = k, message: str = label) -> None:
             progress((done + share) / len(kinds), message)
 
         choices[groups], count = _choices(problem, groups, ratio, within)
@@ -134,7 +134,7 @@ def _choices(
     return front, math.prod(stage.covered for stage in stages)
 
 
-def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Made:
+def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structure]) -> _Toothed:
     """The order of the stages that loads the shafts between input and spindle least, of those that are allowed."""
     gearboxes = []
     for structure in orders:
@@ -149,11 +149,11 @@ def _ordered(choice: Choice, groups: tuple[Group, ...], orders: Iterable[Structu
         for total, drivers in placed[:-1]:
             speed *= min(drivers) / (total - min(drivers))
             torque += 1.0 / speed
-        gearboxes.append(_Made(choice.error, choice.size, torque, structure, tuple(placed)))
+        gearboxes.append(_Toothed(choice.error, choice.size, torque, structure, tuple(placed)))
     return min(gearboxes, key=lambda gearbox: gearbox.torque)
 
 
-def _design(problem: GearboxProblem, gearbox: _Made) -> GearboxDesign:
+def _design(problem: GearboxProblem, gearbox: _Toothed) -> GearboxDesign:
     """A gearbox of the front as a verified design."""
     stages = []
     for group, (total, drivers) in zip(gearbox.structure, gearbox.stages, strict=True):

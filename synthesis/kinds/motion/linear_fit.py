@@ -74,10 +74,10 @@ def dyads_of_poses(points: Complex, angles: Real) -> tuple[Complex, Complex]:
 _TURN = np.linalg.qr(np.array([[1.0, 0.7, -0.4], [-0.3, 1.0, 0.9], [0.6, -0.8, 1.0]]))[0]
 
 
-def _meets(one: Real, other: Real) -> tuple[Real, Real, NDArray[np.int64]]:
+def _meets(first: Real, second: Real) -> tuple[Real, Real, NDArray[np.int64]]:
     """Where conics meet in the plane z = 1: x, y, and the set; forms are symmetric, shape (sets, 3, 3)."""
     # Each form is A y² + (B x + D) y + (C x² + E x + F); the resultant in y is a quartic in x.
-    (a1, b1, c1), (a2, b2, c2) = _by_powers_of_y(one), _by_powers_of_y(other)
+    (a1, b1, c1), (a2, b2, c2) = _by_powers_of_y(first), _by_powers_of_y(second)
     ac = _minus(_times(a1, c2), _times(a2, c1))
     ab = _minus(_times(a1, b2), _times(a2, b1))
     bc = _minus(_times(b1, c2), _times(b2, c1))
@@ -110,15 +110,15 @@ def _by_powers_of_y(form: Real) -> tuple[Real, Real, Real]:
     )
 
 
-def _times(one: Real, other: Real) -> Real:
+def _times(first: Real, second: Real) -> Real:
     """Products of polynomials in x, highest power first."""
-    found = np.zeros((len(one), one.shape[1] + other.shape[1] - 1))
-    for k in range(one.shape[1]):
-        found[:, k : k + other.shape[1]] += one[:, k : k + 1] * other
-    return found
+    product = np.zeros((len(first), first.shape[1] + second.shape[1] - 1))
+    for k in range(first.shape[1]):
+        product[:, k : k + second.shape[1]] += first[:, k : k + 1] * second
+    return product
 
 
-def _minus(one: Real, other: Real) -> Real:
+def _minus(first: Real, second: Real) -> Real:
     """Differences of polynomials in x of one degree."""
-    assert one.shape == other.shape
-    return np.asarray(one - other)
+    assert first.shape == second.shape
+    return np.asarray(first - second)

@@ -176,12 +176,12 @@ def _holds(problem: PlanetaryProblem, candidate: Candidate) -> bool:
 
 def _pareto(problem: PlanetaryProblem, candidate: Candidate) -> ParetoPlanetaryTrain:
     """A train of the Pareto set as the answer has it."""
-    one, two, three = candidate.roles
+    driving, driven, fixed = candidate.roles
     return ParetoPlanetaryTrain(
         arrangement=candidate.arrangement,
-        input=one,
-        output=two,
-        fixed=three,
+        input=driving,
+        output=driven,
+        fixed=fixed,
         teeth=dict(candidate.teeth),
         ratio=Ratio.of(candidate.ratio),
         error=float(candidate.ratio / problem.target - 1),
@@ -194,7 +194,7 @@ def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMech
     arrangement = ARRANGEMENTS[candidate.arrangement]
     known = dict(candidate.teeth)
     teeth = {gear: known[gear] for gear in arrangement.gear_names}
-    one, two, three = candidate.roles
+    driving, driven, fixed = candidate.roles
     return PlanetaryMechanism(
         arrangement=arrangement.name,
         teeth=teeth,
@@ -203,9 +203,9 @@ def _mechanism(problem: PlanetaryProblem, candidate: Candidate) -> PlanetaryMech
         module=problem.module,
         pressure_angle=problem.pressure_angle,
         addendum={gear: _addendum(problem, arrangement, teeth, gear) for gear in teeth},
-        input=one,
-        output=two,
-        fixed=three,
+        input=driving,
+        output=driven,
+        fixed=fixed,
         ratio=Ratio.of(candidate.ratio),
     )
 

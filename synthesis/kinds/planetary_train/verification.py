@@ -166,8 +166,8 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
     """A gear; of bevel gears the spur gear with the teeth of the back cone (Tredgold; Norton, Sec. 9.7)."""
     teeth: float = mechanism.teeth[name]
     if arrangement.bevel:
-        other = mechanism.teeth[mate or arrangement.meshing(name)[0]]
-        teeth *= math.hypot(teeth, other) / other
+        meshed = mechanism.teeth[mate or arrangement.meshing(name)[0]]
+        teeth *= math.hypot(teeth, meshed) / meshed
     return Gear(
         teeth,
         mechanism.module,
@@ -180,9 +180,9 @@ def _gear(mechanism: PlanetaryMechanism, arrangement: Arrangement, name: str, ma
 def _toothed(mechanism: PlanetaryMechanism, arrangement: Arrangement) -> dict[tuple[str, str], Mesh]:
     """Every mesh with its teeth."""
     meshes = {}
-    for one, other in arrangement.meshes:
-        pinion, gear = (other, one) if arrangement.places[one].internal else (one, other)
-        meshes[one, other] = Mesh(
+    for first, second in arrangement.meshes:
+        pinion, gear = (second, first) if arrangement.places[first].internal else (first, second)
+        meshes[first, second] = Mesh(
             _gear(mechanism, arrangement, pinion, gear), _gear(mechanism, arrangement, gear, pinion)
         )
     return meshes

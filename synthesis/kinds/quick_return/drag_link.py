@@ -226,17 +226,17 @@ def _slowest(a: float, c: float) -> float:
         if rotation > most:
             best, most = k * step, rotation
     low, high = best - step, best + step
-    one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_one, at_other = _slow(a, c, one), _slow(a, c, other)
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = _slow(a, c, left), _slow(a, c, right)
     for _ in range(SECTIONS):
-        if at_one > at_other:
-            high, other, at_other = other, one, at_one
-            one = high - GOLDEN * (high - low)
-            at_one = _slow(a, c, one)
+        if at_left > at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = _slow(a, c, left)
         else:
-            low, one, at_one = one, other, at_other
-            other = low + GOLDEN * (high - low)
-            at_other = _slow(a, c, other)
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = _slow(a, c, right)
     return 0.5 * (low + high)
 
 

@@ -95,7 +95,7 @@ def _mechanism(
     up = 1j * cmath.exp(1j * turn)
     o4 = o2 - ground * up
     line = o4 + height * up
-    made = quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
+    mechanism = quick_return(o2, o4, crank, rocker, coupler, line, turn, crank_angle + turn)
     return QuickReturnMechanism.model_validate(
         {
             "type": kind,
@@ -105,9 +105,9 @@ def _mechanism(
             "assembly": "open",
             "reference_input_angle": math.degrees(crank_angle) + problem.ground_angle,
             "skeleton": skeleton(
-                {name: complex(z) for name, z in made.joints.items()},
-                made.links,
-                slides=[slide(at.joint, at.link, complex(at.point), float(at.angle)) for at in made.slides],
+                {name: complex(z) for name, z in mechanism.joints.items()},
+                mechanism.links,
+                slides=[slide(at.joint, at.link, complex(at.point), float(at.angle)) for at in mechanism.slides],
             ),
         }
     )

@@ -114,23 +114,23 @@ def chebyshev_nodes(count: int) -> Real:
 def run(family: Family, shapes: Real, span: float, nodes: Real) -> tuple[Line, Shapes]:
     """The motion of P over the range, in the family's frame; NaN where a shape is no linkage there."""
     k = len(family.classical)
-    made = family.make(shapes[:, :k])
-    middle = made.middle if family.symmetric else made.middle + shapes[:, k]
+    members = family.make(shapes[:, :k])
+    middle = members.middle if family.symmetric else members.middle + shapes[:, k]
     theta = middle[:, None] + span * nodes
-    found = coupler_motion(made.linkage, theta, np.full(len(shapes), family.assembly))
-    chord = found.p[:, -1] - found.p[:, 0]
+    motion = coupler_motion(members.linkage, theta, np.full(len(shapes), family.assembly))
+    chord = motion.p[:, -1] - motion.p[:, 0]
     with np.errstate(invalid="ignore", divide="ignore"):
         # By symmetry the line of Hoeken's linkage lies along the axis; elsewhere near the chord.
         along = np.sign(chord.real) + 0j if family.symmetric else chord / np.abs(chord) * np.exp(1j * shapes[:, k + 1])
         length = (chord * along.conj()).real
-    return Line(found.p, found.velocity, along, length, theta), made
+    return Line(motion.p, motion.velocity, along, length, theta), members
 
 
 def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Real], Values]:
     """What is minimised and what is kept, by shape."""
 
     def values(shapes: Real) -> Values:
-        line, made = run(family, shapes, demands.span, nodes)
+        line, members = run(family, shapes, demands.span, nodes)
         turned = line.direction.conj()[:, None]
         with np.errstate(invalid="ignore", divide="ignore"):
             across = (line.p * turned).imag / line.length[:, None]
@@ -138,9 +138,9 @@ def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Rea
             positive = np.concatenate(
                 [
                     speed[:, ::SPARSER] - FORWARD,
-                    _transmission(made.linkage, line.theta[:, ::SPARSER]) - math.sin(demands.transmission) ** 2,
-                    _ratios(made.linkage, demands.link_ratio),
-                    made.spare,
+                    _transmission(members.linkage, line.theta[:, ::SPARSER]) - math.sin(demands.transmission) ** 2,
+                    _ratios(members.linkage, demands.link_ratio),
+                    members.spare,
                 ],
                 axis=1,
             )
@@ -153,9 +153,9 @@ def values_of(family: Family, demands: LineLimits, nodes: Real) -> Callable[[Rea
 
 def configuration(family: Family, shape: Real, span: float) -> tuple[Complex, Line]:
     """Joints O2, A, B, O4, P at the start of the range, and the motion of one shape in the family's frame."""
-    line, made = run(family, shape[None], span, chebyshev_nodes(SAMPLES))
-    at = positions(made.linkage, line.theta[:, :1], np.array([family.assembly]))
-    pivots = made.linkage.input_pivot[0], made.linkage.output_pivot[0]
+    line, members = run(family, shape[None], span, chebyshev_nodes(SAMPLES))
+    at = positions(members.linkage, line.theta[:, :1], np.array([family.assembly]))
+    pivots = members.linkage.input_pivot[0], members.linkage.output_pivot[0]
     return np.array([pivots[0], at.a[0, 0], at.b[0, 0], pivots[1], at.p[0, 0]]), Line(*(part[0] for part in line))
 
 

@@ -177,7 +177,7 @@ def _shapes(
 ) -> dict[Proportions, Real]:
     """The best of classical proportions, in its range and direction alone, and the best of all."""
     values, coarse = values_of(family, demands, nodes), values_of(family, demands, nodes[::COARSER])
-    found: dict[Proportions, Real] = {}
+    chosen: dict[Proportions, Real] = {}
     low, high = np.array(family.low), np.array(family.high)
     # More even proportions are more common among good ones: the power draws them towards the lower bounds.
     drawn = low + (high - low) * np.random.default_rng(problem.seed).random((DRAWN, len(low))) ** 1.5
@@ -196,15 +196,15 @@ def _shapes(
         if classical is not None:
             starts[0] = classical.shape
             if classical.violation <= SLACK:
-                found["classical"] = classical.shape
+                chosen["classical"] = classical.shape
     fits = [narrowest(coarse, start, *family.bounds(), half_limit=limit, arrived=NEARLY) for start in starts]
     sound = [fit for fit in fits if fit is not None and fit.violation <= SLACK]
     if sound:
         nearly = min(sound, key=lambda fit: fit.half_width).shape
         best = narrowest(values, nearly, *family.bounds(), half_limit=limit)
         if best is not None and best.violation <= SLACK:
-            found["optimal"] = best.shape
-    return found
+            chosen["optimal"] = best.shape
+    return chosen
 
 
 def _placed(
@@ -249,18 +249,18 @@ def _mechanism(
     joints = {name: start + along * (z.conjugate() if mirrored else z) for name, z in candidate.joints.items()}
     if candidate.exact is None:
         return fourbar_mechanism(FourbarConfiguration(*(joints[name] for name in ("O2", "A", "B", "O4", "P"))))
-    made = candidate.exact.mechanism
+    mechanism = candidate.exact.mechanism
     slides = []
-    for given in made.slides:
+    for given in mechanism.slides:
         # The slides pass through joints, and their lines along +y in the frame of P's line.
         turned = float(given.angle) - 0.5 * math.pi
         angle = (-turned if mirrored else turned) + math.radians(problem.direction)
         slides.append(slide(given.joint, given.link, joints[given.joint], angle))
     return ExactLineMechanism(
         type=candidate.family,
-        fixed_pivots={name: to_point(joints[name]) for name in made.links[GROUND]},
+        fixed_pivots={name: to_point(joints[name]) for name in mechanism.links[GROUND]},
         links=candidate.exact.links,
-        skeleton=skeleton(joints, made.links, slides=slides, input_link=made.input),
+        skeleton=skeleton(joints, mechanism.links, slides=slides, input_link=mechanism.input),
     )
 
 
