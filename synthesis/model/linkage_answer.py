@@ -6,11 +6,11 @@ The numbers of a mechanism are dimensions only; what was measured on it stands b
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Generic, Literal, TypeVar
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Verification, optional
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length
 
 _BODY_ANGLE = optional(
@@ -286,3 +286,27 @@ class LinkageDesign(Answer):
     targets: list[Target]
     verification: Verification
     metrics: LinkageMetrics
+
+
+class Front(Answer):
+    """The trade-off between designs as data: those that no other beats.
+
+    A design beats another that it is no worse than in any of the quantities and better than in one.
+    """
+
+    quantities: list[Literal["rms", "min_transmission_angle", "size"]] = Field(
+        description="What is weighed up: the error, less is better, as the metrics' rms of the kind; the least "
+        "transmission angle, more is better; the size, less is better."
+    )
+    designs: list[int] = Field(description="Indices of the designs that no other of the answer beats.")
+
+
+Linkage = TypeVar("Linkage", bound=Answer)
+
+
+class LinkageResult(Result[Linkage], Generic[Linkage]):
+    """The answer to a problem of linkages, with the trade-off among its designs."""
+
+    front: Front | None = optional(
+        "Which of the designs nothing beats in all of these quantities; left out for fewer than two."
+    )

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from synthesis.model.answer import Check, Verification
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.exhaustive import first_within, pareto, within_tolerance
+from synthesis.outcome.front import front_of
 from synthesis.outcome.ranking import KEYS, ranked
 from synthesis.outcome.sifting import DEFECTS, OUTRANKED, Sifting, reported
 
@@ -22,6 +23,7 @@ class Metrics(NamedTuple):
     quality: float
     size: float
     min_transmission_angle: float
+    rms_residual: float = 0.0
 
 
 class Design(NamedTuple):
@@ -35,7 +37,7 @@ class Design(NamedTuple):
 def design(broken: tuple[str, ...] = (), quality: float = 0.5, size: float = 1.0, residual: float = 0.0) -> Design:
     checks = [Check(name="drawn", passed=True), *(Check(name=name, passed=False) for name in broken)]
     verification = Verification(passed=not broken, checks=checks)
-    return Design(verification, Metrics(quality, size, 90.0 * quality), [SimpleNamespace(residual=residual)])
+    return Design(verification, Metrics(quality, size, 90.0 * quality, residual), [SimpleNamespace(residual=residual)])
 
 
 designs = st.builds(
@@ -167,3 +169,24 @@ def test_the_pareto_set_has_what_is_nearer_than_all_smaller_ones():
     by_size = [Sized(Fraction(error, 100), size) for size, error in enumerate((7, 9, 7, 4, 5, 4, 0))]
     assert [one.size for one in pareto(by_size, lambda one: one.error)] == [0, 3, 6]
     assert [one.size for one in first_within(by_size, 0.05, 2)] == [3, 4]
+
+
+@given(st.lists(designs, max_size=12))
+def test_the_front_is_what_no_other_sound_design_beats(found: list[Design]) -> None:
+    front = front_of(found)
+    sound = [n for n, one in enumerate(found) if one.verification.passed]
+    if front is None:
+        assert len(sound) < 2
+        return
+
+    def beats(one: Design, other: Design) -> bool:
+        pairs = [
+            (max(one.metrics.rms_residual, 1e-12), max(other.metrics.rms_residual, 1e-12)),
+            (other.metrics.min_transmission_angle, one.metrics.min_transmission_angle),
+            (one.metrics.size, other.metrics.size),
+        ]
+        return all(a <= b for a, b in pairs) and any(a < b for a, b in pairs)
+
+    assert front.quantities == ["rms", "min_transmission_angle", "size"]
+    assert front.designs == [n for n in sound if not any(beats(found[k], found[n]) for k in sound)]
+    assert front.designs
