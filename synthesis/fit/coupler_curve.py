@@ -85,6 +85,18 @@ def place(
 
 
 @njit(**OPTIONS)
+def trace(
+    family: int, x: Real, lengths: Real, sign: float, ratio: float, theta: Real, places: Complex, along: Complex
+) -> bool:
+    """P and the coupler's unit vector with the crank at each of several angles, written; False beyond a toggle."""
+    closes = True
+    for k in range(len(theta)):
+        here, places[k], along[k] = place(family, x, lengths, sign, ratio, theta[k])
+        closes = closes and here
+    return closes
+
+
+@njit(**OPTIONS)
 def _turn(f: complex, change: complex, per_turn: float) -> float:
     """The coupler's turn that keeps |F| while F changes otherwise."""
     return -(f.real * change.real + f.imag * change.imag) / per_turn

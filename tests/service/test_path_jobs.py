@@ -72,3 +72,31 @@ def test_a_nine_point_search_tells_its_progress_and_is_cancelled(server):
     server.reaches(job["id"], "cancelled", SOON_S)
     until(lambda: not workers <= set(server.workers()), SOON_S, "the end of its worker")
     server.reaches(server.post(problem=TIMED[0])["id"], "succeeded")
+
+
+def test_tolerances_of_points_hold_both_ways_and_the_front_is_told(client):
+    """An ellipse that no fourbar draws exactly, with tolerances that some keep."""
+    turns = [2.0 * math.pi * k / 16 for k in range(16)]
+    points = [{"x": 40.0 * math.cos(t), "y": 15.0 * math.sin(t), "tolerance": 1.0} for t in turns]
+    stated = {"kind": "path", "closed": True, "method": "least_squares", "points": points}
+    job = client.post("/v1/jobs", json={"problem": stated}, headers={"Prefer": "wait=60"}).json()
+    assert job["status"] == "succeeded", job["error"]
+    designs = job["result"]["designs"]
+    assert len(designs) > 1
+    for design in designs:
+        checks = {check["name"]: check for check in design["verification"]["checks"]}
+        assert checks["within_tolerance"]["value"] <= 1.0
+        assert checks["curve_within_tolerance"]["value"] <= 1.0
+        assert design["metrics"]["max_distance"] <= 1.0
+        assert design["metrics"]["curve_distance"] < 2.5
+    front = job["result"]["front"]
+    assert front["quantities"] == ["rms", "min_transmission_angle", "size"]
+    assert set(front["designs"]) <= set(range(len(designs)))
+
+
+def test_tolerances_for_some_points_alone_are_refused(client):
+    points = [{"x": float(k), "y": float(k * k)} for k in range(6)]
+    points[2]["tolerance"] = 0.5
+    answer = client.post("/v1/jobs", json={"problem": {"kind": "path", "method": "least_squares", "points": points}})
+    assert answer.status_code == 422
+    assert [error["path"] for error in answer.json()["errors"]] == ["/problem/points/0/tolerance"]

@@ -25,10 +25,10 @@ from synthesis.fit.chart import (
 from synthesis.fit.coupler_curve import place, place_with_slopes, sweep
 from synthesis.kinds.path.curve_candidates import draw
 from synthesis.kinds.path.curve_descent import descend
-from synthesis.kinds.path.curve_match import with_cognates
+from synthesis.kinds.path.curve_fits import with_cognates
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import SHAPE_POINTS, equal_steps
-from synthesis.kinds.path.verify_curve import verify_curve
+from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
@@ -174,7 +174,7 @@ def test_cognates_draw_the_same_curve():
     assert len(with_cognates(joints)) == 6
     closed = 0
     for one in with_cognates(joints):
-        design = verify_curve(statement(target), fourbar_mechanism(one))
+        design = verify_path(statement(target), fourbar_mechanism(one))
         if design is not None and design.verification.passed:
             closed += 1
             assert design.metrics.max_distance < 1e-9
@@ -187,7 +187,7 @@ def test_distances_both_ways_are_those_of_brute_force():
     other = Fourbar(3.0 + 2.0j, 10.0 + 1.0j, 2.0, 6.0, 5.0, 3.1 + 2.4j)
     at = positions(other, 0.0, OPEN)
     joints = FourbarConfiguration(*map(complex, (other.input_pivot, at.a, at.b, other.output_pivot, at.p)))
-    metrics = verify_curve(statement(target), fourbar_mechanism(joints)).metrics
+    metrics = verify_path(statement(target), fourbar_mechanism(joints)).metrics
     dense = curve_of(other, 20000)
     near = np.array([np.abs(dense - z).min() for z in target])
     assert metrics.rms_distance == pytest.approx(math.sqrt(np.mean(near**2)), rel=1e-4)

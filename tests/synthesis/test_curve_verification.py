@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
-from synthesis.kinds.path.verify_curve import BULGE, astray, followed, verify_curve
+from synthesis.kinds.path.astray import BULGE, astray, followed
+from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.proof.closer import least_near
 from synthesis.registry import parse_problem
@@ -32,7 +33,7 @@ def test_a_linkage_near_a_change_point_does_not_whip_out_unseen(gap):
     joints = FourbarConfiguration(0j, complex(stands.a), complex(stands.b), 4.0 + 0.0j, complex(stands.p))
     points = [{"x": float(z.real), "y": float(z.imag)} for z in target]
     statement = {"kind": "path", "method": "curve_match", "closed": True, "points": points}
-    design = verify_curve(parse_problem(statement), fourbar_mechanism(joints))
+    design = verify_path(parse_problem(statement), fourbar_mechanism(joints))
     small = np.geomspace(1e-9, 0.3, 2000)
     whip = positions(fourbar, np.concatenate([-small, small]), OPEN).p
     farthest = max(distance_from(target, z) for z in whip)

@@ -1,7 +1,12 @@
-"""Verification of a linkage that draws a whole curve: it is driven over it, and distances are measured both ways.
+"""How far a traced curve goes from the course of the points that it is to draw, over the whole way.
 
-From the target to the curve: the input is looked for at which P comes nearest to each point, in order. From the curve
-to the target: P's distance from the polygon through the points, over all of the curve that is used.
+A linkage that passes all points may whip out between two of them. Over the way that is used (a whole turn for a closed
+curve, from the first point to the last for an open one) every place of the traced curve is compared with the course:
+
+* with the straight lines through the points, which gives the distance;
+* with these lines and what a curve may bulge from them, :data:`BULGE` of their lengths, and the miss at the points
+  themselves, which gives the excursion: what no curve that the points tell of would do;
+* where points have tolerances, with the lines, each as wide as the smooth curve through the points bulges from it.
 """
 
 from __future__ import annotations
@@ -11,14 +16,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
-from kinematics.linkage.fourbar import positions
-from synthesis.kinds.path.design import PathDesign
-from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.verification import verify_path
-from synthesis.model.linkage_answer import FourbarMechanism
-from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.closer import least_near
 
 Real = NDArray[np.float64]
@@ -35,34 +36,51 @@ STEP, HALVINGS = 0.01, 40
 """Inputs are put between two whose places are farther apart than this share of the curve's size, so many times at most:
 near a change point a linkage runs over much of its curve in next to no time."""
 
-ROWS = 256
-"""Places that are compared with all sides of the polygon at a time: some megabytes."""
-
-
-def verify_curve(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign | None:
-    """Drive a fourbar over a curve and measure it; as :func:`~synthesis.kinds.path.verification.verify_path`."""
-    design = verify_path(problem, mechanism)
-    if design is None:
-        return None
-    points = np.array([point.point for point in problem.points])
-    fourbar = driven_fourbar(mechanism)
-    inputs = np.radians([target.at for target in design.targets])
-    low, high = float(inputs.min()), float(inputs.max())
-    if problem.closed and design.metrics.full_rotation:
-        low, high = float(inputs[0]), float(inputs[0]) + 2.0 * np.pi
-
-    def place(at: Real) -> Complex:
-        return np.asarray(positions(fourbar.linkage, at, fourbar.assembly).p)
-
-    gone = astray(place, (low, high), points, problem.closed, design.metrics.max_distance)
-    return design.model_copy(update={"metrics": design.metrics.model_copy(update=gone._asdict())})
+SMOOTH_STEPS = 32
+"""Places between two points at which the smooth curve's distance from the straight line is looked for."""
 
 
 class Astray(NamedTuple):
-    """How far a traced curve goes from what it is to draw: at most, and beyond what the points allow."""
+    """How far a traced curve goes from the lines through the points: at most, and beyond what the points allow."""
 
     curve_distance: float
     excursion: float
+
+
+class Course(NamedTuple):
+    """Straight lines from point to point: where each starts, its vector, and what is allowed off it, shapes (n,)."""
+
+    starts: Complex
+    sides: Complex
+    allowed: Real
+
+
+def course_of(points: Complex, closed: bool, missed: float) -> Course:
+    """The lines through points, that miss them by ``missed`` and bulge by :data:`BULGE` allowed; closed or a chain."""
+    starts = points if closed else points[:-1]
+    sides = (np.roll(points, -1) if closed else points[1:]) - starts
+    return Course(starts, sides, missed + BULGE * np.abs(sides))
+
+
+def tolerated_course(points: Complex, closed: bool, tolerances: Real) -> tuple[Course, Real]:
+    """The lines through points with what the smooth curve through them bulges allowed, and the lines' tolerances.
+
+    The smooth curve is the cubic spline over the chords; no bulge is above :data:`BULGE`. A line has the greater of the
+    tolerances at its ends.
+    """
+    lines = course_of(points, closed, 0.0)
+    whole = np.append(points, points[0]) if closed else points
+    knots, first = np.unique(np.concatenate([[0.0], np.cumsum(np.abs(np.diff(whole)))]), return_index=True)
+    corners = whole[first]
+    if closed:
+        corners[-1] = corners[0]
+    spline = CubicSpline(knots, corners, bc_type="periodic" if closed else "not-a-knot")
+    lengths = np.abs(lines.sides)
+    begin = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    smooth = spline(begin[:, None] + lengths[:, None] * np.linspace(0.0, 1.0, SMOOTH_STEPS))
+    bulges = _bulges(smooth, lines.starts, lines.sides)
+    ends = np.append(tolerances, tolerances[0]) if closed else tolerances
+    return lines._replace(allowed=np.minimum(bulges, lines.allowed)), np.maximum(ends[1:], ends[:-1])
 
 
 def astray(
@@ -89,18 +107,36 @@ def astray(
         Both in the unit of the points.
     """
     inputs, places = followed(place, *used)
-    off, beyond = distances(places, points, closed, missed)
+    course = course_of(points, closed, missed)
+    off, beyond = distances(places, course)
     if np.isnan(off).all():
         return Astray(missed, 0.0)
 
     def near(which: int, values: Real) -> tuple[float, float]:
-        at, least = least_near(lambda closer: -distances(place(closer), points, closed, missed)[which], inputs, -values)
+        at, least = least_near(lambda closer: -distances(place(closer), course)[which], inputs, -values)
         return at, -least
 
     at, farthest = near(0, off)
     _, excursion = near(1, beyond)
-    _, there = distances(place(np.array([at])), points, closed, missed)
+    _, there = distances(place(np.array([at])), course)
     return Astray(farthest, max(excursion, float(there[0])))
+
+
+def tolerance_used(
+    place: Callable[[Real], Complex], used: tuple[float, float], points: Complex, closed: bool, tolerances: Real
+) -> float:
+    """The greatest share of its tolerance that a traced curve uses anywhere; see :func:`tolerated_course`.
+
+    Parameters are those of :func:`astray`, and the tolerances of the points, shape (n,).
+    """
+    lines, widths = tolerated_course(points, closed, tolerances)
+    inputs, places = followed(place, *used)
+
+    def shares(at: Complex) -> Real:
+        return -_shares(at, lines.starts, lines.sides, lines.allowed, widths)
+
+    _, least = least_near(lambda closer: shares(place(closer)), inputs, shares(places))
+    return 0.0 if math.isnan(least) else -least
 
 
 def followed(place: Callable[[Real], Complex], low: float, high: float) -> tuple[Real, Complex]:
@@ -123,23 +159,45 @@ def followed(place: Callable[[Real], Complex], low: float, high: float) -> tuple
     return inputs, places
 
 
-def distances(places: Complex, points: Complex, closed: bool, missed: float) -> tuple[Real, Real]:
-    """Distances of places from the polygon (closed) or chain of straight lines through points; NaN for no place.
+def distances(places: Complex, course: Course) -> tuple[Real, Real]:
+    """Distances of places from the lines of a course; and what they are beyond what is allowed off the line for which
+    this is least, at least 0. NaN for no place."""
+    unit = np.ones(len(course.starts))
+    off = _shares(places, course.starts, course.sides, np.zeros(len(course.starts)), unit)
+    return off, _shares(places, course.starts, course.sides, course.allowed, unit)
 
-    The second is what a distance is beyond ``missed``, by which the points themselves are missed, and :data:`BULGE` of
-    the length of the side that is nearest; at least 0.
-    """
-    ends = np.roll(points, -1) if closed else points[1:]
-    starts = points if closed else points[:-1]
-    sides = ends - starts
-    squares = np.maximum(sides.real**2 + sides.imag**2, np.finfo(float).tiny)
-    allowed = missed + BULGE * np.abs(sides)
-    nearest, beyond = np.empty(len(places)), np.empty(len(places))
-    for first in range(0, len(places), ROWS):
-        rows = slice(first, min(first + ROWS, len(places)))
-        gaps = places[rows, None] - starts
-        share = np.clip((gaps.real * sides.real + gaps.imag * sides.imag) / squares, 0.0, 1.0)
-        off = np.abs(gaps - share * sides)
-        nearest[rows] = off.min(axis=1)
-        beyond[rows] = np.maximum(off - allowed, 0.0).min(axis=1)
-    return nearest, beyond
+
+@njit(cache=True, nogil=True)
+def _off(place: complex, start: complex, side: complex) -> float:
+    """Distance of a place from a line."""
+    gap = place - start
+    square = side.real * side.real + side.imag * side.imag
+    along = gap.real * side.real + gap.imag * side.imag
+    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
+    x, y = gap.real - share * side.real, gap.imag - share * side.imag
+    return math.sqrt(x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
+def _bulges(smooth: Complex, starts: Complex, sides: Complex) -> Real:
+    """The greatest distance from each line of places on the smooth curve over it, shape (lines, places)."""
+    out = np.zeros(len(starts))
+    for k in range(len(starts)):
+        for place in smooth[k]:
+            out[k] = max(out[k], _off(place, starts[k], sides[k]))
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _shares(places: Complex, starts: Complex, sides: Complex, allowed: Real, widths: Real) -> Real:
+    """Of each place the least over all lines of its distance beyond what is allowed, over the line's width."""
+    out = np.empty(len(places))
+    for i in range(len(places)):
+        if math.isnan(places[i].real) or math.isnan(places[i].imag):
+            out[i] = math.nan
+            continue
+        least = math.inf
+        for k in range(len(starts)):
+            least = min(least, (_off(places[i], starts[k], sides[k]) - allowed[k]) / widths[k])
+        out[i] = max(least, 0.0)
+    return out

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, natural
@@ -28,10 +29,12 @@ from synthesis.fit.demands import (
     margins,
 )
 from synthesis.kinds.path.curve_descent import Descent
-from synthesis.kinds.path.limits import LIMIT_MARGIN, LIMIT_WEIGHT, MIN_GRASHOF, ORDERED, TIMED, setting_of
+from synthesis.kinds.path.limits import LIMIT_MARGIN, LIMIT_WEIGHT, MIN_GRASHOF, ORDERED, SETTING, TIMED, setting_of
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.levenberg import descend_each
+from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
@@ -43,9 +46,11 @@ LENGTH_TOLERANCE = 1e-9
 REGION_MARGIN = 1e-7
 """Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
 
-USABLE_TRANSMISSION = 25.0
-"""Transmission angle, degrees, with which designs are offered beside the nearest where none is demanded: fits tend to
-change points, where it vanishes."""
+SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
+"""Weight of demands, in the target's unit, in descents from the shape library, and the tolerance of these."""
+
+PORTION = 4
+"""Number of such descents that a thread takes at a time."""
 
 
 def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
@@ -74,12 +79,11 @@ def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
     return np.where(np.isnan(given), within + np.stack([margin, -margin], axis=1), given)
 
 
-def usable(setting: Real) -> Real | None:
-    """The same with a transmission angle that practice asks for; None where one is stated."""
-    if math.isfinite(setting[COSINE]):
-        return None
+def usable(setting: Real, degrees: float, ratio: float) -> Real:
+    """The same with a least transmission angle and a greatest link ratio."""
     stated = setting.copy()
-    stated[COSINE] = math.cos(math.radians(USABLE_TRANSMISSION))
+    stated[COSINE] = math.cos(math.radians(degrees))
+    stated[RATIO] = min(stated[RATIO], ratio)
     return stated
 
 
@@ -92,16 +96,16 @@ def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> boo
 
 
 def descend_within(
-    family: int, free: Descent, sign: float, points: Complex, weights: Real, setting: Real
-) -> Descent | None:
-    """The fit nearest to a free one that keeps all demands, itself where it does; None where none was reached.
+    family: int, x: Real, theta: Real, sign: float, points: Complex, weights: Real, setting: Real
+) -> tuple[Real, Real] | None:
+    """Unknowns and crank angles of the fit nearest to a given one that keeps all demands; None where none was reached.
 
     Parameters
     ----------
     family : int
         A family of fourbars.
-    free : Descent
-        One fit, shapes (m,), (points,), ().
+    x, theta : float, shapes (m,), (points,)
+        The fit to begin with, and its crank angles at the points.
     sign : float
         Assembly.
     points, weights : complex and float, shape (points,)
@@ -109,27 +113,89 @@ def descend_within(
     setting : float
         See :func:`curve_setting`.
     """
-    demanded = setting.copy()
-    demanded[FAMILY], demanded[SIGN] = family, sign
-    n, x = len(points), np.array(free.x)
+    demanded = _demanded(family, sign, setting)
+    n, x = len(points), np.array(x)
     state = np.zeros(3 * n + LIMITS)
-    state[:n] = free.theta - x[2]
-    if _kept(x, state[[0, n - 1]], demanded):
-        return free
-    # Under demands fits run to change points, where the crank would no longer turn through.
-    demanded[CHANGE_POINT] = MIN_GRASHOF
-    rows = np.stack([points.real, points.imag, np.zeros(n), np.sqrt(weights)], axis=1)
+    state[:n] = theta - x[2]
     ended = np.empty(1)
+    rows = _rows(points, weights)
     status = hold(path_rows, x, rows, demanded, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE):
         return None
-    return Descent(x, state[:n] + x[2], 2.0 * ended[0])
+    return x, state[:n] + x[2]
 
 
-def _kept(x: Real, ends: Real, setting: Real) -> bool:
-    """Whether all demands hold without a descent."""
+def descend_softly(
+    family: int, x: Real, theta: Real, sign: Real, points: Complex, setting: Real, steps: int
+) -> Descent:
+    """Ends of some steps from every start, shapes (n, m), (n, points), (n,), with demands as weighted residuals."""
+    n = len(points)
+    starts, states = np.array(x), np.zeros((len(x), 3 * n + LIMITS))
+    states[:, :n] = theta - starts[:, 2, None]
+    multipliers = np.zeros(LIMITS + 1)
+    multipliers[LIMITS] = SOFT_WEIGHT
+    costs, statuses = np.full(len(x), math.inf), np.zeros(len(x), np.int64)
+    rows, most = _rows(points, np.ones(n)), 2 * n + LIMITS
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(starts))):
+            one = slice(k, k + 1)
+            demanded = _demanded(family, float(sign[k]), setting)
+            descend_each(
+                path_rows, starts[one], rows, demanded, multipliers, states[one], most, steps, SOFT_TOLERANCE,
+                costs[one], statuses[one],
+            )  # fmt: skip
+
+    in_portions(work, len(starts), PORTION)
+    return Descent(starts, states[:, :n] + starts[:, 2, None], costs)
+
+
+def broken(family: int, x: Real, theta: Real, sign: float, setting: Real) -> float:
+    """By how much a fit breaks the demand that it breaks most, in the units of margins; 0 where it keeps all."""
     lengths, slopes = np.empty(4), np.empty((4, 4))
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, len(x)))
-    natural(int(setting[FAMILY]), x, lengths, slopes)
-    margins(x, lengths, slopes, ends, setting, values, gradients)
-    return bool(values.min() >= -LIMIT_MARGIN)
+    natural(family, x, lengths, slopes)
+    stated = setting.copy()
+    stated[FAMILY], stated[SIGN] = family, sign
+    margins(x, lengths, slopes, theta[[0, -1]] - x[2], stated, values, gradients)
+    values[LIMITS - EQUATIONS :] = -np.abs(values[LIMITS - EQUATIONS :])
+    values[np.isinf(values)] = 0.0
+    worst = -float(values.min())
+    return worst if worst > LIMIT_MARGIN else 0.0
+
+
+def shapes_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
+    """Which of many linkages (n, m), of any size and place, keep the demands that their shape alone decides.
+
+    These are the link ratio and, where the crank turns through, the transmission angle.
+    """
+    shape = np.full(SETTING, math.inf)
+    shape[FAMILY], shape[SIGN], shape[WHOLE], shape[LINKS] = family, 1.0, setting[WHOLE], 0.0
+    shape[CHANGE_POINT], shape[GIVEN : GIVEN + 4] = 0.0, math.nan
+    shape[RATIO] = setting[RATIO]
+    if setting[WHOLE] > 0.0:
+        shape[COSINE] = setting[COSINE]
+    return _all_kept(family, x, shape)
+
+
+@njit(cache=True, nogil=True)
+def _all_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
+    lengths, slopes = np.empty(4), np.empty((4, 4))
+    values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
+    kept = np.empty(len(x), np.bool_)
+    for i in range(len(x)):
+        natural(family, x[i], lengths, slopes)
+        margins(x[i], lengths, slopes, np.zeros(2), setting, values, gradients)
+        kept[i] = values.min() >= 0.0
+    return kept
+
+
+def _demanded(family: int, sign: float, setting: Real) -> Real:
+    """Demands of one family and assembly; fits under them run to change points, where no crank would turn through."""
+    demanded = setting.copy()
+    demanded[FAMILY], demanded[SIGN], demanded[CHANGE_POINT] = family, sign, MIN_GRASHOF
+    return demanded
+
+
+def _rows(points: Complex, weights: Real) -> Real:
+    return np.stack([points.real, points.imag, np.zeros(len(points)), np.sqrt(weights)], axis=1)

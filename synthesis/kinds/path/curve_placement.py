@@ -56,11 +56,12 @@ def placement_of(problem: PathProblem, joints: FourbarConfiguration) -> tuple[co
 
 
 def moved(problem: PathProblem, alpha: complex, beta: complex) -> PathProblem:
-    """The problem with its curve under z → αz + β."""
+    """The problem with its curve under z → αz + β; tolerances are sized with it."""
     points = []
     for point in problem.points:
         z = alpha * point.point + beta
-        points.append(point.model_copy(update={"x": z.real, "y": z.imag}))
+        width = None if point.tolerance is None else abs(alpha) * point.tolerance
+        points.append(point.model_copy(update={"x": z.real, "y": z.imag, "tolerance": width}))
     return problem.model_copy(update={"points": points})
 
 

@@ -205,6 +205,21 @@ def _alike_open(curves: Complex, ring: bool, target: Complex) -> _Likeness:
     return _Likeness(np.minimum(rho, 1.0), where)
 
 
+class Compared(NamedTuple):
+    """Candidates of one family that were compared with a target: how like each is, and where the target lies on it.
+
+    The target (equal steps, in its own unit) and whether it is closed stand beside them.
+    """
+
+    family: int
+    drawn: Draw
+    ratio: float
+    likeness: _Likeness
+    swept: int
+    target: Complex
+    closed: bool
+
+
 def alike(
     family: int,
     target: Complex,
@@ -217,7 +232,21 @@ def alike(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Starts:
-    """The candidates of a family whose curves are most like the target, placed on it.
+    """The ``keep`` most alike, as :func:`most_alike`, of candidates compared as by :func:`compared`."""
+    return most_alike(compared(family, target, closed, count, ratio=ratio, seed=seed, progress=progress), keep, longest)
+
+
+def compared(
+    family: int,
+    target: Complex,
+    closed: bool,
+    count: int,
+    *,
+    ratio: float = 0.0,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> Compared:
+    """Candidates of a family whose curves were compared with the target.
 
     Parameters
     ----------
@@ -227,10 +256,10 @@ def alike(
         Equal steps along the target.
     closed : bool
         Whether it is a closed curve; an open one is compared with windows of the candidates.
-    count, keep : int
-        How many candidates are drawn, and how many at most come back.
-    ratio, longest : float
-        Gear ratio; longest link, in the target's units, of what is kept.
+    count : int
+        How many candidates are drawn.
+    ratio : float
+        Gear ratio.
     seed : int
         Of the draw.
     progress : callable, optional
@@ -263,12 +292,31 @@ def alike(
                 swept += len(chosen) * (1 if closed else len(WINDOW_LENGTHS) * WINDOW_STARTS)
             if progress is not None:
                 progress(min(first + CHUNK, count) / count)
+    return Compared(family, drawn, ratio, _Likeness(rho, where), swept, target, closed)
+
+
+def most_alike(of: Compared, keep: int, longest: float = math.inf, suited: Mask | None = None) -> Starts:
+    """The candidates whose curves are most like the target, placed on it.
+
+    Parameters
+    ----------
+    of : Compared
+        The candidates.
+    keep : int
+        How many at most come back.
+    longest : float
+        Longest link, in the target's units, of what is kept.
+    suited : bool, shape (candidates,), optional
+        Which of the candidates may be chosen.
+    """
+    family, drawn, target = of.family, of.drawn, of.target
+    rho = of.likeness.rho if suited is None else np.where(suited, of.likeness.rho, -1.0)
     order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
     order = order[rho[order] > 0.0]
-    x, theta, sign = _placed(family, drawn, order, where[order], target, closed, ratio)
+    x, theta, sign = _placed(family, drawn, order, of.likeness.where[order], target, of.closed, of.ratio)
     chosen = _different(x, theta, np.ptp(target.real) + np.ptp(target.imag), longest, family, keep)
     unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[chosen]] ** 2))
-    return Starts(family, x[chosen], sign[chosen], theta[chosen], unlike, swept)
+    return Starts(family, x[chosen], sign[chosen], theta[chosen], unlike, of.swept)
 
 
 def _swept(drawn: Draw, family: int, rows: Any, ratio: float) -> tuple[Complex, Real, Mask, Mask]:

@@ -25,12 +25,16 @@ SMOOTH_POINTS = 240
 
 
 class Target:
-    """The target, moved to the origin and scaled to a unit diagonal of the box around it."""
+    """The target, moved to the origin and scaled to a unit diagonal of the box around it.
+
+    Where points have tolerances the squares of their distances weigh as the inverse squares of these, 1 for the least.
+    """
 
     def __init__(self, problem: PathProblem) -> None:
         given = np.array([point.point for point in problem.points])
+        widths = np.ones(len(given)) if problem.tolerances is None else problem.tolerances
         if problem.closed and len(given) > 3 and given[-1] == given[0]:
-            given = given[:-1]
+            given, widths = given[:-1], widths[:-1]
         self.closed = problem.closed
         self.centre = complex(0.5 * (given.real.min() + given.real.max()), 0.5 * (given.imag.min() + given.imag.max()))
         self.size = math.hypot(float(np.ptp(given.real)), float(np.ptp(given.imag)))
@@ -39,7 +43,7 @@ class Target:
         few = len(given) < FEW_POINTS
         self.fitted = np.concatenate([self.points, self.steps]) if few else self.points
         fill = FILL * len(given) / SHAPE_POINTS
-        self.weights = np.concatenate([np.ones(len(given)), np.full(SHAPE_POINTS if few else 0, fill)])
+        self.weights = np.concatenate([(widths.min() / widths) ** 2, np.full(SHAPE_POINTS if few else 0, fill)])
 
     def angles(self, theta: Real) -> Real:
         """Crank angles at the points to be fitted, from those at equal steps along the target."""

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, optional
+from synthesis.model.answer import Answer, Point, optional
 from synthesis.model.dimension import Angle, Area, Length
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMetrics
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMetrics, LinkageResult
 
 
 class CognateTriples(Answer):
@@ -29,11 +29,11 @@ class PathMetrics(LinkageMetrics):
     rms_distance: Length = Field(description="Root mean square of these distances, length units.")
     max_distance: Length = Field(description="The largest of them, length units.")
     curve_distance: Length | None = optional(
-        "For curves that are matched as a whole: the largest distance of the traced curve from the "
-        "straight lines through the points, length units."
+        "For fits: the largest distance of the traced curve from the straight lines through the points, over a whole "
+        "turn where these are closed, else from the first point to the last; length units."
     )
     excursion: Length | None = optional(
-        "How much farther the traced curve goes from these lines than max_distance and what a curve may "
+        "For fits: how much farther the traced curve goes from these lines than max_distance and what a curve may "
         "bulge between points, a quarter of their distance; length units."
     )
 
@@ -104,7 +104,7 @@ class CurveSweep(Answer):
     refined: int = Field(description="Linkages that were refined by least squares.")
 
 
-class PathResult(Result[PathDesign]):
+class PathResult(LinkageResult[PathDesign]):
     """Linkages whose coupler point goes through the points."""
 
     triples: CognateTriples | None = optional(

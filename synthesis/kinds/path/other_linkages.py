@@ -24,11 +24,13 @@ from synthesis.fit.chart import GEARED_FIVEBAR, SLIDER_CRANK, SLIDER_ROCKER, nat
 from synthesis.fit.coupler_curve import place
 from synthesis.kinds.path.curve_candidates import cycle_of
 from synthesis.kinds.path.curve_descent import descend
+from synthesis.kinds.path.curve_fits import with_cognates
 from synthesis.kinds.path.curve_limits import pivot_limits
-from synthesis.kinds.path.curve_match import ranked_by_nearness, solve_curve_match, with_cognates
+from synthesis.kinds.path.curve_match import solve_curve_match
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.nearness import FAR, ranked_by_nearness, steady
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_traced import verify_traced
 from synthesis.model.kind import Progress
@@ -236,6 +238,8 @@ def _answer(problem: PathProblem, mechanisms: list[Mechanism], progress: Progres
     sifting.sift(
         reported(mechanisms, progress, (0.7, 1.0), "{done} of {all} linkages driven"), partial(verify_traced, problem)
     )
+    if problem.fitted:
+        sifting.withdraw(steady(sifting.passed, problem), FAR)
     progress(1.0, "verified")
     name = problem.mechanism.replace("_", "-" if problem.mechanism == "slider_crank" else " ") + "s"
     text = f"{sifting.accepted} of {sifting.candidates} {name} that were fitted satisfy all demands."

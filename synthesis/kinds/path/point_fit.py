@@ -1,9 +1,9 @@
 """Fourbars fitted to points by least squares: any number of points, with prescribed or free timing, within limits.
 
 A population of random starts descends in rounds, and only the best go on from one round to the next. The best that
-differ are perturbed and descend again, are then brought to minima that keep the client's limits to rounding, and are
-driven and verified like any other linkage. The Grashof class holds by the choice of unknowns
-(:mod:`synthesis.fit.chart`), and limits are met by multipliers (:mod:`synthesis.fit.demands`): neither is a penalty.
+differ are perturbed and descend again, and are then brought to minima that keep the client's limits to rounding. The
+Grashof class holds by the choice of unknowns (:mod:`synthesis.fit.chart`), and limits are met by multipliers
+(:mod:`synthesis.fit.demands`): neither is a penalty.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
 from synthesis.kinds.path.curve_families import joints_of
-from synthesis.kinds.path.design import PathDesign, PathResult
-from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.limits import LIMIT_WEIGHT, Usable, setting_of
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
@@ -42,8 +40,7 @@ from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
-from synthesis.outcome.ranking import distinct, ranked
-from synthesis.outcome.sifting import reported
+from synthesis.outcome.ranking import distinct
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -91,9 +88,6 @@ RETURNS, AGAIN = 1, 10
 MANY, OF_MANY = 100, 6
 """With more points than the first, at most so many minima are refined and verified: each takes longer."""
 
-MIN_DRIVEN = 12
-"""Linkages that are verified at least, however few are wanted."""
-
 MAX_EXPLORED = 48
 """Greatest number of points in the descents of the population: of more, evenly chosen ones."""
 
@@ -102,9 +96,6 @@ SOFT_WEIGHT = 10.0
 
 SAME_FIT = 1e-2
 """Linkages whose joints agree to this share of the task's size are one answer; the nearest is kept."""
-
-EXACT_TOLERANCE = 1e-9
-"""Root mean square distance, in task sizes, below which fits are equally near."""
 
 _FAMILIES = {
     "double_crank": DOUBLE_CRANK,
@@ -115,7 +106,10 @@ _FAMILIES = {
 
 
 class PointTask(NamedTuple):
-    """Points in task coordinates: rows (x, y, crank angle in radians, 1), the origin's place and the unit's length."""
+    """Points in task coordinates: rows (x, y, crank angle in radians, weight); the origin's place, the unit's length.
+
+    Where points have tolerances a weight is the inverse of one, 1 for the least.
+    """
 
     rows: Real
     origin: complex
@@ -143,9 +137,9 @@ def point_task(problem: PathProblem) -> PointTask:
     turns = np.array(problem.crank_turns) if problem.prescribed else np.zeros(len(z))
     if problem.prescribed and problem.crank_phase != "free":
         turns = turns + math.radians(math.remainder(problem.points[0].crank_angle or 0.0, 360.0))
-    return PointTask(
-        np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, np.ones(len(z))], axis=1)), origin, size
-    )
+    widths = problem.tolerances
+    weights = np.ones(len(z)) if widths is None else widths.min() / widths
+    return PointTask(np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, weights], axis=1)), origin, size)
 
 
 def families(problem: PathProblem) -> list[int]:
@@ -155,25 +149,6 @@ def families(problem: PathProblem) -> list[int]:
         return [_FAMILIES[wanted]]
     turning = problem.constraints.full_rotation or problem.closed
     return [CRANK_ROCKER, DOUBLE_CRANK] if turning else [CRANK_ROCKER, DOUBLE_CRANK, FOURBAR]
-
-
-def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
-    """Fit fourbars to the points of a problem."""
-    task = point_task(problem)
-
-    def verified(candidate: Candidate) -> PathDesign | None:
-        mechanism = mechanism_of(candidate, task)
-        return None if mechanism is None else verify_path(problem, mechanism)
-
-    fits = _Fits(problem)
-    minima = fitted(problem, task, np.random.default_rng(problem.seed), progress)
-    fits.sift(
-        reported(minima, progress, (0.9, 1.0), "driving linkage {next} of {all}"),
-        verified,
-        enough=max(2 * problem.max_designs, MIN_DRIVEN),
-    )
-    progress(1.0, "verified")
-    return fits.result("least_squares", complete=False, summary=fits.summary())
 
 
 def warm_up() -> None:
@@ -432,28 +407,3 @@ def mechanism_of(candidate: Candidate, task: PointTask) -> FourbarMechanism | No
     """A candidate's dimensions in the problem's coordinates."""
     configuration = configuration_of(candidate, task)
     return None if configuration is None else fourbar_mechanism(configuration)
-
-
-class _Fits(Harvest):
-    """What becomes of the fits."""
-
-    def different(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Nearest first unless another order is asked for; among answers that are equally near, quality decides."""
-        nearest = {"quality": lambda design: max(design.metrics.rms_residual, EXACT_TOLERANCE)}
-        return ranked(super().different(designs), self.problem.rank_by, nearest)
-
-    def summary(self) -> str:
-        """The answer in words."""
-        n, unit = len(self.problem.points), self.problem.length_unit
-        timing = "at their crank angles" if self.problem.prescribed else "in order"
-        if self.passed:
-            best = min(self.passed, key=lambda d: d.metrics.sum_of_squares).metrics
-            text = (
-                f"{len(self.passed)} of {self.candidates} fitted linkages satisfy all demands; the best passes the {n} "
-                f"points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
-                f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
-            )
-        else:
-            rejected = self.listed() or "none"
-            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
-        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."

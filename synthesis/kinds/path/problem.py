@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Annotated, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import LENGTH
@@ -20,8 +21,11 @@ from synthesis.model.statement import (
     Interval,
     Number,
     PartialPoint,
+    PositiveLength,
     Statement,
 )
+
+Real = NDArray[np.float64]
 
 EQUAL_POINTS = 1e-9
 """Points closer than this share of the coordinates' size count as equal."""
@@ -50,6 +54,10 @@ class PathPoint(Statement):
     y: Coordinate
     crank_angle: Degrees | None = Field(
         default=None, description="Angle of the crank where P is here, degrees; for prescribed timing."
+    )
+    tolerance: PositiveLength | None = Field(
+        default=None,
+        description="How far P may pass this point by, and the curve its course beside it; for all points, or none.",
     )
 
     @property
@@ -237,8 +245,14 @@ class PathProblem(LinkageProblem):
     def fitted(self) -> bool:
         """Whether the points are met as nearly as can be, and not exactly."""
         if self.method == "auto":
-            return len(self.points) > self.most_exact
+            return len(self.points) > self.most_exact or self.tolerances is not None
         return self.method in ("least_squares", "curve_match")
+
+    @property
+    def tolerances(self) -> Real | None:
+        """How far the curve may be from each point, shape (points,), in length units; None where nothing is stated."""
+        stated = [point.tolerance for point in self.points if point.tolerance is not None]
+        return np.array(stated) if len(stated) == len(self.points) else None
 
     @property
     def matched(self) -> bool:
@@ -277,6 +291,7 @@ class PathProblem(LinkageProblem):
             *self._timing(),
             *self._equal_points(),
             *self._method(),
+            *self._tolerances(),
             *self._pivots(),
             *self._mechanism(),
             *self._closed(),
@@ -363,6 +378,17 @@ class PathProblem(LinkageProblem):
             detail = f"{self.most_exact} points at most can be met exactly {timing} here; fit them by least_squares"
             return [Contradiction("/method", detail)]
         return []
+
+    def _tolerances(self) -> list[Contradiction]:
+        given = [k for k, point in enumerate(self.points) if point.tolerance is not None]
+        if not given:
+            return []
+        if self.method == "exact":
+            detail = "points that are met exactly have none; fit them by least_squares, or leave the tolerances out"
+            return [Contradiction(f"/points/{given[0]}/tolerance", detail)]
+        open_ones = sorted(set(range(len(self.points))) - set(given))
+        detail = "missing, though others have one: state it for all points, or for none"
+        return [Contradiction(f"/points/{k}/tolerance", detail) for k in open_ones[:1]]
 
     def _pivots(self) -> list[Contradiction]:
         faults = []

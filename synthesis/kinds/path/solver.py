@@ -15,6 +15,7 @@ from scipy.interpolate import CubicSpline
 from synthesis.kinds.path import curve_match
 from synthesis.kinds.path.design import CognateTriples, PathResult
 from synthesis.kinds.path.family_search import solve_family
+from synthesis.kinds.path.fits import fit_points
 from synthesis.kinds.path.given_pivots import all_are_found, solve_given_pivots
 from synthesis.kinds.path.harvest import Harvest
 from synthesis.kinds.path.nine_point import Triples, all_triples
@@ -27,7 +28,6 @@ from synthesis.kinds.path.nine_point_system import (
     orbit_keys,
 )
 from synthesis.kinds.path.other_linkages import solve_other
-from synthesis.kinds.path.point_fit import fit_points
 from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.starts import nine_point_start
@@ -36,6 +36,7 @@ from synthesis.kinds.path.verify_cognates import with_cognates
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import follow, refine
+from synthesis.outcome.front import front_of
 
 Complex = NDArray[np.complex128]
 
@@ -54,7 +55,8 @@ FIRST_PART = 0.5
 def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation; every design brings its cognates."""
     result = _solved(problem, progress)
-    return result.model_copy(update={"designs": [with_cognates(design) for design in result.designs]})
+    designs = [with_cognates(design) for design in result.designs]
+    return result.model_copy(update={"designs": designs, "front": front_of(designs)})
 
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:

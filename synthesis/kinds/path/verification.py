@@ -1,11 +1,13 @@
 """Verification of a fourbar that guides a point: it is driven to where its coupler point passes each demanded point.
 
-:mod:`synthesis.kinds.path.passages` finds the inputs; what is measured is where P then stands.
+:mod:`synthesis.kinds.path.passages` finds the inputs; what is measured is where P then stands, and in fits how far it
+goes astray on its way (:mod:`synthesis.kinds.path.astray`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +18,13 @@ from kinematics.linkage.fourbar import (
     Fourbar,
     barker_class,
     can_assemble,
+    positions,
     same_circuit,
     stays_on_branch,
     transmission_extremes,
     traverse,
 )
+from synthesis.kinds.path.astray import astray, tolerance_used
 from synthesis.kinds.path.design import PathDesign, PathMetrics
 from synthesis.kinds.path.passages import Passages, at_angles, at_points, in_order, nearest
 from synthesis.kinds.path.problem import PathProblem
@@ -39,7 +43,7 @@ SLACK = 1e-9
 """Coordinates outside a stated interval by this share of its ends' size count as inside: rounding."""
 
 
-class _Way(NamedTuple):
+class _Motion(NamedTuple):
     """The motion through the targets: inputs in one run, what it is worth, and the range that is used."""
 
     angles: Real
@@ -78,7 +82,11 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
         return None
     way = _way(linkage, passed)
     barker = barker_class(linkage)
-    least = float(transmission_extremes(linkage, way.start, way.end)[0]) if way.same_branch else 0.0
+    turns = barker.motion in TURNS_THROUGH
+    used = (way.start, way.end) if way.same_branch else (float(way.angles.min()), float(way.angles.max()))
+    if problem.closed and turns:
+        used = float(way.angles[0]), float(way.angles[0]) + math.tau
+    least = float(transmission_extremes(linkage, *used)[0]) if way.same_branch else 0.0
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
     measures = measured(
@@ -90,13 +98,17 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
         barker=barker,
         same_branch=way.same_branch,
         visits_in_order=way.on_circuit and way.in_order,
-        full_rotation=barker.motion in TURNS_THROUGH,
+        full_rotation=turns,
     )
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     at_points = AtPoints(inputs, passed.misses, way.on_circuit, pivots, [complex(passed.a[0]), complex(passed.b[0])])
     own = [*_coupler_point_checks(problem, linkage), *_crank_phase_checks(problem, mechanism, linkage)]
-    return path_design(problem, mechanism, measures, at_points, own)
+
+    def place(at: Real) -> Complex:
+        return np.asarray(positions(linkage, at, fourbar.assembly).p)
+
+    return path_design(problem, mechanism, measures, at_points, own, Way(place, used))
 
 
 class AtPoints(NamedTuple):
@@ -121,17 +133,33 @@ class AtPoints(NamedTuple):
     moving_pivots: list[complex]
 
 
+class Way(NamedTuple):
+    """The whole way of P: where it is at inputs (n,), NaN where there is no position; and the inputs that are used.
+
+    These are the first and the last: a whole cycle for a closed curve, else from the first point to the last.
+    """
+
+    place: Callable[[Real], Complex]
+    used: tuple[float, float]
+
+
 def path_design(
     problem: PathProblem,
     mechanism: LinkageMechanism,
     measures: Measures,
     at: AtPoints,
     own: list[Check],
-    gone: dict[str, float] | None = None,
+    way: Way,
 ) -> PathDesign:
-    """A linkage of any type with its proof; ``own`` are checks of its type, ``gone`` is how far a curve goes astray."""
+    """A linkage of any type with its proof; ``own`` are checks of its type."""
     residuals = at.misses / problem.task_size
-    checks = [] if problem.fitted else [reaches_targets(float(residuals.max()))]
+    gone: dict[str, float] = {}
+    if problem.fitted:
+        points = np.array([point.point for point in problem.points])
+        gone = astray(*way, points, problem.closed, float(at.misses.max()))._asdict()
+        checks = _tolerance_checks(problem, at, way, points)
+    else:
+        checks = [reaches_targets(float(residuals.max()))]
     checks.append(Check(name="same_circuit", passed=at.on_circuit))
     checks += constraint_checks(problem.constraints, measures, at.fixed_pivots, at.moving_pivots)
     checks += _path_checks(problem, measures, at.fixed_pivots)
@@ -149,9 +177,21 @@ def path_design(
             rms_distance=math.sqrt(float(np.mean(at.misses**2))),
             max_distance=float(at.misses.max()),
             **measures.within(PathMetrics),
-            **(gone or {}),
+            **gone,
         ),
     )
+
+
+def _tolerance_checks(problem: PathProblem, at: AtPoints, way: Way, points: Complex) -> list[Check]:
+    """Whether the points are within their tolerances of the curve, and all of the curve of their course."""
+    widths = problem.tolerances
+    if widths is None:
+        return []
+    along = tolerance_used(*way, points, problem.closed, widths)
+    return [
+        at_most("within_tolerance", float((at.misses / widths).max()), 1.0),
+        at_most("curve_within_tolerance", along, 1.0),
+    ]
 
 
 def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> Passages | None:
@@ -168,7 +208,7 @@ def _passages(problem: PathProblem, fourbar: DrivenFourbar, points: Complex) -> 
     return in_order(fourbar, points) if problem.constraints.in_order else nearest(fourbar, points)
 
 
-def _way(linkage: Fourbar, passed: Passages) -> _Way:
+def _way(linkage: Fourbar, passed: Passages) -> _Motion:
     """The motion from the first target to the last."""
     if passed.run:
         steps = np.diff(passed.angles)
@@ -182,7 +222,7 @@ def _way(linkage: Fourbar, passed: Passages) -> _Way:
     on_circuit = on_branch or bool(
         np.all(same_circuit(linkage, passed.angles[0], passed.assemblies[0], passed.angles, passed.assemblies))
     )
-    return _Way(angles, on_branch, on_circuit, ordered and (on_branch or not passed.run), start, end)
+    return _Motion(angles, on_branch, on_circuit, ordered and (on_branch or not passed.run), start, end)
 
 
 def _path_checks(problem: PathProblem, measures: Measures, pivots: list[complex]) -> list[Check]:

@@ -16,8 +16,7 @@ from kinematics.linkage.planar.limits import branches, holding_reference
 from synthesis.kinds.path.design import PathDesign
 from synthesis.kinds.path.passages import ordered_run
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.kinds.path.verification import AtPoints, path_design
-from synthesis.kinds.path.verify_curve import astray
+from synthesis.kinds.path.verification import AtPoints, Way, path_design
 from synthesis.model.linkage_answer import GearedFivebarMechanism, SliderCrankMechanism
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.measures import fixed_pivots, link_lengths, measured, reach_of
@@ -74,10 +73,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,
     )
-    gone = None
-    if problem.matched:
-        gone = astray(place, used, points, problem.closed, float(misses.max()))._asdict()
     pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
     moving = [complex(joints[pin][0]) for pin in pins]
     at_points = AtPoints(np.degrees(inputs), misses, True, fixed_pivots(mechanism), moving)
-    return path_design(problem, design, measures, at_points, [], gone)
+    return path_design(problem, design, measures, at_points, [], Way(place, used))

@@ -1,0 +1,269 @@
+"""Fits of a whole curve: what a linkage misses, its cognates as fits of the same curve, and fits under demands.
+
+Demands steer from the start. A fit that breaks one is brought into it by multipliers, from several sides:
+
+* from every free fit and its cognates, which draw the same curve with other pivots, links and transmission angles:
+  where one of them keeps all demands, these cost nothing;
+* from members of the shape library that keep what their shape alone decides, by descents under the demands at once;
+* along the demand on the transmission angle, which is raised in steps from what the free fit has.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import FOURBAR, POINT, UNKNOWNS, from_lengths, natural
+from synthesis.fit.coupler_curve import trace
+from synthesis.fit.demands import COSINE
+from synthesis.kinds.path.astray import course_of, distances
+from synthesis.kinds.path.curve_families import joints_of
+from synthesis.kinds.path.curve_limits import broken, descend_softly, descend_within
+from synthesis.kinds.path.curve_shapes import Starts
+from synthesis.kinds.path.curve_target import Target
+from synthesis.model.linkages import FourbarConfiguration
+from synthesis.numerics.portions import in_portions
+from synthesis.outcome.ranking import distinct
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+CURVE_SAMPLES = 121
+"""Places on a fit's curve at which excursions between the points are looked for."""
+
+THINNED = 120
+"""More points than this are thinned where demands are met, and all of them taken for the fits that are offered."""
+
+SAME_FIT = 1e-4
+"""Fits whose joints agree to this share of the curve's size are one."""
+
+MAX_HELD = 20
+"""Fits and cognates of them that are brought under demands: of all the least in error and violation together."""
+
+COSTS_NOTHING, MAX_EASY = 1.001, 7
+"""Where the nearest fit that keeps all demands is within the first factor of the nearest without them, so many others
+are brought under the demands, for choice among them."""
+
+MAX_SOFT, SOFT_STEPS = 12, 30
+"""Ends of descents from the shape library under demands that are brought to keep them; steps of these descents."""
+
+LADDER = (0.34, 0.67)
+"""Shares of a demanded transmission angle that fits are brought to on the way there."""
+
+MAX_CLIMBING = 6
+"""Free fits, the nearest, that climb the ladder."""
+
+
+class Fit(NamedTuple):
+    """A linkage fitted to a target: family, unknowns (m,), assembly, crank angles at all fitted points, and its error
+    in the target's unit, what goes astray between the points included."""
+
+    family: int
+    x: Real
+    sign: float
+    theta: Real
+    error: float
+
+
+def thinning(target: Target) -> slice:
+    """The fitted points that are looked at first: all, unless they are many."""
+    return slice(None, None, math.ceil(len(target.fitted) / THINNED))
+
+
+def fit_of(target: Target, family: int, x: Real, sign: float, theta: Real) -> Fit:
+    """A fit with its error at the target's own points and between them."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(family, x, lengths, chart)
+    count = len(target.points)
+    end = theta[0] + 2.0 * math.pi if target.closed else theta[count - 1]
+    at = np.concatenate([theta[:count], np.linspace(theta[0], end, CURVE_SAMPLES)])
+    places, along = np.empty(len(at), np.complex128), np.empty(len(at), np.complex128)
+    if not trace(family, x, lengths, sign, 0.0, at, places, along):
+        return Fit(family, x, sign, theta, math.inf)
+    misses = np.abs(places[:count] - target.points)
+    _, beyond = distances(places[count:], course_of(target.points, target.closed, float(misses.max())))
+    return Fit(family, x, sign, theta, math.hypot(math.sqrt(float(np.mean(misses**2))), float(beyond.max())))
+
+
+def configuration(fit: Fit) -> FourbarConfiguration:
+    """The joints at the first point, in the target's unit."""
+    return joints_of(fit.family, fit.x, fit.sign, float(fit.theta[0]))[1]
+
+
+def that_differ(fits: list[Fit], count: int) -> list[Fit]:
+    """The first fits, at most ``count``, that differ in some joint."""
+    return [fits[k] for k in distinct([configuration(fit) for fit in fits], count, SAME_FIT)]
+
+
+def with_cognates(joints: FourbarConfiguration) -> list[FourbarConfiguration]:
+    """A fourbar and its two cognates (Roberts), each with either fixed pivot as the input's, in one configuration.
+
+    With ζ = (P − A)/(B − A) the third pivot is O2 + ζ (O4 − O2), and O2 A P A′ is a parallelogram (Norton, Sec. 3.7).
+    """
+    return [FourbarConfiguration(*map(complex, one)) for one in _cognates(*joints)]
+
+
+def _cognates(o2: Any, a: Any, b: Any, o4: Any, p: Any) -> list[tuple[Any, ...]]:
+    """The same for joints in one configuration or several, as arrays."""
+    cognates = []
+    for start, pin, other, far in ((o2, a, b, o4), (o4, b, a, o2)):
+        cognates.append((start, pin, other, far, p))
+        if np.any(np.abs(p - pin) == 0.0) or np.any(np.abs(other - pin) == 0.0):
+            continue
+        zeta = (p - pin) / (other - pin)
+        third = start + zeta * (far - start)
+        new_pin = start + (p - pin)
+        new_other = new_pin + zeta * (pin - start)
+        cognates.append((start, new_pin, new_other, third, p))
+        cognates.append((third, new_other, new_pin, start, p))
+    return cognates
+
+
+def cognate_fits(fit: Fit, families: Iterable[int]) -> list[Fit]:
+    """The cognates of a fit, from either pivot, that belong to one of the families; they have its error."""
+    lengths, chart = np.zeros(4), np.zeros((4, 4))
+    natural(fit.family, fit.x, lengths, chart)
+    p, along = np.empty(len(fit.theta), np.complex128), np.empty(len(fit.theta), np.complex128)
+    if not trace(fit.family, fit.x, lengths, fit.sign, 0.0, fit.theta, p, along):
+        return []
+    o2 = np.full(len(p), complex(fit.x[0], fit.x[1]))
+    a = o2 + lengths[1] * np.exp(1j * fit.theta)
+    o4 = o2 + lengths[0] * np.exp(1j * fit.x[2])
+    found = []
+    for joints in _cognates(o2, a, a + lengths[2] * along, o4, p)[1:]:
+        other = _charted(joints, families, fit.error)
+        if other is not None:
+            found.append(other)
+    return found
+
+
+def _charted(joints: tuple[Complex, ...], families: Iterable[int], error: float) -> Fit | None:
+    """A linkage in configurations along a curve, shape (points,) each joint, as a fit; None where it is of no family.
+
+    It must keep its assembly all along.
+    """
+    o2, a, b, o4, p = joints
+    lengths = np.abs(np.array([o4[0] - o2[0], a[0] - o2[0], b[0] - a[0], b[0] - o4[0]]))
+    sides = ((o4 - a).conj() * (b - a)).imag
+    if not (np.all(sides > 0.0) or np.all(sides < 0.0)) or lengths.min() <= 0.0:
+        return None
+    x = np.zeros(UNKNOWNS[FOURBAR])
+    x[0], x[1], x[2] = o2[0].real, o2[0].imag, np.angle(o4[0] - o2[0])
+    at = (p[0] - a[0]) * np.exp(-1j * np.angle(b[0] - a[0]))
+    x[POINT], x[POINT + 1] = at.real, at.imag
+    shortest = int(np.argmin(lengths))
+    for family in families:
+        if family not in (shortest, FOURBAR) or not from_lengths(lengths, family, 0.0, x):
+            continue
+        return Fit(family, x, 1.0 if sides[0] > 0.0 else -1.0, np.unwrap(np.angle(a - o2)), error)
+    return None
+
+
+def fits_within(
+    target: Target,
+    free: list[Fit],
+    starts: Callable[[], list[Starts]],
+    families: list[int],
+    setting: Real,
+    count: int,
+) -> list[Fit]:
+    """Fits that keep all demands, the nearest first, at most ``count`` of them that differ.
+
+    Parameters
+    ----------
+    target : Target
+        What is drawn.
+    free : list of Fit
+        Fits without the demands, the nearest first.
+    starts : callable
+        Gives members of the shape library from which descents go under the demands; asked where these cost accuracy.
+    families : list of int
+        To which an answer may belong.
+    setting : float
+        The demands: :func:`synthesis.kinds.path.curve_limits.curve_setting`.
+    count : int
+        How many are wanted.
+    """
+    variants = [one for fit in free for one in (fit, *cognate_fits(fit, families))]
+    lost = np.array([broken(one.family, one.x, one.theta, one.sign, setting) for one in variants])
+    kept = [one for one, much in zip(variants, lost, strict=True) if much == 0.0]
+    order = np.argsort([math.hypot(one.error, much) for one, much in zip(variants, lost, strict=True)], kind="stable")
+    near = that_differ([variants[k] for k in order if lost[k] > 0.0], MAX_HELD)
+    if kept and min(fit.error for fit in kept) <= COSTS_NOTHING * free[0].error:
+        near = near[:MAX_EASY]
+    else:
+        near += _softly(target, starts(), setting)
+    held: list[Fit | None] = [None] * len(near)
+    climbing = set()
+    if math.isfinite(setting[COSINE]):
+        climbing = set(np.argsort([one.error for one in near], kind="stable")[:MAX_CLIMBING].tolist())
+
+    def work(some: slice) -> None:
+        for k in range(*some.indices(len(near))):
+            held[k] = held_fit(target, near[k], setting, climbing=k in climbing)
+
+    in_portions(work, len(near), 1)
+    found = [*kept, *(fit for fit in held if fit is not None)]
+    chosen = that_differ(sorted(found, key=lambda fit: fit.error), count)
+    if thinning(target).step > 1:
+        whole = {id(fit) for fit in kept}
+        chosen = [fit if id(fit) in whole else _polished(target, fit, setting) for fit in chosen]
+    return chosen
+
+
+def _polished(target: Target, fit: Fit, setting: Real) -> Fit:
+    """A fit to a part of the points that keeps demands, brought to all points."""
+    return held_fit(target, fit, setting, thin=slice(None)) or fit
+
+
+def held_fit(
+    target: Target, fit: Fit, setting: Real, *, climbing: bool = False, thin: slice | None = None
+) -> Fit | None:
+    """The fit nearest to one that keeps all demands; None where none was reached.
+
+    ``climbing``: it is brought to parts of the demanded transmission angle first; ``thin`` tells which of the points
+    are fitted, by default those of :func:`thinning`.
+    """
+    part = thinning(target) if thin is None else thin
+    x, theta = fit.x, fit.theta[part]
+    angle = math.acos(min(setting[COSINE], 1.0)) if climbing else 0.0
+    for share in (*(LADDER if climbing else ()), 1.0):
+        demanded = setting.copy()
+        if share < 1.0:
+            demanded[COSINE] = math.cos(share * angle)
+        reached = descend_within(fit.family, x, theta, fit.sign, target.fitted[part], target.weights[part], demanded)
+        if reached is None:
+            return None
+        x, theta = reached
+    return fit_of(target, fit.family, x, fit.sign, at_all_points(target, theta, part))
+
+
+def at_all_points(target: Target, theta: Real, part: slice) -> Real:
+    """Crank angles at all fitted points, from those at a part of them."""
+    every = np.arange(len(target.fitted))
+    at = every[part]
+    if len(at) == len(every):
+        return theta
+    if target.closed:
+        theta = np.append(theta, theta[0] + math.copysign(2.0 * math.pi, theta[-1] - theta[0]))
+        at = np.append(at, len(every))
+    return np.interp(every, at, theta)
+
+
+def _softly(target: Target, starts: list[Starts], setting: Real) -> list[Fit]:
+    """Fits at equal steps along the target from the shape library, the demands weighing in from the first step."""
+    found: list[tuple[float, Fit]] = []
+    for some in starts:
+        if not len(some.x):
+            continue
+        ends = descend_softly(some.family, some.x, some.theta, some.sign, target.steps, setting, SOFT_STEPS)
+        best = [k for k in np.argsort(ends.cost, kind="stable")[:MAX_SOFT] if math.isfinite(ends.cost[k])]
+        for k in best:
+            fit = Fit(some.family, ends.x[k], float(some.sign[k]), target.angles(ends.theta[k]), math.inf)
+            found.append((float(ends.cost[k]), fit))
+    found.sort(key=lambda pair: pair[0])
+    return that_differ([fit for _, fit in found], MAX_SOFT)

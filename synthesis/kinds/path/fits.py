@@ -1,0 +1,96 @@
+"""Points that are fitted: linkages by least squares, each driven over its whole way, those first that come nearest.
+
+Least squares looks at the points alone, and a linkage that is nearest there may go anywhere between them. Where the
+nearest do (:mod:`synthesis.kinds.path.nearness`), linkages whose whole curves have the shape of the points' course are
+fitted too (:mod:`synthesis.kinds.path.curve_match`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synthesis.kinds.path.curve_match import fitted_by_shape
+from synthesis.kinds.path.design import PathDesign, PathResult
+from synthesis.kinds.path.harvest import Harvest
+from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, error_of, least_error, steady
+from synthesis.kinds.path.point_fit import Candidate, fitted, mechanism_of, point_task
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+from synthesis.model.kind import Progress, part_of
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.ranking import ranked
+from synthesis.outcome.sifting import reported
+
+MIN_DRIVEN = 12
+"""Linkages that are verified at least, however few are wanted."""
+
+STRAYS = 1.5
+"""The nearest designs go astray where the least error over the whole way is so many times that at the points alone."""
+
+FIRST_PART = 0.6
+"""Share of the progress that fits of the points alone count for."""
+
+
+def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
+    """Fit fourbars to the points of a problem."""
+    task = point_task(problem)
+
+    def verified(candidate: Candidate) -> PathDesign | None:
+        mechanism = mechanism_of(candidate, task)
+        return None if mechanism is None else verify_path(problem, mechanism)
+
+    fits = _Fits(problem)
+    first, second = part_of(progress, 0.0, FIRST_PART), part_of(progress, FIRST_PART, 1.0)
+    minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
+    fits.sift(
+        reported(minima, first, (0.9, 1.0), "driving linkage {next} of {all}"),
+        verified,
+        enough=max(2 * problem.max_designs, MIN_DRIVEN),
+    )
+    if not problem.prescribed and fits.astray():
+
+        def driven(linkage: FourbarConfiguration) -> PathDesign | str | None:
+            return verify_path(problem, fourbar_mechanism(linkage))
+
+        linkages = fitted_by_shape(problem, second)
+        fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
+    fits.withdraw(steady(fits.passed, problem), FAR)
+    progress(1.0, "verified")
+    return fits.result("least_squares", complete=False, summary=fits.summary())
+
+
+class _Fits(Harvest):
+    """What becomes of the fits."""
+
+    def astray(self) -> bool:
+        """Whether no design that passes comes as near over its whole way as the nearest does at the points."""
+        least = min((design.metrics.rms_distance for design in self.passed), default=0.0)
+        nearest = max(least, ERROR_TOLERANCE * self.problem.task_size)
+        return least_error(self.passed, self.problem) > STRAYS * nearest
+
+    def different(self, designs: list[PathDesign]) -> list[PathDesign]:
+        """Nearest first unless another order is asked for or points have tolerances: then quality decides."""
+        if self.problem.tolerances is not None:
+            return ranked(super().different(designs), self.problem.rank_by)
+        nearest = {"quality": lambda design: error_of(design, self.problem)}
+        return ranked(super().different(designs), self.problem.rank_by, {**nearest, "accuracy": nearest["quality"]})
+
+    def summary(self) -> str:
+        """The answer in words."""
+        n, unit = len(self.problem.points), self.problem.length_unit
+        timing = "at their crank angles" if self.problem.prescribed else "in order"
+        if self.passed:
+            best = min(self.passed, key=lambda design: error_of(design, self.problem)).metrics
+            text = (
+                f"{len(self.passed)} of {self.candidates} fitted linkages satisfy all demands; the best passes the {n} "
+                f"points {timing} with a root-mean-square distance of {best.rms_distance:.4g} {unit} and at most "
+                f"{best.max_distance:.4g} {unit} (sum of squares {best.sum_of_squares:.6g} {unit}²)."
+            )
+            if best.excursion:
+                text += f" Between the points it goes {best.excursion:.4g} {unit} farther than these tell."
+            if self.rejected[FAR]:
+                text += f" {self.rejected[FAR]} others are near the points, but far from their course between them."
+        else:
+            rejected = self.listed() or "none"
+            text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
+        return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
