@@ -28,7 +28,7 @@ export function answer(place, job, state) {
       job.status === "failed" ? `${job.error?.title ?? "Failed"}: ${job.error?.detail ?? ""}` : `The job was ${job.status}.`));
     return;
   }
-  const { designs, search, summary } = job.result;
+  const { designs, search, summary, nearest_miss } = job.result;
   const detail = el("div", { id: "design" });
   const cards = designs.map((/** @type {any} */ design, /** @type {number} */ n) => card(design, n, () => {
     cards.forEach((/** @type {HTMLElement} */ one, /** @type {number} */ k) => one.setAttribute("aria-pressed", String(k === n)));
@@ -38,7 +38,7 @@ export function answer(place, job, state) {
   place.append(
     el("p", { class: "summary" }, summary),
     el("p", { class: "note" }, known(search, designs.length)),
-    job.result.nearest_miss && missed(job.result.nearest_miss, job.problem),
+    ...(nearest_miss ? [missed(nearest_miss, job.problem)] : []),
     el("div", { class: "cards", role: "group", "aria-label": "Designs, best first; arrow keys choose", onkeydown: (/** @type {KeyboardEvent} */ event) => choose(cards, event) }, ...cards),
     detail);
   cards[0]?.click();

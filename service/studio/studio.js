@@ -15,6 +15,10 @@ let kinds = [];
 let problem = {};
 /** @type {History} */
 let history;
+/** The statement that was posted last. @type {{id: string, problem: any}} */
+let posted = { id: "", problem: null };
+/** The statement whose answers are shown; null while there are none. @type {any} */
+let answered = null;
 
 const fields = byId("fields");
 const text = byId("json-text");
@@ -41,6 +45,19 @@ function show({ form = true, sketch = true, json = true } = {}) {
     text.removeAttribute("aria-invalid");
     byId("json-error").replaceChildren();
   }
+  compare();
+}
+
+/** Say so where the answers that are shown are not those to the statement as it is now. */
+function compare() {
+  byId("stale").hidden = answered === null || spelt(answered) === spelt(problem);
+}
+
+/** A statement in one spelling: fields in order, without the empty groups in which the form has room for fields. @param {any} statement */
+function spelt(statement) {
+  const group = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+  return JSON.stringify(statement, (_, value) => group(value)
+    ? Object.fromEntries(Object.entries(value).filter(([, inner]) => !group(inner) || Object.keys(inner).length).sort()) : value);
 }
 
 /** Show what has been edited. @param {{form?: boolean, sketch?: boolean, json?: boolean}} parts */
@@ -90,7 +107,9 @@ async function solve() {
   tell("");
   faults.clear(fields, byId("faults"));
   try {
-    const job = await api.solve(problem, byId("label").value || null);
+    const statement = structuredClone(problem);
+    const job = await api.solve(statement, byId("label").value || null);
+    posted = { id: job.id, problem: statement };
     location.hash = `job=${job.id}`;
   } catch (error) {
     if (error instanceof api.Refused) faults.tell(fields, byId("faults"), error);
@@ -109,7 +128,9 @@ async function restore() {
   answers.leave(byId("result"));
   try {
     let job = await api.job(id);
-    if (!same(problem, job.problem)) state(job.problem);
+    if (posted.id !== id) state(job.problem);
+    answered = posted.id === id ? posted.problem : structuredClone(problem);
+    compare();
     byId("label").value = job.label ?? "";
     if (["queued", "running"].includes(job.status)) {
       history.load().catch(tell);
@@ -122,14 +143,6 @@ async function restore() {
   } catch (error) {
     tell(error);
   }
-}
-
-/** Whether a statement says what a job has, defaults aside. @param {any} stated @param {any} accepted @returns {boolean} */
-function same(stated, accepted) {
-  if (typeof stated !== "object" || stated === null) return stated === accepted;
-  if (typeof accepted !== "object" || accepted === null || Array.isArray(stated) !== Array.isArray(accepted)) return false;
-  if (Array.isArray(stated) && stated.length !== accepted.length) return false;
-  return Object.keys(stated).every((name) => same(stated[name], accepted[name]));
 }
 
 async function begin() {

@@ -302,3 +302,21 @@ def test_where_nothing_is_found_the_page_shows_what_comes_nearest(studio):
     assert float(gap.group(1)) == pytest.approx(float(reach.group(1)), abs=0.01)
     assert page.locator("#miss svg").count() == 1
     studio.screen("nearest-miss")
+
+
+def test_answers_to_an_earlier_statement_say_so(studio):
+    page = studio.page
+    solved(studio, PLAIN)
+    note = page.locator("#stale")
+    assert not note.is_visible()
+    state(page, {**PLAIN, "input_side": {**PLAIN["input_side"], "rotations": [55.0]}})
+    until(note.is_visible, what="the note")
+    state(page, PLAIN)
+    until(lambda: not note.is_visible(), what="the statement of the answers again")
+    state(page, {**PLAIN, "length_unit": "in"})
+    until(note.is_visible, what="the note")
+    studio.solve()
+    until(lambda: not note.is_visible(), what="answers to the new statement")
+    page.reload()
+    page.wait_for_selector("#scrub")
+    assert not note.is_visible()
