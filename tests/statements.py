@@ -32,19 +32,19 @@ def choices(schema: Schema, root: Schema) -> list[tuple[str, Schema]]:
     return [one for member in members for one in choices(member, root) if one[1].get("type") != "null"]
 
 
-def fields(root: Schema, skip: frozenset[str] = frozenset()) -> list[str]:
-    """The names of all fields of a statement, those within models of ``skip`` left out."""
-    return list(dict.fromkeys(_fields("", root, root, skip)))
+def fields(root: Schema, skip: frozenset[str] = frozenset()) -> dict[str, Schema]:
+    """All fields of a statement by their names, with their schemas; those within models of ``skip`` left out."""
+    return dict(_fields("", root, root, skip))
 
 
-def _fields(place: str, schema: Schema, root: Schema, skip: frozenset[str]) -> Iterator[str]:
+def _fields(place: str, schema: Schema, root: Schema, skip: frozenset[str]) -> Iterator[tuple[str, Schema]]:
     for name, value in schema.get("properties", {}).items():
         here = f"{place}.{name}" if place else name
-        yield here
+        yield here, value
         yield from _within(here, value, root, skip)
 
 
-def _within(place: str, value: Schema, root: Schema, skip: frozenset[str]) -> Iterator[str]:
+def _within(place: str, value: Schema, root: Schema, skip: frozenset[str]) -> Iterator[tuple[str, Schema]]:
     known = choices(value, root)
     models = [name for name, one in known if "properties" in one]
     for name, one in known:

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 from kinematics.cam.dynamics import Camshaft, RunningCam
 from kinematics.cam.measured import measured_program
@@ -23,10 +24,16 @@ MEASURED = 360
 Share = Annotated[float, Field(strict=True, gt=0.0, le=1.0)]
 
 
+def _plate(cam: Any) -> Any:
+    if isinstance(cam, dict) and cam.get("type", "cam") != "cam":
+        raise PydanticCustomError("no_plate_cam", "only plate cams turn on a camshaft; analyse others by themselves")
+    return cam
+
+
 class ShaftCam(Statement):
     """A cam on the shaft."""
 
-    cam: GivenCam
+    cam: Annotated[GivenCam, BeforeValidator(_plate)]
     load: Load
     phase: Number = Field(default=0.0, description="Shaft angle at which the cam's angle is 0, degrees.")
 

@@ -20,8 +20,8 @@ from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_a
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.mechanisms import GivenMechanism, MechanismError
-from synthesis.mechanisms.base import StatedCouplerPoint
 from synthesis.model.answer import Answer
+from synthesis.model.stated_linkage import StatedCouplerPoint
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 

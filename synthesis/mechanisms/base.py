@@ -1,4 +1,4 @@
-"""What several stated mechanisms share: pivots, lines, points, and what is refused."""
+"""What several stated mechanisms share: how they are put together, and what is refused."""
 
 from __future__ import annotations
 
@@ -6,26 +6,13 @@ import cmath
 import math
 from collections.abc import Callable, Iterable
 from itertools import chain
-from typing import Annotated, Literal
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.model.dimension import LENGTH
-from synthesis.model.statement import Degrees, NonNegative, Point, Statement
-
-AGREES = 1e-6
-"""A dimension that others determine already (ground, offset) may differ from them by this share: printed digits."""
-
-ROUNDING = 1e-12
-"""Distances may differ by this share of the largest coordinate too: joints that coincide are not quite at one place."""
+from synthesis.model.stated_linkage import AGREES
 
 FIRST_TRIED = 30
 """Degree from which a configuration is looked for: along the ground line many linkages have a change point."""
-
-BODY = "Angle of the body that a design guides in the reference, degrees; not looked at."
-"""What a field of designs means that an analysis has no use for."""
-
-Assembly = Literal["open", "crossed"]
 
 
 class MechanismError(ValueError):
@@ -35,32 +22,6 @@ class MechanismError(ValueError):
         self.path = path
         self.detail = detail
         super().__init__(f"{path}: {detail}")
-
-
-class StatedPivots(Statement):
-    """Fixed pivots of input and output."""
-
-    input: Point
-    output: Point
-
-
-class StatedCouplerPoint(Statement):
-    """P: distance from A, and angle from the coupler's line (A towards its other pin) to the line A → P, degrees."""
-
-    distance: Annotated[NonNegative, LENGTH]
-    angle: Degrees = 0.0
-
-    @property
-    def vector(self) -> complex:
-        """P in the coupler's frame."""
-        return cmath.rect(self.distance, math.radians(self.angle))
-
-
-class StatedLine(Statement):
-    """A slide on the ground: a point of its line and the line's angle, degrees."""
-
-    point: Point
-    angle: Degrees
 
 
 def agree(path: str, stated: float | None, measured: float, what: str = "the fixed pivots") -> None:

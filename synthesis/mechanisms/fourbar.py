@@ -9,26 +9,9 @@ from kinematics.linkage.fourbar.closed_form import Fourbar
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.catalogue import ASSEMBLY
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.mechanisms.base import (
-    Assembly,
-    MechanismError,
-    StatedCouplerPoint,
-    StatedPivots,
-    agree,
-    assembled,
-    reaching,
-)
+from synthesis.mechanisms.base import MechanismError, agree, assembled, reaching
 from synthesis.mechanisms.skeleton import GivenByDimensions
-from synthesis.model.statement import PositiveLength, Statement
-
-
-class FourbarLengths(Statement):
-    """Link lengths; ``ground`` follows from the fixed pivots and may be left out."""
-
-    ground: PositiveLength | None = None
-    input: PositiveLength
-    coupler: PositiveLength
-    output: PositiveLength
+from synthesis.model.stated_linkage import Assembly, FourbarLengths, StatedCouplerPoint, StatedPivots
 
 
 class GivenFourbar(GivenByDimensions):

@@ -15,8 +15,9 @@ from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.branches import turns_until_repeated
 from kinematics.linkage.planar.catalogue import ASSEMBLY
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.mechanisms.base import Assembly, MechanismError, StatedCouplerPoint, StatedPivots, agree, assembled
+from synthesis.mechanisms.base import MechanismError, agree, assembled
 from synthesis.mechanisms.skeleton import GivenByDimensions
+from synthesis.model.stated_linkage import Assembly, StatedCouplerPoint, StatedPivots
 from synthesis.model.statement import Degrees, Number, PositiveLength, Statement
 
 Real = NDArray[np.float64]

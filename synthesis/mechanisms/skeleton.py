@@ -5,74 +5,46 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from itertools import combinations
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from kinematics.linkage.planar.mechanism import GROUND, GearPair, Mechanism, Slide
-from synthesis.mechanisms.base import AGREES, BODY, ROUNDING, MechanismError, StatedCouplerPoint, StatedLine
-from synthesis.model.statement import Degrees, Number, Point, PositiveLength, Statement
+from synthesis.mechanisms.base import MechanismError
+from synthesis.model.stated_linkage import AGREES, BODY, ROUNDING, StatedCouplerPoint, StatedSkeleton
+from synthesis.model.statement import Degrees, Point, PositiveLength, Statement
 
 MOST_SHOWN = 6
 """Distances that a message lists."""
 
 
-class StatedSlide(StatedLine):
-    """A slide by its joint and its link, in the reference configuration."""
-
-    joint: str = Field(min_length=1, max_length=50)
-    link: str = Field(min_length=1, max_length=50)
-
-
-class StatedLink(Statement):
-    """A rigid link and the joints on it."""
-
-    name: str = Field(min_length=1, max_length=50)
-    joints: list[Annotated[str, Field(min_length=1, max_length=50)]] = Field(min_length=1, max_length=20)
+def assembled_skeleton(stated: StatedSkeleton, degrees: float | None = None) -> Mechanism:
+    """The mechanism in the reference configuration, where gears are told the turn of a stated input angle."""
+    assembled = _made(stated, 0)
+    if degrees is None or not assembled.gears or assembled.driven_by_slide:
+        return assembled
+    return _made(stated, round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
 
 
-class StatedGear(Statement):
-    """Rotation of the second link = ratio × rotation of the first, both relative to ground."""
-
-    links: tuple[str, str]
-    ratio: Number
-
-
-class StatedSkeleton(Statement):
-    """Joints in a reference configuration, and what joins them; the input is a link's name, or a slide's joint."""
-
-    joints: dict[Annotated[str, Field(min_length=1, max_length=50)], Point] = Field(min_length=2, max_length=40)
-    links: list[StatedLink] = Field(min_length=2, max_length=20)
-    slides: list[StatedSlide] = Field(default=[], max_length=10)
-    gears: list[StatedGear] = Field(default=[], max_length=10)
-    input_link: str
-
-    def mechanism(self, degrees: float | None = None) -> Mechanism:
-        """The mechanism in the reference configuration, where gears are told the turn of a stated input angle."""
-        assembled = self._made(0)
-        if degrees is None or not assembled.gears or assembled.driven_by_slide:
-            return assembled
-        return self._made(round((math.radians(degrees) - float(assembled.reference_input)) / (2.0 * math.pi)))
-
-    def _made(self, turns: int) -> Mechanism:
-        names = [link.name for link in self.links]
-        if len(set(names)) != len(names):
-            raise MechanismError("/skeleton/links", "each link needs a name of its own")
-        try:
-            return Mechanism(
-                {name: complex(*point) for name, point in self.joints.items()},
-                {link.name: tuple(link.joints) for link in self.links},
-                self.input_link,
-                tuple(
-                    Slide(s.joint, s.link, np.asarray(complex(*s.point)), np.asarray(math.radians(s.angle)))
-                    for s in self.slides
-                ),
-                tuple(GearPair(*gear.links, gear.ratio) for gear in self.gears),
-                turns,
-            )
-        except ValueError as error:
-            raise MechanismError("/skeleton", str(error)) from None
+def _made(stated: StatedSkeleton, turns: int) -> Mechanism:
+    names = [link.name for link in stated.links]
+    if len(set(names)) != len(names):
+        raise MechanismError("/skeleton/links", "each link needs a name of its own")
+    try:
+        return Mechanism(
+            {name: complex(*point) for name, point in stated.joints.items()},
+            {link.name: tuple(link.joints) for link in stated.links},
+            stated.input_link,
+            tuple(
+                Slide(s.joint, s.link, np.asarray(complex(*s.point)), np.asarray(math.radians(s.angle)))
+                for s in stated.slides
+            ),
+            tuple(GearPair(*gear.links, gear.ratio) for gear in stated.gears),
+            turns,
+        )
+    except ValueError as error:
+        raise MechanismError("/skeleton", str(error)) from None
 
 
 class GivenSkeleton(Statement):
@@ -128,7 +100,7 @@ class GivenSkeleton(Statement):
         MechanismError
             For a skeleton that is none, and for dimensions beside it that it does not have.
         """
-        assembled = self.skeleton.mechanism(self.reference_input_angle)
+        assembled = assembled_skeleton(self.skeleton, self.reference_input_angle)
         for name, stated in self.links.items():
             listed = [assembled.links[name]] if name in assembled.links else list(assembled.links.values())
             distances = [distance for joints in listed for distance in _distances(assembled, joints)]
@@ -189,7 +161,7 @@ class GivenByDimensions(Statement, ABC):
         own = self.assembled()
         if self.skeleton is None:
             return own
-        assembled = self.skeleton.mechanism(self.reference_input_angle)
+        assembled = assembled_skeleton(self.skeleton, self.reference_input_angle)
         slack = ROUNDING * max(abs(complex(z)) for m in (own, assembled) for z in m.joints.values())
         for joints in own.links.values():
             for one, other in combinations([joint for joint in joints if joint in assembled.joints], 2):

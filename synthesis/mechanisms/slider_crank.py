@@ -12,19 +12,10 @@ from pydantic import Field
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.catalogue import ASSEMBLY
 from kinematics.linkage.planar.mechanism import Mechanism, Slide
-from synthesis.mechanisms.base import (
-    Assembly,
-    MechanismError,
-    StatedCouplerPoint,
-    StatedLine,
-    StatedPivots,
-    agree,
-    assembled,
-    midst,
-    reaching,
-)
+from synthesis.mechanisms.base import MechanismError, agree, assembled, midst, reaching
 from synthesis.mechanisms.skeleton import GivenByDimensions
 from synthesis.model.dimension import LENGTH
+from synthesis.model.stated_linkage import Assembly, StatedCouplerPoint, StatedLine, StatedPivots
 from synthesis.model.statement import Coordinate, Degrees, NonNegative, Point, PositiveLength, Statement
 
 

@@ -26,6 +26,7 @@ PURE = {
     "FunctionStatement": {"x", "exponent", "base"},
     "FunctionTarget": {"input", "output", "residual"},
     "GearPair": {"ratio"},
+    "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
     "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance"},
     "GearTrainSearch": {"least_error"},

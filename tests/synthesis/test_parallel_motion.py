@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from synthesis.dispatch import solve
 from synthesis.kinds.parallel_motion.design import ParallelMotionDesign, ParallelMotionResult
@@ -201,5 +200,55 @@ def test_neither_or_both_is_refused() -> None:
     for fields in ({}, {"linkage": example("parallel_motion")["linkage"], "path": example("path")}):
         problem = parse_problem({"kind": "parallel_motion", **fields})
         assert "/linkage" in [fault.path for fault in problem.contradictions()]
-    with pytest.raises(ValidationError):
-        stated(20.0, 70.0, 90.0, 60.0, 0.0, 30.0, "open")
+    on_pin = stated(20.0, 70.0, 90.0, 60.0, 0.0, 30.0, "open")
+    assert [fault.path for fault in on_pin.contradictions()] == ["/linkage/coupler_point"]
+
+
+def as_answered(changes):
+    """A fourbar as an answer has it, with some of it changed."""
+    known = parse_problem(example("parallel_motion")).linkage
+    base = {**known.model_dump(exclude_none=True), "reference_input_angle": 40.0}
+    linkage = parse_problem({"kind": "parallel_motion", "linkage": base}).linkage
+    joints = {name: [z.real, z.imag] for name, z in linkage.joints.items()}
+    links = {"ground": ["O2", "O4"], "input": ["O2", "A"], "coupler": ["A", "B", "P"], "output": ["O4", "B"]}
+    skeleton = {
+        "joints": joints,
+        "links": [{"name": name, "joints": listed} for name, listed in links.items()],
+        "slides": [],
+        "gears": [],
+        "input_link": "input",
+    }
+    base["links"]["ground"] = 60.0
+    return parse_problem(
+        {"kind": "parallel_motion", "linkage": {**base, "skeleton": skeleton, **changes(base, joints)}}
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "path"),
+    [
+        (lambda base, joints: {}, None),
+        (lambda base, joints: {"reference_input_angle": None}, None),
+        (lambda base, joints: {"links": {**base["links"], "ground": 60.1}}, "/linkage/links/ground"),
+        (lambda base, joints: {"reference_input_angle": 41.0}, "/linkage/skeleton/joints/A"),
+        (lambda base, joints: {"assembly": "crossed"}, "/linkage/skeleton/joints/B"),
+        (lambda base, joints: {"links": {**base["links"], "output": 91.0}}, "/linkage/skeleton/joints/B"),
+        (lambda base, joints: {"coupler_point": {"distance": 61.0, "angle": 30.0}}, "/linkage/skeleton/joints/P"),
+    ],
+)
+def test_a_fourbar_of_an_answer_says_one_thing(changes, path):
+    problem = as_answered(changes)
+    assert [fault.path for fault in problem.contradictions()] == ([] if path is None else [path])
+    if path is None:
+        assert solve(problem, lambda fraction, message: None).designs
+
+
+def test_an_input_angle_that_there_is_not_is_refused_at_once():
+    linkage = {
+        "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
+        "links": {"input": 50.0, "coupler": 20.0, "output": 40.0},
+        "coupler_point": {"distance": 30.0, "angle": 30.0},
+        "reference_input_angle": 180.0,
+    }
+    problem = parse_problem({"kind": "parallel_motion", "linkage": linkage})
+    assert [fault.path for fault in problem.contradictions()] == ["/linkage/reference_input_angle"]

@@ -4,52 +4,87 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Point, PositiveLength, Statement
+from synthesis.model.stated_linkage import (
+    AGREES,
+    BODY,
+    Assembly,
+    FourbarLengths,
+    StatedCouplerPoint,
+    StatedPivots,
+    StatedSkeleton,
+)
+from synthesis.model.statement import ROUNDED_OFF, Contradiction, Degrees, Statement
 
 AT_PIN = 1e-6
 """P this near to A or B, as a share of the coupler, is on it: there is no cognate, and P runs on a circle."""
 
 
-class SourcePivots(Statement):
-    """Fixed pivots O2 (input) and O4 (output)."""
+PIVOTS = frozenset({"O2", "O4", "A", "B"})
 
-    input: Point
-    output: Point
-
-
-class SourceLinks(Statement):
-    """Link lengths; the ground's follows from the pivots."""
-
-    input: PositiveLength
-    coupler: PositiveLength
-    output: PositiveLength
-
-
-class SourcePoint(Statement):
-    """P: its distance from A, and the angle from the line A → B to the line A → P, degrees."""
-
-    distance: PositiveLength
-    angle: Degrees = 0.0
+PINS = ({"O2", "O4"}, {"O2", "A"}, {"A", "B"}, {"O4", "B"})
+"""Joints of the links of a fourbar, as a skeleton must have them; P may stand on the coupler too."""
 
 
 class SourceLinkage(Statement):
-    """The fourbar whose coupler curve is to be followed."""
+    """The fourbar whose coupler curve is to be followed: by its dimensions, or as an answer has it."""
 
-    fixed_pivots: SourcePivots
-    links: SourceLinks
-    coupler_point: SourcePoint
-    assembly: Literal["open", "crossed"] = Field(
+    type: Literal["fourbar"] = "fourbar"
+    fixed_pivots: StatedPivots
+    links: FourbarLengths
+    coupler_point: StatedCouplerPoint
+    assembly: Assembly = Field(
         default="open", description="open: B lies to the left of the directed line from A to O4."
     )
     reference_input_angle: Degrees | None = Field(
-        default=None, description="Input angle of the first position, absolute, degrees; by default one that there is."
+        default=None,
+        description="Input angle of the first position, absolute, degrees; by default the skeleton's, or one that "
+        "there is.",
     )
+    reference_body_angle: Degrees | None = Field(default=None, description=BODY)
+    skeleton: StatedSkeleton | None = Field(
+        default=None, description="In the first position; its joints must stand as the dimensions say."
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _a_fourbar(cls, stated: Any) -> Any:
+        if isinstance(stated, dict) and stated.get("type", "fourbar") != "fourbar":
+            raise PydanticCustomError(
+                "no_fourbar",
+                "only a fourbar has the cognates that guide the body; of another mechanism state the path of its point",
+            )
+        return stated
+
+    @property
+    def reference(self) -> float | None:
+        """The input angle of the first position, degrees: the stated one, or that of the skeleton."""
+        if self.reference_input_angle is not None or self.skeleton is None:
+            return self.reference_input_angle
+        o2, a = (complex(*self.skeleton.joints[name]) for name in ("O2", "A"))
+        return math.degrees(cmath.phase(a - o2))
+
+    @property
+    def joints(self) -> dict[str, complex]:
+        """Where the joints are in the first position, of which an angle must be known.
+
+        B is the nearest there is to both circles where they miss one another.
+        """
+        assert self.reference is not None
+        o2, o4 = complex(*self.fixed_pivots.input), complex(*self.fixed_pivots.output)
+        a = o2 + cmath.rect(self.links.input, math.radians(self.reference))
+        reach, b, c = abs(o4 - a), self.links.coupler, self.links.output
+        along = (b * b - c * c + reach * reach) / (2.0 * reach) if reach else 0.0
+        across = math.sqrt(max(b * b - along * along, 0.0)) * (1.0 if self.assembly == "open" else -1.0)
+        turn = (o4 - a) / reach if reach else 1.0
+        pin = a + complex(along, across) * turn
+        return {"O2": o2, "O4": o4, "A": a, "B": pin, "P": a + self.coupler_point.vector * (pin - a) / b}
 
 
 class ParallelMotionProblem(LinkageProblem):
@@ -110,12 +145,45 @@ def _faults(linkage: SourceLinkage) -> list[Contradiction]:
         )
     elif lengths[3] >= sum(lengths[:3]):
         found.append(Contradiction("/linkage/links", "one link is longer than the others together can reach"))
+    if links.ground is not None and abs(links.ground - ground) > AGREES * max(ground, links.ground):
+        detail = f"the fixed pivots give {ground:.9g}; leave the field out or correct it"
+        found.append(Contradiction("/linkage/links/ground", detail))
     far = max(map(abs, (*linkage.fixed_pivots.input, *linkage.fixed_pivots.output)))
-    if min(lengths[0], point.distance) < ROUNDED_OFF * far and ground > 0.0:
+    if min(lengths[0], point.distance or lengths[0]) < ROUNDED_OFF * far and ground > 0.0:
         detail = "too short beside the coordinates of the pivots; move the origin nearer"
         found.append(Contradiction("/linkage/links", detail))
-    vector = cmath.rect(point.distance, math.radians(point.angle))
-    if min(abs(vector), abs(vector - links.coupler)) <= AT_PIN * links.coupler:
+    if min(point.distance, abs(point.vector - links.coupler)) <= AT_PIN * links.coupler:
         detail = "on a pin of the coupler it runs on a circle and has no cognate; a parallelogram carries a body there"
         found.append(Contradiction("/linkage/coupler_point", detail))
-    return found
+    return found or [*_reference_faults(linkage), *_skeleton_faults(linkage)]
+
+
+def _reference_faults(linkage: SourceLinkage) -> list[Contradiction]:
+    """An input angle at which coupler and output do not meet."""
+    if linkage.reference_input_angle is None:
+        return []
+    joints, links = linkage.joints, linkage.links
+    reach = abs(joints["O4"] - joints["A"])
+    low, high = abs(links.coupler - links.output), links.coupler + links.output
+    if (1.0 - AGREES) * low <= reach <= (1.0 + AGREES) * high:
+        return []
+    detail = "the linkage cannot be assembled at this input angle; leave it out or correct it"
+    return [Contradiction("/linkage/reference_input_angle", detail)]
+
+
+def _skeleton_faults(linkage: SourceLinkage) -> list[Contradiction]:
+    """A skeleton that is not the fourbar's, or whose joints stand elsewhere."""
+    skeleton = linkage.skeleton
+    if skeleton is None:
+        return []
+    shape = {frozenset(link.joints) - {"P"} for link in skeleton.links}
+    if shape != set(map(frozenset, PINS)) or skeleton.slides or skeleton.gears or not skeleton.joints.keys() >= PIVOTS:
+        detail = "not that of a fourbar with the links O2–O4, O2–A, A–B–P and O4–B; leave it out"
+        return [Contradiction("/linkage/skeleton", detail)]
+    size = max(abs(z) for z in linkage.joints.values())
+    for name, place in linkage.joints.items():
+        stated = skeleton.joints.get(name)
+        if stated is not None and abs(complex(*stated) - place) > AGREES * size:
+            detail = f"the dimensions put {name} at ({place.real:.9g}, {place.imag:.9g}); leave the skeleton out"
+            return [Contradiction(f"/linkage/skeleton/joints/{name}", detail)]
+    return []

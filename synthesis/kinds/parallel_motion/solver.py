@@ -80,9 +80,9 @@ def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelM
 
 def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
     """The given fourbar and both cognates, each with either fixed pivot as the input's."""
-    stated = {"type": "fourbar", **given.model_dump(exclude_none=True)}
+    stated = given.model_dump(exclude={"skeleton", "reference_body_angle"}, exclude_none=True)
     try:
-        mechanism = GivenFourbar.model_validate(stated).mechanism()
+        mechanism = GivenFourbar.model_validate({**stated, "reference_input_angle": given.reference}).mechanism()
     except MechanismError as error:
         raise ContradictionError(Contradiction(f"/linkage{error.path}", error.detail)) from None
     joints = FourbarConfiguration(*(complex(mechanism.joints[name]) for name in ("O2", "A", "B", "O4", "P")))
