@@ -7,9 +7,11 @@ that differ from one another are driven.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synthesis.kinds.motion.choices import Cloud, side_dyads
 from synthesis.kinds.motion.demanded import Demanded
@@ -38,6 +40,15 @@ SHORTLIST = 4000
 
 APART = 0.25 * 0.5 ** np.arange(6)
 """Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
+
+GOOD = 0.6
+"""Share of the best score that a linkage has to have to be offered because it is another one."""
+
+GOOD_POOL = 20_000
+"""Of more good pairs than this every so many are looked at: they lie densely enough."""
+
+FAR_APART = 2.0 * 0.5 ** (0.5 * np.arange(12))
+"""What is offered lies apart by the first of these, in task sizes, at which there are enough good ones."""
 
 ATTEMPTS = 5
 """Pairs verified at most, for each design wanted: verification seldom refuses what screening has passed."""
@@ -105,17 +116,33 @@ class Pairs:
         return screen(self.task, self.inputs, self.outputs, wanted)
 
     def best(self, screening: Screening) -> list[tuple[int, int]]:
-        """The best-scored pairs that differ from one another, best first."""
-        count = max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS)
+        """The pairs to verify, first those to offer: the best one, and good ones that lie far from one another.
+
+        After them come the best-scored ones that differ, for what verification refuses; all there are where the order
+        is another than that of quality, of which a client wants the first and no others.
+        """
         score = screening.score.ravel()
         shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
         shortlist = shortlist[score[shortlist] > 0.0]
-        shortlist = shortlist[np.lexsort((shortlist, -score[shortlist]))]
-        i, j = np.unravel_index(shortlist, screening.score.shape)
+        best = self._apart(screening, shortlist, max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS), APART)
+        if self.problem.rank_by != "quality" or not best:
+            return best
+        good = np.flatnonzero(score >= GOOD * score.max())
+        good = np.union1d(good[:: -(-len(good) // GOOD_POOL)], shortlist[score[shortlist].argmax()])
+        offered = self._apart(screening, good, self.problem.max_designs, FAR_APART)
+        return list(dict.fromkeys([*offered, *best]))
+
+    def _apart(
+        self, screening: Screening, pool: NDArray[np.int64], count: int, aparts: Iterable[float]
+    ) -> list[tuple[int, int]]:
+        """Of the pairs of a pool (flat indices) the best-scored ones that lie apart, best first."""
+        score = screening.score.ravel()
+        pool = pool[np.lexsort((pool, -score[pool]))]
+        i, j = np.unravel_index(pool, screening.score.shape)
         joints = np.stack(
             [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]], axis=1
         )
-        return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, APART)]
+        return [(int(i[k]), int(j[k])) for k in widest_apart(joints, count, aparts)]
 
 
 def pairs_of_dyads(problem: MotionProblem) -> Pairs:
