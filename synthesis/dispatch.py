@@ -7,7 +7,9 @@ from typing import Any
 from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress, part_of
+from synthesis.model.linkage_answer import LinkageResult
 from synthesis.model.statement import StatedProblem
+from synthesis.outcome.front import front_of
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
 
@@ -39,11 +41,12 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     problem.require_consistent()
     told = _silent if progress is None else progress
     kind = KINDS[problem.kind]
-    result = kind.solve(problem, part_of(told, 0.0, SEARCH_SHARE))
-    assert isinstance(result, Result)
+    result: Result[Any] = kind.solve(problem, part_of(told, 0.0, SEARCH_SHARE))
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
         result = _relaxed(problem, result, relaxation(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0)))
+    if isinstance(result, LinkageResult):
+        result = result.model_copy(update={"front": front_of(result.designs)})
     told(1.0, "verified")
     return result
 

@@ -294,9 +294,9 @@ class Front(Answer):
     A design beats another that it is no worse than in any of the quantities and better than in one.
     """
 
-    quantities: list[Literal["rms", "min_transmission_angle", "size"]] = Field(
-        description="What is weighed up: the error, less is better, as the metrics' rms of the kind; the least "
-        "transmission angle, more is better; the size, less is better."
+    quantities: list[str] = Field(
+        description="What is weighed up, by its field in the metrics: the error of the kind (rms for rms_residual) "
+        "and the size, less is better; the least transmission angle, more is better."
     )
     designs: list[int] = Field(description="Indices of the designs that no other of the answer beats.")
 

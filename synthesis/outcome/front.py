@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from synthesis.model.linkage_answer import Front
 from synthesis.outcome.ranking import ROUNDING
 
-Quantity = Literal["rms", "min_transmission_angle", "size"]
-
-LEAST: Mapping[Quantity, Callable[[Any], float]] = {
-    "rms": lambda design: max(float(design.metrics.rms_residual), ROUNDING),
-    "min_transmission_angle": lambda design: -float(design.metrics.min_transmission_angle),
-    "size": lambda design: float(design.metrics.size),
+ERRORS = {
+    "rms_structural_error": "rms_structural_error",
+    "straightness_error": "straightness_error",
+    "jitter": "jitter",
+    "steering_error": "steering_error",
+    "rms_residual": "rms",
 }
-"""What is less, the better a design is: by name the quantities that every linkage is measured in."""
+"""How the error of a design is told: its field in the metrics, the first that there is, and its name in the front."""
 
 
-def front_of(designs: Sequence[Any], own: Mapping[Quantity, Callable[[Any], float]] | None = None) -> Front | None:
+def front_of(designs: Sequence[Any]) -> Front | None:
     """The designs of an answer that no other beats; those that break a check are not looked at.
 
     Parameters
     ----------
     designs : sequence
-        As they are returned.
-    own : mapping, optional
-        Quantities as a kind measures them, in place of those in :data:`LEAST`.
+        Of linkages, as they are returned.
 
     Returns
     -------
@@ -38,9 +36,16 @@ def front_of(designs: Sequence[Any], own: Mapping[Quantity, Callable[[Any], floa
     sound = [n for n, design in enumerate(designs) if design.verification.passed]
     if len(sound) < 2:
         return None
-    quantities = {**LEAST, **(own or {})}
-    table = np.array([[of(designs[n]) for of in quantities.values()] for n in sound])
+    metrics = [designs[n].metrics for n in sound]
+    columns = {
+        "min_transmission_angle": [-float(measured.min_transmission_angle) for measured in metrics],
+        "size": [float(measured.size) for measured in metrics],
+    }
+    error = next((field for field in ERRORS if getattr(metrics[0], field, None) is not None), None)
+    if error is not None:
+        columns = {ERRORS[error]: [max(float(getattr(measured, error)), ROUNDING) for measured in metrics], **columns}
+    table = np.array(list(columns.values())).T
     no_worse = (table[:, None] <= table).all(axis=2)
     better = (table[:, None] < table).any(axis=2)
     beaten = np.flatnonzero((no_worse & better).any(axis=0))
-    return Front(quantities=list(quantities), designs=list(np.delete(sound, beaten).tolist()))
+    return Front(quantities=list(columns), designs=list(np.delete(sound, beaten).tolist()))

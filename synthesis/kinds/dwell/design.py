@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification
+from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
-from synthesis.model.linkage_answer import CouplerPoint, MotionMetrics, Skeleton
+from synthesis.model.linkage_answer import CouplerPoint, LinkageResult, MotionMetrics, Skeleton
 
 
 class DwellMechanism(Answer):
@@ -67,5 +67,5 @@ class DwellDesign(Answer):
     metrics: DwellMetrics
 
 
-class DwellResult(Result[DwellDesign]):
+class DwellResult(LinkageResult[DwellDesign]):
     """Dwell sixbars, best first."""

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Result, Verification
+from synthesis.model.answer import Answer, Verification
 from synthesis.model.dimension import Angle, Output
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageMetrics, SliderCrankMechanism
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageMetrics, LinkageResult, SliderCrankMechanism
 
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
 
@@ -106,5 +106,5 @@ class FunctionDesign(Answer):
     structural_error: StructuralError
 
 
-class FunctionResult(Result[FunctionDesign]):
+class FunctionResult(LinkageResult[FunctionDesign]):
     """Linkages whose output follows the input."""

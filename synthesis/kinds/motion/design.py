@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.answer import Answer, Point
+from synthesis.model.linkage_answer import LinkageDesign, LinkageResult
 
 
 class BurmesterBranch(Answer):
@@ -20,7 +20,7 @@ class BurmesterBranch(Answer):
     closed: bool
 
 
-class MotionResult(Result[LinkageDesign]):
+class MotionResult(LinkageResult[LinkageDesign]):
     """Linkages that carry the body through the positions."""
 
     curves: list[BurmesterBranch] = Field(

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification
+from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import CouplerPoint, LinkageMetrics, Skeleton, Target
+from synthesis.model.linkage_answer import CouplerPoint, LinkageMetrics, LinkageResult, Skeleton, Target
 
 
 class ParallelMotionMechanism(Answer):
@@ -52,5 +52,5 @@ class ParallelMotionDesign(Answer):
     metrics: ParallelMotionMetrics
 
 
-class ParallelMotionResult(Result[ParallelMotionDesign]):
+class ParallelMotionResult(LinkageResult[ParallelMotionDesign]):
     """Sixbars for parallel motion, best first."""

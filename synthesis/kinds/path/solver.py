@@ -36,7 +36,6 @@ from synthesis.kinds.path.verify_cognates import with_cognates
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.continuation import follow, refine
-from synthesis.outcome.front import front_of
 
 Complex = NDArray[np.complex128]
 
@@ -56,7 +55,7 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation; every design brings its cognates."""
     result = _solved(problem, progress)
     designs = [with_cognates(design) for design in result.designs]
-    return result.model_copy(update={"designs": designs, "front": front_of(designs)})
+    return result.model_copy(update={"designs": designs})
 
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:

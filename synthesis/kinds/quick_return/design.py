@@ -6,12 +6,13 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, Output
 from synthesis.model.linkage_answer import (
     FixedPivots,
     FourbarMechanism,
     Line,
+    LinkageResult,
     MotionMetrics,
     Skeleton,
     SliderCrankMechanism,
@@ -101,7 +102,7 @@ class RatioRange(Answer):
     reason: str = Field(description="What limits the type.")
 
 
-class QuickReturnResult(Result[QuickReturnDesign]):
+class QuickReturnResult(LinkageResult[QuickReturnDesign]):
     """Quick-return mechanisms, and what each type can reach."""
 
     reachable: list[RatioRange]

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, Skeleton
+from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, LinkageResult, Skeleton
 
 
 class DavisMechanism(Answer):
@@ -60,5 +60,5 @@ class SteeringDesign(Answer):
     metrics: SteeringMetrics
 
 
-class SteeringResult(Result[SteeringDesign]):
+class SteeringResult(LinkageResult[SteeringDesign]):
     """Steering mechanisms, the least steering error first."""

@@ -7,9 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field
 
 from synthesis.kinds.straight_line.problem import LineMechanism
-from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
-from synthesis.model.linkage_answer import FourbarMechanism, MotionMetrics, Skeleton
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageResult, MotionMetrics, Skeleton
 
 
 class ExactLineMechanism(Answer):
@@ -73,5 +73,5 @@ class StraightLineDesign(Answer):
     metrics: StraightLineMetrics
 
 
-class StraightLineResult(Result[StraightLineDesign]):
+class StraightLineResult(LinkageResult[StraightLineDesign]):
     """Straight-line mechanisms, best first in the measure that was asked for."""
