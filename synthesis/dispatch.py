@@ -7,9 +7,10 @@ from typing import Any
 from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_answer import LinkageResult
+from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.front import front_of
+from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
 
@@ -45,8 +46,10 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
         result = _relaxed(problem, result, relaxation(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0)))
-    if isinstance(result, LinkageResult):
-        result = result.model_copy(update={"front": front_of(result.designs)})
+    if isinstance(problem, LinkageProblem):
+        designs, remark = usable_first(problem, result.designs)
+        update = {"designs": designs, "summary": result.summary + remark, "front": front_of(designs)}
+        result = result.model_copy(update=update)
     told(1.0, "verified")
     return result
 

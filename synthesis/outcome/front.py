@@ -20,6 +20,16 @@ ERRORS = {
 """How the error of a design is told: its field in the metrics, the first that there is, and its name in the front."""
 
 
+def _error_field(metrics: Any) -> str | None:
+    return next((field for field in ERRORS if getattr(metrics, field, None) is not None), None)
+
+
+def error_of(design: Any) -> float:
+    """How far a design is from its task, as its kind measures it; 0 where every design is exact."""
+    field = _error_field(design.metrics)
+    return 0.0 if field is None else float(getattr(design.metrics, field))
+
+
 def front_of(designs: Sequence[Any]) -> Front | None:
     """The designs of an answer that no other beats; those that break a check are not looked at.
 
@@ -41,7 +51,7 @@ def front_of(designs: Sequence[Any]) -> Front | None:
         "min_transmission_angle": [-float(measured.min_transmission_angle) for measured in metrics],
         "size": [float(measured.size) for measured in metrics],
     }
-    error = next((field for field in ERRORS if getattr(metrics[0], field, None) is not None), None)
+    error = _error_field(metrics[0])
     if error is not None:
         columns = {ERRORS[error]: [max(float(getattr(measured, error)), ROUNDING) for measured in metrics], **columns}
     table = np.array(list(columns.values())).T
