@@ -39,7 +39,9 @@ def main() -> None:
         for ratio in RATIOS:
             result, spent = answer({"time_ratio": ratio, "swing": swing, "mechanism": "fourbar"})
             slowest = max(slowest, spent)
-            best = result.designs[0].metrics
+            best = max(
+                (design.metrics for design in result.designs), key=lambda metrics: metrics.min_transmission_angle
+            )
             off = max(abs(design.metrics.time_ratio - ratio) for design in result.designs)
             swing_off = max(abs(design.metrics.swing - swing) for design in result.designs)
             print(
