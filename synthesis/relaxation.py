@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from synthesis.model.answer import Check, Gap, NearestMiss, Result, Verification
+from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
 from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import Constraints
 from synthesis.model.statement import StatedProblem
@@ -117,7 +117,7 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Rela
         Gap(check=check.name, value=check.value, limit=check.limit, dimension=check.dimension)
         for check in nearest.broken
     ]
-    return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=reachable))
+    return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
 
 
 def _without_constraints(

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Generic, Self, TypeVar
 
 from pydantic import ConfigDict, Field
 
-from synthesis.model.dimension import LENGTH, Dimension, Measured
+from synthesis.model.dimension import ANGLE, LENGTH, Dimension, Measured
 
 Point = Annotated[tuple[float, float], LENGTH]
 
@@ -77,14 +77,20 @@ class Gap(Answer):
     dimension: Dimension | None = optional("What value and limit measure; left out for a pure number.")
 
 
+class Reachable(Answer):
+    """The best values of demands that were met where all others hold; those that are no trouble are left out."""
+
+    min_transmission_angle: Annotated[float, ANGLE] | None = optional("Degrees.")
+    max_link_ratio: float | None = optional()
+    tolerance: float | None = optional("Of a gear ratio: the least relative error.")
+
+
 class NearestMiss(Answer, Generic[Design]):
     """Where no design satisfies all demands: the one that was found to break them least."""
 
     design: Design
     gaps: list[Gap] = Field(description="The checks that it breaks.")
-    reachable: dict[str, float] = Field(
-        description="By the name of a constraint: the best value met where all other demands hold, in its own unit."
-    )
+    reachable: Reachable
 
 
 class Result(Answer, Generic[Design]):

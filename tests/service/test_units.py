@@ -25,6 +25,7 @@ PURE = {
     "FunctionProblem": {"scale_limits"},  # of input and output alike
     "FunctionStatement": {"x", "exponent", "base"},
     "FunctionTarget": {"input", "output", "residual"},
+    "Gap": {"value", "limit"},  # of the check's own dimension
     "GearPair": {"ratio"},
     "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
@@ -57,6 +58,7 @@ PURE = {
     "QuickReturnProblem": {"time_ratio"},
     "Ratio": {"value"},
     "RatioRange": {"least", "greatest"},
+    "Reachable": {"max_link_ratio", "tolerance"},
     "Rest": {"off_end"},
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
