@@ -187,7 +187,7 @@ def test_tampering_is_found():
     assert "reproduces_program" in broken(profile=curve(1.0001))
     assert "reproduces_program" in broken(profile=curve(1.0, 0.001))
     bump = list(mechanism.profile.x)
-    bump[200] += 0.002
+    bump[int(np.searchsorted(mechanism.profile.angle, 100.0))] += 0.002
     assert "reproduces_program" in broken(profile=mechanism.profile.model_copy(update={"x": bump}))
     assert "reproduces_program" in broken(prime_radius=mechanism.prime_radius * 1.0001)
     roller = mechanism.follower.model_copy(update={"roller_radius": 10.01})
@@ -382,3 +382,53 @@ def test_the_profile_is_held_against_the_program_between_its_points():
     (check,) = (check for check in design.verification.checks if check.name == "reproduces_program")
     assert check.value <= 1e-6 or not check.passed
     assert len(design.mechanism.profile.x) > 4000 or check.value == pytest.approx(1.2e-4, rel=0.05)
+
+
+@pytest.mark.parametrize("law", ["modified_sine", "cycloidal"])
+@pytest.mark.parametrize("limit", [1.0, 4.0])
+def test_the_least_radius_under_a_flat_face_is_measured_within_a_thousandth(law: str, limit: float) -> None:
+    """Circles through points half a degree apart had it up to half too large, always to the unsafe side."""
+    statement = {
+        "kind": "cam",
+        "segments": [
+            {"motion": "dwell", "angle": 140.0},
+            {"motion": "rise", "angle": 60.0, "lift": 20.0, "law": law},
+            {"motion": "dwell", "angle": 60.0},
+            {"motion": "return", "angle": 100.0, "law": law},
+        ],
+        "follower": {"type": "translating_flat"},
+        "limits": {"min_radius": limit},
+    }
+    (design,) = solve(parse_problem(statement)).designs
+    assert design.verification.passed
+    # Norton, eq. 8.31: the radius of curvature is base radius, displacement and acceleration; of the laws' own table,
+    # at every point of the profile.
+    table = design.mechanism.program
+    least = min(s + a for s, a in zip(table.s, table.a, strict=True)) + design.mechanism.base_radius
+    assert design.metrics.min_convex_radius <= least * 1.001
+    assert least == pytest.approx(limit, rel=2e-3)
+
+
+def test_a_contact_force_below_the_least_fails_whatever_preload_is_stated() -> None:
+    statement = {
+        "kind": "cam",
+        "segments": [
+            {"motion": "rise", "angle": 90.0, "lift": 20.0, "law": "cycloidal"},
+            {"motion": "return", "angle": 270.0, "law": "cycloidal"},
+        ],
+        "follower": {"type": "translating_roller", "roller_radius": 8.0},
+        "speed_rpm": 600.0,
+        "dynamics": {"mass": 2.0, "spring_rate": 0.5, "least_force": 5.0, "preload": 1.0},
+        "length_unit": "m",
+    }
+    statement["segments"][0]["lift"], statement["follower"]["roller_radius"] = 0.02, 0.008
+    result = solve(parse_problem(statement))
+    assert result.designs == []
+    gap = next(gap for gap in result.nearest_miss.gaps if gap.check == "contact_force")
+    assert gap.limit == 5.0
+    assert gap.value < 0.0
+    del statement["dynamics"]["preload"]
+    (design,) = solve(parse_problem(statement)).designs
+    checks = {check.name: check for check in design.verification.checks}
+    assert checks["contact_force"].passed
+    assert checks["contact_force"].value == pytest.approx(5.0, rel=1e-6)

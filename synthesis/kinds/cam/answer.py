@@ -27,6 +27,8 @@ from synthesis.kinds.cam.followers import BarrelRoller
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
+from synthesis.model.answer import Check
+from synthesis.model.dimension import FORCE
 from synthesis.outcome.sifting import Sifting
 
 FORCE_SLACK = 1e-9
@@ -106,10 +108,6 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     warnings, changes = [], None
     if groove:
         changes = np.unique(np.degrees(running.reversals()).round(9)).tolist()
-    elif force.least < 0.0:
-        warnings.append("the follower leaves the cam")
-    elif force.least < dynamics.least_force * arm * (1.0 - FORCE_SLACK):
-        warnings.append("the contact force falls below the least that was asked for")
     ratio = load.natural_frequency / speed
     if 0.0 < ratio < SLOW:
         warnings.append(f"the natural frequency is only {ratio:.3g} times the cam's speed; the follower will vibrate")
@@ -125,6 +123,19 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         frequency_ratio=ratio,
         warning="; ".join(warnings) or None,
     )
+
+
+def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
+    """Whether the follower stays on the cam with the least force that is demanded, none where no other is stated.
+
+    Between two walls the force may have either sign.
+    """
+    if forces is None or problem.dynamics is None or forces.wall_changes is not None:
+        return []
+    least = problem.dynamics.least_force
+    rounding = FORCE_SLACK * max(abs(forces.min_contact_force), abs(forces.max_contact_force), least)
+    passed = forces.min_contact_force >= least - rounding
+    return [Check(name="contact_force", passed=passed, value=forces.min_contact_force, limit=least, dimension=FORCE)]
 
 
 def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:

@@ -13,7 +13,15 @@ from kinematics.cam import follower as core
 from kinematics.cam.profile import Cam
 from kinematics.cam.program import Program
 from kinematics.errors import DimensionError
-from synthesis.kinds.cam.answer import joints_of, motion_metrics, none_of, optimality_of, result_of, segments_of
+from synthesis.kinds.cam.answer import (
+    force_checks,
+    joints_of,
+    motion_metrics,
+    none_of,
+    optimality_of,
+    result_of,
+    segments_of,
+)
 from synthesis.kinds.cam.barrel import solve_barrel
 from synthesis.kinds.cam.composition import (
     Composition,
@@ -48,6 +56,7 @@ from synthesis.kinds.cam.sizing import (
     translating_roller,
 )
 from synthesis.kinds.cam.verification import MEASURED_SLACK, Measured, verify
+from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 from synthesis.model.statement import Contradiction, ContradictionError
 
@@ -67,6 +76,9 @@ JERK_SHARE = 25.0
 
 BOUND_TOLERANCE = 0.01
 """A cam within this share of the bound is small enough."""
+
+QUARTERED = 127.0
+"""What :func:`refined` takes as a deviation, in those allowed, that divides a step in four."""
 
 NOT_ZERO = 1e-300
 """Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
@@ -111,13 +123,15 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     )
     if measured is None:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
+    metrics = _metrics(problem, cam, measured)
+    verification = Verification.of([*verification.checks, *force_checks(problem, metrics.forces)])
     design = CamDesign(
         mechanism=mechanism,
         segments=segments_of(problem, composed),
         joints=joints_of(problem, composed.program),
         optimality=optimality_of(problem, composed, cam.size),
         verification=verification,
-        metrics=_metrics(problem, cam, measured),
+        metrics=metrics,
     )
     progress(1.0, "verified")
     return result_of(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
@@ -179,6 +193,8 @@ def _closer(problem: CamProblem, cam: Cam, angle: Real, measured: Measured, fail
         return refined(angle, measured.off, REPRODUCED)
     if failed & SHAPE and not _shape_fails(problem, cam):
         return refined(angle, np.ones_like(angle), REPRODUCED)
+    if measured.unsettled.any():
+        return refined(angle, np.where(measured.unsettled, QUARTERED, 0.0), 1.0)
     return None
 
 

@@ -36,6 +36,18 @@ MEASURED_SLACK = 2e-3
 the acceleration bends, its local fifth degree is off by that much."""
 
 
+AGREE = 1e-3
+"""Relative difference of the curvatures of two circles, one twice as wide, that nearly agree: the narrow one is off by
+a third of this, and what both point to by far less."""
+
+CLOSEST = 1e-9
+"""Sagitta of two neighbouring points, as a share of their distance from the centre, below which they are put no closer:
+four times as close, rounding is a ten-thousandth of the curvature."""
+
+GREAT = 0.7
+"""Share of the greatest measured curvature from which a place may have the greatest one."""
+
+
 @dataclass(frozen=True)
 class Measured:
     """What the finished profile does.
@@ -55,6 +67,8 @@ class Measured:
     off : float64, shape (n,)
         Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
         a share of the lift; NaN where the follower touches nothing.
+    unsettled : bool, shape (n,)
+        From which angles to the next the curvature, where it is among the greatest, depends on how close points stand.
     """
 
     rising: float
@@ -65,6 +79,7 @@ class Measured:
     sweep: float
     radius: float
     off: Real
+    unsettled: NDArray[np.bool_]
 
 
 def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
@@ -102,7 +117,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         wall_checks, wall_off = _groove_checks(mechanism, follower, demanded)
         checks += wall_checks
         off = np.maximum(off, wall_off)
-    curvature = _curvature(contour)
+    curvature, unsettled = _curvature(contour)
     rising, falling = demanded.steepest(contact.pressure_angle)
     convex = float(1.0 / curvature.max()) if curvature.max() > 0.0 else math.inf
     concave = float(-1.0 / curvature.min()) if curvature.min() < 0.0 else math.inf
@@ -117,6 +132,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         float(np.ptp(_reach(mechanism, contact.point, demanded.angle))),
         float(np.abs(contour.points).max()),
         off,
+        unsettled,
     )
     if touches:
 
@@ -147,14 +163,29 @@ def _groove_checks(mechanism: CamMechanism, follower: Follower, demanded: Reprod
     ], off
 
 
-def _curvature(contour: Contour) -> Real:
-    """Of the circle through each three neighbouring points of the profile, positive where convex.
+def _curvature(contour: Contour) -> tuple[Real, NDArray[np.bool_]]:
+    """Curvature at each point of the profile, positive where convex, and from which points to the next it is unsettled.
 
-    Between its points the curvature of a cam can bend sharply, where its jerk jumps; a circle through three points
-    averages over them and does not overshoot, as the derivatives of a curve of higher degree do.
+    A circle through a point and its neighbours averages the curvature over them, so that the greatest is found too
+    small: unsafe. The circle of twice the width is wrong by four times as much. Where both nearly agree the curvature
+    is what they point to; elsewhere the points have to stand closer, if the curvature there is among the greatest and
+    rounding leaves room. Where it jumps no circle over the jump is right at any width, but those beside it are.
     """
+    near, wide = _circles(contour, 1), _circles(contour, 2)
+    great = near >= GREAT * near.max()
+    if near.min() < 0.0:
+        great |= near <= GREAT * near.min()
+    agree = np.abs(near - wide) <= AGREE * np.abs(near)
+    chord = np.abs(np.diff(contour.points, append=contour.points[:1]))
+    room = np.abs(near) * np.minimum(chord, np.roll(chord, 1)) ** 2 >= CLOSEST * np.abs(contour.points)
+    unsettled = great & ~agree & room
+    return np.where(agree, near + (near - wide) / 3.0, near), np.asarray(unsettled | np.roll(unsettled, -1), np.bool_)
+
+
+def _circles(contour: Contour, stride: int) -> Real:
+    """Curvature of the circle through each point of the profile and those ``stride`` before and after it."""
     points = contour.points
-    before, after = np.roll(points, 1), np.roll(points, -1)
+    before, after = np.roll(points, stride), np.roll(points, -stride)
     sides = np.abs(points - before) * np.abs(after - points) * np.abs(after - before)
     sign = 1.0 if contour.turns_ccw else -1.0
     return np.asarray(2.0 * sign * (np.conj(points - before) * (after - points)).imag / sides)
