@@ -87,6 +87,9 @@ class SteeringProblem(LinkageProblem):
         if self.constraints.full_rotation:
             detail = "a steering mechanism goes from lock to lock and does not turn through; drop the demand"
             found.append(Contradiction("/constraints/full_rotation", detail))
+        if not self.constraints.same_branch:
+            detail = "a steering mechanism that passes a toggle between its locks does not steer; drop the demand"
+            found.append(Contradiction("/constraints/same_branch", detail))
         if self.mechanism == "davis":
             found += self.constraints.of_another_class((), "Davis's gear has slides and no class of fourbars")
         else:

@@ -1,0 +1,157 @@
+"""Rows of gear trains and gearboxes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tests.service.stated.row import Row
+
+TRAIN: dict[str, Any] = {
+    "kind": "gear_train",
+    "ratio": "127/50",
+    "max_stages": 2,
+    "teeth": {"min": 15, "max": 40},
+    "max_designs": 3,
+}
+PLACES = {
+    "ratio": "6",
+    "teeth": [{"min": 15, "max": 20}, {"min": 30, "max": 60}, {"min": 15, "max": 20}, {"min": 30, "max": 60}],
+}
+STOCK = {"teeth": None, "stock": [{"teeth": 20, "count": 1}, 20, 25, 30, 50, 51, 60]}
+
+TRAIN_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", file="csv"),
+    "seed": 7,
+    "max_designs": 2,
+    "ratio": "128/50",
+    "direction": "opposite",
+    "max_stages": 1,
+    "teeth": {"min": 15, "max": 39},
+    "teeth.min": 20,
+    "teeth.max": 30,
+    "teeth[].min": Row(18, PLACES),
+    "teeth[].max": Row(31, PLACES, at="teeth[1].max"),
+    "stock": Row([20, 25, 30, 50, 52], STOCK),
+    "stock[].teeth": Row(21, STOCK),
+    "stock[].count": Row(2, {**STOCK, "stock": [{"teeth": 20, "count": 1}, 30, 50, 60], "ratio": "7.5"}),
+    "max_stage_ratio": 1.6,
+    "max_total_teeth": 100,
+    "hunting_tooth": "require",
+    "reverted": True,
+    "module": 2.0,
+    "diametral_pitch": 2.0,
+    "pressure_angle": 25.0,
+    "interference": Row("refuse", {"teeth": {"min": 10, "max": 40}}),
+    "tolerance": 1e-9,
+    "rank_by": "size",
+    "size": Row("largest_gear", {"rank_by": "size"}),
+}
+
+PLANETARY: dict[str, Any] = {
+    "kind": "planetary_train",
+    "ratio": 5.5,
+    "arrangement": "simple",
+    "input": "sun",
+    "output": "carrier",
+    "fixed": "ring",
+    "teeth": {"min": 17, "max": 60, "ring_max": 130},
+    "max_designs": 3,
+}
+PLANETARY_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", file="csv"),
+    "seed": 7,
+    "max_designs": 2,
+    "ratio": 5.0,
+    "arrangement": Row(
+        "double_planet",
+        {"ratio": 4.0, "teeth": {"min": 17, "max": 30, "ring_max": 90}, "input": None, "output": None, "fixed": None},
+    ),
+    "planets": 4,
+    "spacing": Row("nearest", {"planets": 5}),
+    "input": Row("carrier", {"ratio": 1.5, "input": None, "output": None, "fixed": None}),
+    "output": Row("carrier", {"ratio": 1.5, "input": None, "output": None, "fixed": None}),
+    "fixed": Row("sun", {"ratio": 1.5, "input": None, "output": None, "fixed": None}),
+    "teeth": {"min": 18, "max": 60, "ring_max": 130},
+    "teeth.min": 22,
+    "teeth.max": 40,
+    "teeth.ring_max": 100,
+    "teeth.gears": {"sun": {"min": 25, "max": 30}},
+    "teeth.gears{}.min": Row(26, {"teeth.gears": {"sun": {"min": 20, "max": 30}}}),
+    "teeth.gears{}.max": Row(21, {"teeth.gears": {"sun": {"min": 20, "max": 30}}}),
+    "module": 2.0,
+    "pressure_angle": 25.0,
+    "tolerance": 0.5,
+    "max_size": 1e6,
+    "min_clearance": 8.0,
+    "min_contact_ratio": 1.1,
+    "mesh_efficiency": 0.97,
+    "rank_by": Row("size", {"tolerance": 0.1}),
+}
+
+GEARBOX: dict[str, Any] = {
+    "kind": "gearbox",
+    "input_speed": 200.0,
+    "speeds": {"min": 100.0, "max": 400.0, "count": 4},
+    "stage_ratio": {"min": 0.25, "max": 2.0},
+    "tooth_sum": {"min": 60, "max": 80},
+    "max_designs": 2,
+}
+SERIES = {"speeds": {"min": 100.0, "count": 3, "series": "R10", "step": 2}}
+GEARBOX_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", file="dxf"),
+    "seed": 7,
+    "max_designs": 1,
+    "input_speed": 210.0,
+    "speeds": {"min": 100.0, "max": 390.0, "count": 4},
+    "speeds.min": 101.0,
+    "speeds.count": 3,
+    "speeds.max": 390.0,
+    "speeds.ratio": Row(1.5, {"speeds": {"min": 100.0, "count": 4, "ratio": 1.4}}),
+    "speeds.series": Row("R20", SERIES),
+    "speeds.step": Row(1, SERIES),
+    "structure": [4],
+    "max_pairs": Row(2, {"speeds": {"min": 100.0, "max": 200.0, "count": 3}}),
+    "fixed_stage": True,
+    "teeth": {"min": 20, "max": 60},
+    "teeth.min": Row(24, {"teeth": {"min": 18, "max": 60}}),
+    "teeth.max": Row(45, {"teeth": {"min": 18, "max": 60}}),
+    "tooth_sum": {"min": 60, "max": 70},
+    "tooth_sum.min": 70,
+    "tooth_sum.max": 70,
+    "stage_ratio": {"min": 0.3, "max": 1.5},
+    "stage_ratio.min": 0.6,
+    "stage_ratio.max": 1.1,
+    "cluster_difference": Row(6, {"speeds": {"min": 100.0, "max": 200.0, "count": 3}, "structure": [3]}),
+    "tolerance": 0.1,
+    "module": 2.0,
+    "pressure_angle": 25.0,
+    "rank_by": "size",
+}
+
+LAYSHAFT: dict[str, Any] = {
+    "kind": "layshaft_gearbox",
+    "ratios": [3.5, 2.1, 1.4, 1.0],
+    "teeth": {"min": 14, "max": 60},
+    "tooth_sum": {"min": 50, "max": 70},
+    "interference": "report",
+    "max_designs": 2,
+}
+LAYSHAFT_ROWS: dict[str, Any] = {
+    "length_unit": Row("in", file="dxf"),
+    "seed": 7,
+    "max_designs": 1,
+    "ratios": [3.4, 2.1, 1.4, 1.0],
+    "reverse": 3.3,
+    "direct": False,
+    "teeth": {"min": 16, "max": 60},
+    "teeth.min": 17,
+    "teeth.max": 40,
+    "tooth_sum": {"min": 50, "max": 60},
+    "tooth_sum.min": 66,
+    "tooth_sum.max": 55,
+    "interference": "refuse",
+    "tolerance": 0.5,
+    "module": 2.0,
+    "pressure_angle": 25.0,
+    "rank_by": Row("size", {"tolerance": 0.1}),
+}
