@@ -51,7 +51,11 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
     first = [design for design in near if usable(design)]
     practice = f"a least transmission angle of {TRANSMISSION_ANGLE:.0f}° and a link ratio of {LINK_RATIO:.0f} or less"
     if not first:
-        what = "None that was found" if len(near) == len(passed) else f"None within {BAND:g} times the least error"
+        what = (
+            "No design that was found"
+            if len(near) == len(passed)
+            else f"No design within {BAND:g} times the least error"
+        )
         return Ordered(list(designs), f" {what} has {practice}.")
     kept = {id(design) for design in first}
     others = [design for design in designs if id(design) not in kept]

@@ -31,7 +31,7 @@ def pair(kind: str, name: str) -> tuple[Statement, Statement]:
 
 
 ROWS = [
-    pytest.param(kind, name, marks=[pytest.mark.slow] if row_of(kind, name).slow else [], id=f"{kind}: {name}")
+    pytest.param(kind, name, marks=pytest.mark.campaign, id=f"{kind}: {name}")
     for kind, (_, rows) in TABLES.items()
     for name in rows
 ]

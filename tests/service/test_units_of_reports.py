@@ -14,7 +14,7 @@ from service.render.page.numbers import length
 from service.render.report import Occasion, report
 from service.units import symbols
 from synthesis.dispatch import solve
-from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
+from synthesis.model.dimension import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
 from synthesis.registry import KINDS, examples, parse_problem
 
 OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
@@ -25,6 +25,7 @@ QUICK = {"motion": 3, "path": 1, "function": 1, "cam": 0, "straight_line": 1, "q
 # What the checks measure that compare in a unit; the others are shares, residuals, ratios and counts, which have none.
 MEASURING = {
     "transmission_angle": ANGLE,
+    "contact_force": FORCE,
     "shortest_link": LENGTH,
     "longest_link": LENGTH,
     "swing": ANGLE,

@@ -181,14 +181,14 @@ PATH_ROWS: dict[str, Any] = {
     ),
     "closed": True,
     "method": "least_squares",
-    "placement_free": Row(["position"], {**ELLIPSE, "fixed_pivots": {"input": [0.0, 0.0]}}, slow=True),
+    "placement_free": Row(["position"], {**ELLIPSE, "fixed_pivots": {"input": [0.0, 0.0]}}),
     "points[].tolerance": Row(1.0, {"method": "least_squares"}),
     "mechanism": Row("slider_crank", UNTIMED),
-    "gear_ratio": Row(2.0, {**UNTIMED, "mechanism": "geared_fivebar"}, slow=True),
+    "gear_ratio": Row(2.0, {**UNTIMED, "mechanism": "geared_fivebar"}),
     "fixed_pivots": Row({"input": [-10.0, 0.0]}, {"points": TIMED[:4]}),
     "fixed_pivots.input": Row([-12.0, 0.0], {"points": TIMED[:3], "fixed_pivots": {"input": [-10.0, 0.0]}}),
     "fixed_pivots.output": Row([42.0, 10.0], {"points": TIMED[:4], "fixed_pivots": {"output": [40.0, 10.0]}}),
-    "rounds": Row(2, {**UNTIMED, "fixed_pivots": {}}, slow=True),
+    "rounds": Row(2, {**UNTIMED, "fixed_pivots": {}}),
 }
 
 QUICK_RETURN: dict[str, Any] = {
@@ -276,12 +276,12 @@ DWELL_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
     **{
-        f"constraints.{region}.{axis}": Row(FAR, {f"constraints.{region}": WIDE}, slow=True)
+        f"constraints.{region}.{axis}": Row(FAR, {f"constraints.{region}": WIDE})
         for region in ("fixed_pivot_region", "moving_pivot_region")
         for axis in "xy"
     },
     "max_designs": 2,
-    "include_failed": Row(True, {"constraints.link_length": {"max": 20.0}}, slow=True),
+    "include_failed": Row(True, {"constraints.link_length": {"max": 20.0}}),
     "rank_by": "size",
     "dwell_angle": 50.0,
     "output": SLIDER["output"],

@@ -23,7 +23,6 @@ class Row:
     base: dict[str, Any] = field(default_factory=dict)
     at: str | None = None
     file: str | None = None
-    slow: bool = False
 
 
 def changed(problem: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
