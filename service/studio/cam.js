@@ -147,11 +147,17 @@ export class Disc extends Turning {
   /** Of the roller, in the ground's frame. @param {number} angle @returns {Point} */
   centre(angle) {
     const { angle: at, x, y } = this.mechanism.pitch_curve;
-    const degrees = ((angle * 180) / Math.PI) % 360;
-    const step = 360 / at.length;
-    const k = Math.min(at.length - 1, Math.max(0, Math.floor((degrees - at[0]) / step)));
+    const past = (/** @type {number} */ from, /** @type {number} */ to) => to - from - 360 * Math.floor((to - from) / 360);
+    const degrees = past(0, (angle * 180) / Math.PI);
+    // Points stand closer where the cam is curved most.
+    let [k, end] = [0, at.length];
+    while (end - k > 1) {
+      const middle = (k + end) >> 1;
+      if (at[middle] <= degrees) k = middle;
+      else end = middle;
+    }
     const next = (k + 1) % at.length;
-    const share = (degrees - at[k]) / step;
+    const share = past(at[k], degrees) / (past(at[k], at[next]) || 360);
     return turned([x[k] + share * (x[next] - x[k]), y[k] + share * (y[next] - y[k])], this.sense * angle);
   }
 
