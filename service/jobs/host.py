@@ -33,6 +33,13 @@ from service.settings import Settings
 BEAT_PERIOD_S = 0.5
 """Period at which a host renews its leases and looks for cancelled jobs, which must stop within two seconds."""
 
+STARVED_S = 5.0
+"""A host that has had nothing to do for so long, while jobs wait for as long, takes them from the store itself: after
+the broker was restarted its consumer may be connected and yet be given no messages any more."""
+
+MAX_TAKEN = 50
+"""Jobs that it then takes at once."""
+
 log = structlog.get_logger(__name__)
 
 
@@ -99,12 +106,26 @@ class Host:
         for done in waiting:
             done.set()
 
+    def _take_overdue(self) -> None:
+        overdue = self._leases.overdue(STARVED_S, MAX_TAKEN)
+        for job_id in overdue:
+            self.lanes.submit(job_id)
+        if overdue:
+            log.warning("the broker brings no jobs; taken from the store", jobs=len(overdue))
+
     def _beat(self) -> None:
+        busy_at = time.monotonic()
         while not self._stopping.wait(BEAT_PERIOD_S):
             try:
-                for claim in self._leases.renew(self.lanes.claims()):
+                claims = self.lanes.claims()
+                for claim in self._leases.renew(claims):
                     self.lanes.drop(claim)
                 self._leases.host_is_there(self.id, self.lanes.ready())
+                if claims or self.waiting() or not self.lanes.ready():
+                    busy_at = time.monotonic()
+                elif time.monotonic() > busy_at + STARVED_S:
+                    self._take_overdue()
+                    busy_at = time.monotonic()
             except SQLAlchemyError as error:
                 if not unreachable(error):
                     log.exception("the leases could not be renewed")

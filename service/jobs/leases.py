@@ -87,6 +87,17 @@ class LeaseStore:
         with self._engine.begin() as connection:
             return sorted(connection.execute(change).scalars())
 
+    def overdue(self, after_s: float, at_most: int) -> list[str]:
+        """Jobs that have been in the queue for so long, oldest first; whoever claims one first has it."""
+        query = (
+            select(jobs.c.id)
+            .where(jobs.c.status == Status.QUEUED, jobs.c.queued_at < StoreClock() - after_s)
+            .order_by(jobs.c.id)
+            .limit(at_most)
+        )
+        with self._engine.connect() as connection:
+            return list(connection.execute(query).scalars())
+
     def not_sent(self, job_ids: Sequence[str]) -> None:
         """Make jobs due again at once that :meth:`due` has given out and that could not be sent."""
         for start in range(0, len(job_ids), MAX_IDS):
