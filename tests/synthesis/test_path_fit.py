@@ -217,7 +217,8 @@ def test_the_literatures_problems(row):
     """At or under what is published and known, under the rules of each, from every seed that is tried."""
     for seed in (0, 7):
         result = solve(parse_problem(statement(row, seed)), silent)
-        best = result.designs[0]
+        # The nearest: one that transmits force better may stand before it.
+        best = min(result.designs, key=lambda design: design.metrics.sum_of_squares)
         assert best.verification.passed
         found = best.metrics.sum_of_squares
         points = np.array([complex(x, y) for x, y in row["inputs"]["points"]])
@@ -241,7 +242,7 @@ def test_planted_timed_fits_are_recovered_every_time():
         linkage = drawn(rng)
         angles = np.sort(rng.uniform(0.0, 360.0, int(rng.integers(6, 30))))
         points = positions(linkage, np.radians(angles) + rng.uniform(0.0, 6.0), OPEN).p
-        best = fit(points, angles).designs[0]
+        best = min(fit(points, angles).designs, key=lambda design: design.metrics.max_distance)
         size = np.abs(points[:, None] - points).max()
         assert best.metrics.max_distance < 1e-9 * size
 
