@@ -54,7 +54,11 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
 
         linkages = fitted_by_shape(problem, second)
         fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
-    fits.withdraw(steady(fits.passed, problem), FAR)
+    kept = steady(fits.passed, problem)
+    if fits.passed and not problem.closed:  # what is nearest at the points is told, wherever it stands
+        nearest = min(fits.passed, key=lambda design: design.metrics.sum_of_squares)
+        kept = kept if any(design is nearest for design in kept) else [*kept, nearest]
+    fits.withdraw(kept, FAR)
     progress(1.0, "verified")
     return fits.result("least_squares", complete=False, summary=fits.summary())
 
