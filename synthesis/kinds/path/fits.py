@@ -12,7 +12,7 @@ import numpy as np
 from synthesis.kinds.path.curve_match import fitted_by_shape
 from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.harvest import Harvest
-from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, error_of, least_error, steady
+from synthesis.kinds.path.nearness import ERROR_TOLERANCE, FAR, NEARER, error_of, least_error, steady
 from synthesis.kinds.path.point_fit import Candidate, fitted, mechanism_of, point_task
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verification import verify_path
@@ -55,9 +55,8 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
         linkages = fitted_by_shape(problem, second)
         fits.sift(reported(linkages, second, (0.8, 1.0), "driving linkage {next} of {all}"), driven)
     kept = steady(fits.passed, problem)
-    if fits.passed and not problem.closed:  # what is nearest at the points is told, wherever it stands
-        nearest = min(fits.passed, key=lambda design: design.metrics.sum_of_squares)
-        kept = kept if any(design is nearest for design in kept) else [*kept, nearest]
+    if fits.passed and not problem.closed and (nearest := _nearest(fits.passed)) not in kept:
+        kept.append(nearest)
     fits.withdraw(kept, FAR)
     progress(1.0, "verified")
     return fits.result("least_squares", complete=False, summary=fits.summary())
@@ -73,11 +72,25 @@ class _Fits(Harvest):
         return least_error(self.passed, self.problem) > STRAYS * nearest
 
     def different(self, designs: list[PathDesign]) -> list[PathDesign]:
-        """Nearest first unless another order is asked for or points have tolerances: then quality decides."""
+        """Nearest first unless another order is asked for or points have tolerances: then quality decides.
+
+        What comes nearest at the points alone is always among those returned, last where it goes astray between them:
+        points that lie far apart say little of the way from one to the next.
+        """
         if self.problem.tolerances is not None:
             return ranked(super().different(designs), self.problem.rank_by)
-        nearest = {"quality": lambda design: error_of(design, self.problem)}
-        return ranked(super().different(designs), self.problem.rank_by, {**nearest, "accuracy": nearest["quality"]})
+
+        def error(design: PathDesign) -> float:
+            return error_of(design, self.problem)
+
+        order = ranked(super().different(designs), self.problem.rank_by, {"quality": error, "accuracy": error})
+        shown = order[: self.problem.max_designs]
+        passed = [design for design in designs if design.verification.passed]
+        if len(shown) > 1 and passed:
+            nearest, limit = _nearest(passed), NEARER * ERROR_TOLERANCE * self.problem.task_size
+            if _nearest(shown).metrics.rms_distance > max(NEARER * nearest.metrics.rms_distance, limit):
+                shown = [*shown[: self.problem.max_designs - 1], nearest]
+        return [*shown, *(design for design in order if design not in shown)]
 
     def summary(self) -> str:
         """The answer in words."""
@@ -98,3 +111,8 @@ class _Fits(Harvest):
             rejected = self.listed() or "none"
             text = f"None of {self.candidates} fitted linkages satisfies all demands (rejected: {rejected})."
         return text + " Least squares descends from many starts; a nearer linkage may exist that none of them leads to."
+
+
+def _nearest(designs: list[PathDesign]) -> PathDesign:
+    """The design that comes nearest at the points."""
+    return min(designs, key=lambda design: design.metrics.sum_of_squares)
