@@ -23,8 +23,10 @@ from typing import NamedTuple
 import numpy as np
 
 from synthesis.kinds.gear_train.candidates import Candidates, Halves, coaxial_meshes, few_meshes, stage_reach
-from synthesis.kinds.gear_train.kernels import MOST_STAGES, NOISE, WINDOW_MARGIN, Found, Integers
+from synthesis.kinds.gear_train.kernels import WINDOW_MARGIN
+from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers
 from synthesis.kinds.gear_train.problem import NEAR
+from synthesis.kinds.gear_train.shortlist import NOISE, Found
 from synthesis.kinds.gear_train.task import UNLIMITED, Task
 from synthesis.model.ratio_target import Target
 from synthesis.outcome.exhaustive import pareto

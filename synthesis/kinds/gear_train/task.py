@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.gear.teeth import largest_gear
-from synthesis.kinds.gear_train.kernels import MOST_STAGES, Integers, Rule
+from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers, Rule
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.model.gear_statement import MOST_TEETH
 from synthesis.model.ratio_target import Target, decimal

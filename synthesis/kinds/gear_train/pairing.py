@@ -1,0 +1,195 @@
+"""Which trains are candidates: the rule of a search, and how the gears of a train may be paired under it, compiled.
+
+A train is an array of a₁...a₄ b₁...b₄ (drivers and driven gears) and marks₁...₄ of the stages, 0 for no stage.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Integers = NDArray[np.int64]
+
+MOST_STAGES = 4
+
+
+class Rule(NamedTuple):
+    """What makes a train a candidate and how candidates are ranked.
+
+    ``allowed[a, b]`` tells which meshes may be, where ``by_mesh``; ``stock[t]`` how many gears of t teeth there are,
+    where ``by_stock``. ``with_idler``: in one stage, of the pairs ``idled``, an idler stands between the gears, and has
+    to mesh soundly (``sound``) with both; of a stock it takes one more gear. ``most_total`` bounds the sum of all
+    teeth. ``ordered``: stages have ranges of their own, of the place i of a train's teeth from ``least[i]`` to
+    ``most[i]``. ``by_size``: the smallest trains first,
+    else the nearest. ``largest``: the size of a train is its largest gear, else the sum of all teeth.
+    """
+
+    target: float
+    target_rest: float
+    tolerance: float
+    by_size: bool
+    largest: bool
+    ordered: bool
+    least: Integers
+    most: Integers
+    by_mesh: bool
+    allowed: NDArray[np.bool_]
+    with_idler: bool
+    sound: NDArray[np.bool_]
+    idled: NDArray[np.bool_]
+    by_stock: bool
+    stock: Integers
+    most_total: int
+
+
+@njit(cache=True, nogil=True)
+def within_limits(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Whether there are enough gears of each tooth number, and the sum of all teeth is small enough."""
+    total = 0
+    for i in range(k):
+        total += teeth[i] + teeth[MOST_STAGES + i]
+    if total > rule.most_total:
+        return False
+    if rule.by_stock:
+        for i in range(2 * k):
+            one = teeth[i] if i < k else teeth[MOST_STAGES + i - k]
+            same = 0
+            for j in range(2 * k):
+                other = teeth[j] if j < k else teeth[MOST_STAGES + j - k]
+                same += one == other
+            if same > rule.stock[one]:
+                return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def takes_idler(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Whether an idler that there is can stand in a stage, and all other stages are allowed without one."""
+    for stage in range(k):
+        a, b = teeth[stage], teeth[MOST_STAGES + stage]
+        others = True
+        for j in range(k):
+            others = others and (j == stage or rule.allowed[teeth[j], teeth[MOST_STAGES + j]])
+        if not others or not rule.idled[a, b]:
+            continue
+        if not rule.by_stock:
+            return True
+        for idler in range(len(rule.stock)):
+            if rule.stock[idler] > 0 and rule.sound[a, idler] and rule.sound[idler, b]:
+                spare = rule.stock[idler]
+                for j in range(k):
+                    spare -= (teeth[j] == idler) + (teeth[MOST_STAGES + j] == idler)
+                if spare > 0:
+                    return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def may_be(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Whether all stages of a train, as its gears are paired, are allowed."""
+    if not rule.by_mesh:
+        return True
+    for i in range(k):
+        a, b = teeth[i], teeth[MOST_STAGES + i]
+        if not (rule.allowed[a, b] or (rule.with_idler and rule.idled[a, b])):
+            return False
+    return not rule.with_idler or takes_idler(teeth, k, rule)
+
+
+@njit(cache=True, nogil=True)
+def widest(teeth: Integers, k: int) -> float:
+    """The largest stage ratio, larger over smaller gear; equal for equal ratios, which are rounded once."""
+    ratio = 1.0
+    for i in range(k):
+        a, b = teeth[i], teeth[MOST_STAGES + i]
+        ratio = max(ratio, max(a, b) / min(a, b))
+    return ratio
+
+
+@njit(cache=True, nogil=True)
+def orders(k: int) -> int:
+    """How many orders k things have."""
+    count = 1
+    for i in range(2, k + 1):
+        count *= i
+    return count
+
+
+@njit(cache=True, nogil=True)
+def rearrange(teeth: Integers, start: int, k: int, order: int, moved: Integers) -> None:
+    """Write k of the numbers, from ``start`` on, in one of their orders; 0 is the one that they have."""
+    for i in range(k):
+        moved[start + i] = teeth[start + i]
+    for i in range(k):
+        rest = orders(k - 1 - i)
+        chosen, order = start + i + order // rest, order % rest
+        value = moved[chosen]
+        for j in range(chosen, start + i, -1):
+            moved[j] = moved[j - 1]
+        moved[start + i] = value
+
+
+@njit(cache=True, nogil=True)
+def in_ranges(teeth: Integers, start: int, k: int, rule: Rule) -> bool:
+    """Whether the drivers, or the driven gears, of a train lie within the ranges of their places."""
+    inside = True
+    for i in range(start, start + k):
+        inside = inside and rule.least[i] <= teeth[i] <= rule.most[i]
+    return inside
+
+
+@njit(cache=True, nogil=True)
+def foremost(teeth: Integers, k: int, rule: Rule, coaxial: bool) -> bool:
+    """Whether a train stands for all that have its gears in other places (``coaxial``: its meshes).
+
+    Of those within the ranges it has the smallest largest stage ratio, and of such ones the smallest first numbers.
+    """
+    if not may_be(teeth, k, rule):
+        return False
+    own, count = widest(teeth, k), orders(k)
+    other = np.zeros(3 * MOST_STAGES, np.int64)
+    for order in range(count):
+        rearrange(teeth, 0, k, order, other)
+        if not in_ranges(other, 0, k, rule):
+            continue
+        rearrange(teeth, 2 * MOST_STAGES, k, order, other)
+        for mates in range(order if coaxial else 0, order + 1 if coaxial else count):
+            rearrange(teeth, MOST_STAGES, k, mates, other)
+            if not in_ranges(other, MOST_STAGES, k, rule) or not may_be(other, k, rule):
+                continue
+            ratio = widest(other, k)
+            if ratio > own:
+                continue
+            if ratio < own:
+                return False
+            for i in range(len(teeth)):
+                if other[i] != teeth[i]:
+                    if other[i] < teeth[i]:
+                        return False
+                    break
+    return True
+
+
+@njit(cache=True, nogil=True)
+def pair_up(teeth: Integers, k: int, rule: Rule) -> bool:
+    """Bring the driven gears of a train into the order of the smallest largest stage ratio; False: none is allowed.
+
+    Without ranges by place both come in rising order, and of all pairings that has the smallest largest stage ratio;
+    where it is not allowed the others are tried. With ranges every order comes by itself, and the foremost is taken.
+    """
+    if rule.ordered:
+        return foremost(teeth, k, rule, False)
+    if may_be(teeth, k, rule):
+        return True
+    trial, best = teeth.copy(), teeth.copy()
+    least = np.inf
+    for order in range(1, orders(k)):
+        rearrange(teeth, MOST_STAGES, k, order, trial)
+        if may_be(trial, k, rule) and widest(trial, k) < least:
+            least = widest(trial, k)
+            best[:] = trial
+    teeth[:] = best
+    return least < np.inf

@@ -1,0 +1,95 @@
+"""What a search for tooth numbers has met so far: the best trains in order, and the least error of each size, compiled.
+
+Two errors that differ by less than :data:`SAME` of themselves are taken for a tie here; the callers order what comes
+out in exact arithmetic.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.kinds.gear_train.pairing import MOST_STAGES, Integers
+
+Floats = NDArray[np.float64]
+
+SAME = 1e-14
+"""Errors closer than this share of themselves count as tied in the loops: some thirty roundings."""
+
+NOISE = 1e-28
+"""Error that a train of exactly the target's ratio can show: the target's two floats are good to 2⁻¹⁰⁵."""
+
+
+class Found(NamedTuple):
+    """What a search has met so far; arrays that the kernels write to.
+
+    ``kept[0]`` trains stand in ``error``, ``size``, ``teeth`` in the order of the ranking; ``least_error[s]`` belongs
+    to the train ``least_teeth[s]`` of size s. Teeth are a₁...a₄ b₁...b₄ and marks₁...₄ of the stages, 0 for no stage.
+    """
+
+    kept: Integers
+    error: Floats
+    size: Integers
+    teeth: Integers
+    least_error: Floats
+    least_teeth: Integers
+    ties: Integers
+
+    @classmethod
+    def empty(cls, capacity: int, largest_size: int) -> Found:
+        """Room for ``capacity`` best trains and for sizes up to ``largest_size``."""
+        return cls(
+            np.zeros(1, np.int64),
+            np.full(capacity, np.inf),
+            np.zeros(capacity, np.int64),
+            np.zeros((capacity, 3 * MOST_STAGES), np.int64),
+            np.full(largest_size + 1, np.inf),
+            np.zeros((largest_size + 1, 3 * MOST_STAGES), np.int64),
+            np.zeros(1, np.int64),
+        )
+
+
+@njit(cache=True, nogil=True)
+def before(e: float, s: int, other_e: float, other_s: int, by_size: bool) -> bool:
+    """Whether a train of error e and size s ranks before another."""
+    if by_size and s != other_s:
+        return s < other_s
+    slack = SAME * (e + other_e) + NOISE
+    if abs(e - other_e) > slack:
+        return e < other_e
+    return s < other_s
+
+
+@njit(cache=True, nogil=True)
+def worth(e: float, s: int, shortlist: Found, by_size: bool) -> bool:
+    """Whether a train would enter the best or improve on its size."""
+    capacity, count = len(shortlist.error), shortlist.kept[0]
+    if count < capacity or before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
+        return True
+    return bool(e < shortlist.least_error[s])
+
+
+@njit(cache=True, nogil=True)
+def enter(e: float, s: int, teeth: Integers, shortlist: Found, by_size: bool) -> None:
+    """Take a train in."""
+    if e < shortlist.least_error[s]:
+        shortlist.least_error[s] = e
+        for i in range(len(teeth)):
+            shortlist.least_teeth[s, i] = teeth[i]
+    capacity, count = len(shortlist.error), shortlist.kept[0]
+    if count == capacity and not before(e, s, shortlist.error[capacity - 1], shortlist.size[capacity - 1], by_size):
+        return
+    place = min(count, capacity - 1)
+    while place > 0 and before(e, s, shortlist.error[place - 1], shortlist.size[place - 1], by_size):
+        shortlist.error[place] = shortlist.error[place - 1]
+        shortlist.size[place] = shortlist.size[place - 1]
+        for i in range(len(teeth)):
+            shortlist.teeth[place, i] = shortlist.teeth[place - 1, i]
+        place -= 1
+    shortlist.error[place], shortlist.size[place] = e, s
+    for i in range(len(teeth)):
+        shortlist.teeth[place, i] = teeth[i]
+    shortlist.kept[0] = min(count + 1, capacity)
