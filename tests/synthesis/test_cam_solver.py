@@ -432,3 +432,19 @@ def test_a_contact_force_below_the_least_fails_whatever_preload_is_stated() -> N
     checks = {check.name: check for check in design.verification.checks}
     assert checks["contact_force"].passed
     assert checks["contact_force"].value == pytest.approx(5.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"closure": "form"}, {"follower": {"type": "barrel_roller", "roller_radius": 5.0, "cylinder_radius": 60.0}}],
+    ids=["groove", "barrel"],
+)
+def test_a_least_force_between_two_walls_is_refused(changes) -> None:
+    dynamics = {"mass": 0.5, "spring_rate": 20.0, "least_force": 50.0}
+    statement = {**DOUBLE_DWELL, "speed_rpm": 60.0, "dynamics": dynamics, **changes}
+    if "follower" in changes:
+        statement.pop("limits", None)
+    (fault,) = parse_problem(statement).contradictions()
+    assert fault.path == "/dynamics/least_force"
+    dynamics["least_force"] = 0.0
+    assert parse_problem(statement).contradictions() == []

@@ -23,7 +23,6 @@ from synthesis.kinds.cam.design import (
     CamSegment,
     Optimality,
 )
-from synthesis.kinds.cam.followers import BarrelRoller
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
@@ -101,7 +100,7 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     load, speed = follower_load(problem)
     arm = arm_length(problem)
     least = RunningCam(program, replace(load, preload=0.0), speed).least_preload(dynamics.least_force * arm)
-    groove = problem.closure == "form" or isinstance(problem.follower, BarrelRoller)
+    groove = problem.grooved
     preload = least if dynamics.preload is None and not groove else load.preload
     running = RunningCam(program, replace(load, preload=preload), speed)
     force, torque = running.force_extremes, running.torque_extremes

@@ -166,8 +166,12 @@ class CamProblem(StatedProblem):
             *follower_contradictions(self.follower),
             *self._inputs(),
         ]
-        grooved = self.closure == "form" or isinstance(self.follower, BarrelRoller)
-        return contradictions or self.program.joint_contradictions(self.accept_discontinuity, grooved)
+        return contradictions or self.program.joint_contradictions(self.accept_discontinuity, self.grooved)
+
+    @property
+    def grooved(self) -> bool:
+        """Whether the follower runs between two walls, so that no force has to hold it."""
+        return self.closure == "form" or isinstance(self.follower, BarrelRoller)
 
     def _closure(self) -> list[Contradiction]:
         """A groove guides a roller and nothing else."""
@@ -182,10 +186,13 @@ class CamProblem(StatedProblem):
         force = self.minimize == "peak_contact_force"
         if force and self.dynamics is None:
             contradictions.append(Contradiction("/dynamics", "a contact force needs the follower's mass and spring"))
-        if force and (self.closure == "form" or isinstance(self.follower, BarrelRoller)):
+        if force and self.grooved:
             contradictions.append(
                 Contradiction("/minimize", "in a groove no force holds the follower; choose otherwise")
             )
+        if self.dynamics is not None and self.dynamics.least_force > 0.0 and self.grooved:
+            detail = "in a groove the roller changes walls and the force its sign; drop the demand"
+            contradictions.append(Contradiction("/dynamics/least_force", detail))
         if self.dynamics is not None and self.speed_rpm is None:
             contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
