@@ -20,6 +20,9 @@ TRANSMISSION_ANGLE = 30.0
 
 LINK_RATIO = 10.0
 
+HELD = 1e-6
+"""Relative rounding of designs that a fit holds at one of these."""
+
 BAND = 2.0
 """Errors up to this many times the least are alike for who builds a linkage."""
 
@@ -34,7 +37,8 @@ class Ordered(NamedTuple):
 def usable(design: Any) -> bool:
     """Whether a design that passed transmits force well and has links of like lengths."""
     measured = design.metrics
-    return bool(measured.min_transmission_angle >= TRANSMISSION_ANGLE and measured.link_ratio <= LINK_RATIO)
+    transmits = measured.min_transmission_angle >= TRANSMISSION_ANGLE * (1.0 - HELD)
+    return bool(transmits and measured.link_ratio <= LINK_RATIO * (1.0 + HELD))
 
 
 def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:

@@ -99,26 +99,26 @@ def chooses_usable(problem: PathProblem) -> bool:
 def grade(design: PathDesign) -> int:
     """0 for a sound linkage, 1 for one that can be used, 2 for others."""
     metrics = design.metrics
-    if metrics.link_ratio > MOST_UNEVEN or metrics.min_transmission_angle < USABLE * (1.0 - STEP_ROUNDING):
+    if metrics.link_ratio > MOST_UNEVEN * (1.0 + STEP_ROUNDING) or metrics.min_transmission_angle < USABLE * (
+        1.0 - STEP_ROUNDING
+    ):
         return _GRADES
     return 0 if metrics.min_transmission_angle >= SOUND * (1.0 - STEP_ROUNDING) else 1
 
 
 def choice(designs: list[PathDesign], problem: PathProblem) -> str:
-    """What the first of designs in order gives up, or lacks, as a sentence of the summary; empty where nothing."""
+    """What the first of designs in order gives up, as a sentence of the summary; empty where nothing.
+
+    What it lacks is said of every kind alike: see :mod:`synthesis.outcome.usable`.
+    """
     if not designs or not chooses_usable(problem):
         return ""
     first, nearest = designs[0], min(designs, key=lambda design: error_of(design, problem))
-    unit, angle = problem.length_unit, first.metrics.min_transmission_angle
-    if grade(first) == _GRADES:
-        return (
-            f" No design within twice the least error has a transmission angle of {USABLE:g}° and a link ratio of at "
-            f"most {MOST_UNEVEN:g}; the first has {angle:.1f}° and {first.metrics.link_ratio:.3g}."
-        )
     if error_of(first, problem) <= EQUALLY_NEAR * error_of(nearest, problem):
-        return "" if grade(first) == 0 else f" None within twice the least error has {SOUND:g}°; it has {angle:.1f}°."
+        return ""
+    chosen, other, unit = first.metrics, nearest.metrics, problem.length_unit
     return (
-        f" It stands first for its transmission angle of {angle:.1f}°; the nearest, with an rms distance of "
-        f"{nearest.metrics.rms_distance:.3g} {unit}, has {nearest.metrics.min_transmission_angle:.1f}° and a link "
-        f"ratio of {nearest.metrics.link_ratio:.3g}."
+        f" It stands first for its transmission angle of {chosen.min_transmission_angle:.1f}°; the nearest, with an "
+        f"rms distance of {other.rms_distance:.3g} {unit}, has {other.min_transmission_angle:.1f}° and a link ratio of "
+        f"{other.link_ratio:.3g}."
     )
