@@ -197,7 +197,7 @@ def _stated(problem: StatedProblem) -> list[str]:
     constraints = getattr(problem, "constraints", None)
     if not isinstance(constraints, Constraints):
         return []
-    plain = Constraints()
+    plain = type(constraints)()
     return [
         name
         for name in Constraints.model_fields
@@ -216,7 +216,7 @@ class _Relaxed(NamedTuple):
 
 def _relaxed(problem: Any, left_out: Sequence[str], solve: Solve, progress: Progress) -> _Relaxed:
     """Solve the task without these constraints."""
-    plain = Constraints()
+    plain = type(problem.constraints)()
     constraints = problem.constraints.model_copy(update={name: getattr(plain, name) for name in left_out})
     rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
     update = {"constraints": constraints, "rank_by": rank_by, "include_failed": False, "max_designs": MAX_DESIGNS}

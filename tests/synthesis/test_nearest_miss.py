@@ -132,3 +132,17 @@ def test_a_design_found_without_a_demand_that_keeps_it_is_an_answer():
         assert design.verification.passed
         assert checks["link_ratio"].value <= 50.0
         assert checks["transmission_angle"].value >= 5.0
+
+
+def test_a_limit_that_a_kind_sets_itself_is_no_demand_of_the_clients():
+    """Functions keep to a link ratio of 100 unless another is stated; that is never left out."""
+    problem = parse_problem(OUT_OF_REACH["function"])
+    asked = []
+
+    def recorded(statement, progress):
+        asked.append(statement.constraints)
+        return KINDS["function"].solve(statement, progress)
+
+    relaxation(problem, recorded, lambda *_: None)
+    assert asked
+    assert {constraints.max_link_ratio for constraints in asked} == {100.0}
