@@ -4,7 +4,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
@@ -13,6 +13,9 @@ from prometheus_client.parser import text_string_to_metric_families
 from tests.cluster.backend import CHOSEN
 from tests.cluster.engines import free_port
 from tests.service.running import SCRIPTED, STACKS, START_S, STOP_S, environment, until, workers_of
+
+OF_A_STACK = "Current thread 0x"
+"""Stands once in what a process writes of its stacks."""
 
 
 class Process:
@@ -104,10 +107,11 @@ class Deployment:
         try:
             until(lambda: not self.unfinished(), within_s, "the end of all jobs")
         except AssertionError as late:
-            for process in (*self.hosts, *self.servers):
-                for pid in (process.process.pid, *process.children()):
-                    signal_quietly(pid, STACKS)
-            time.sleep(2.0)  # they write; nobody says when it is done
+            before = self.log().count(OF_A_STACK)
+            pids = [pid for each in (*self.hosts, *self.servers) for pid in (each.process.pid, *each.children())]
+            asked = sum(signal_quietly(pid, STACKS) for pid in pids)
+            with suppress(AssertionError):  # one that hangs in the kernel writes none
+                until(lambda: self.log().count(OF_A_STACK) >= before + asked, 10.0, "all stacks")
             left = [(job[0], job[1], job[2], job[4]) for job in self.unfinished()]
             raise AssertionError(f"{late}; {len(left)} are left: {left[:20]}\n{self.log()[-60_000:]}") from None
 
