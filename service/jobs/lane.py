@@ -28,6 +28,7 @@ from ulid import ULID
 from service.jobs import faults, worker
 from service.jobs.executor import Changed
 from service.jobs.orphans import tell_children
+from service.jobs.solving import Solving
 from service.jobs.states import Status
 from service.jobs.store import JobStore
 from service.metrics import WorkerMetrics
@@ -90,6 +91,7 @@ class Lane(threading.Thread):
         self._job_id: str | None = None
         self._claim = ""
         self._current: str | None = None
+        self._solving = Solving()
         self.ready = False
         """Whether the worker has finished starting."""
         self.settled = threading.Event()
@@ -177,10 +179,13 @@ class Lane(threading.Thread):
         tell_children()
         # spawn: a forked child would inherit the server's threads' locks and open connections.
         self._pool = pebble.ProcessPool(
-            max_workers=1, initializer=worker.start, initargs=(self._settings,), context=get_context("spawn")
+            max_workers=1,
+            initializer=worker.start,
+            initargs=(self._settings, self._solving),
+            context=get_context("spawn"),
         )
         try:
-            pid = self._call(START_TIMEOUT_S, worker.hello)
+            pid = self._call(worker.hello)
         except TimeoutError:
             self._discard_worker()
             raise WorkerLost(f"it did not start within {START_TIMEOUT_S:g} s") from None
@@ -210,7 +215,7 @@ class Lane(threading.Thread):
 
     def _run_job(self, job_id: str) -> None:
         try:
-            ran: worker.Ran = self._call(self._timeout_s, worker.run, job_id, self._claim, job_id=job_id)
+            ran: worker.Ran = self._call(worker.run, job_id, self._claim, job_id=job_id)
         except TimeoutError:
             self._metrics.attempt("timeout")
             self._replace_worker("timeout")
@@ -238,13 +243,14 @@ class Lane(threading.Thread):
                 # A library that was refused memory in the middle of a call may be left in any state.
                 self._replace_worker("out_of_memory")
 
-    def _call(self, timeout_s: float, function: Any, *args: Any, job_id: str | None = None) -> Any:
+    def _call(self, function: Any, *args: Any, job_id: str | None = None) -> Any:
         """Call a function in the worker.
 
         Raises
         ------
         TimeoutError
-            It took longer than ``timeout_s``; it is still running.
+            The solver has been at work on the job for longer than it may, or the worker, where there is no job yet, has
+            not started in time; it is still running.
         CancelledError
             The job was cancelled, or the lane stops; it is still running.
         WorkerLost
@@ -253,13 +259,14 @@ class Lane(threading.Thread):
         with self._lock:
             if self._stopping.is_set():
                 raise CancelledError
+            self._solving.reset()
             try:
                 self._future = self._pool.schedule(function, args=args)
             except (RuntimeError, OSError) as error:  # the idle worker has died, or no process or pipe can be had
                 raise WorkerLost(str(error), killed=True) from None
             self._job_id = job_id
         try:
-            return self._answer(timeout_s)
+            return self._answer(START_TIMEOUT_S if job_id is None else self._timeout_s)
         except (CancelledError, TimeoutError, WorkerLost):
             raise
         except pebble.ProcessExpired as error:
@@ -275,20 +282,20 @@ class Lane(threading.Thread):
                 self._job_id = None
                 self._future = None
 
-    def _answer(self, timeout_s: float) -> Any:
-        # Not pebble's own timeout, which follows the wall clock and so any adjustment of it.
-        end = time.monotonic() + timeout_s
+    def _answer(self, limit_s: float) -> Any:
+        # Not pebble's own timeout, which counts the worker's waits for the store too, and by the wall clock.
+        began = time.monotonic()
         while True:
             done = self._future.done()
-            left = end - time.monotonic()
+            spent = time.monotonic() - began if self._job_id is None else self._solving.seconds or 0.0
             try:
-                return self._future.result(max(0.0, min(left, CHECK_PERIOD_S)))
+                return self._future.result(max(0.0, min(limit_s - spent, CHECK_PERIOD_S)))
             except TimeoutError:
                 if done:
                     raise WorkerLost("unexpected TimeoutError in the worker") from None
             if self._future.done():
                 continue
-            if left <= 0.0:
+            if spent >= limit_s:
                 raise TimeoutError
             if not self._pool.active:
                 raise WorkerLost("the worker had died before", killed=True)

@@ -25,6 +25,7 @@ from service.jobs import faults
 from service.jobs.database import connect, unreachable
 from service.jobs.orphans import die_with
 from service.jobs.progress import ProgressWriter
+from service.jobs.solving import Solving
 from service.jobs.store import Claim, JobStore
 
 Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "superseded"]
@@ -69,12 +70,13 @@ class _Post:
     store: JobStore
     progress: ProgressWriter
     settings: WorkerSettings
+    solving: Solving
 
 
 _post: _Post | None = None
 
 
-def start(settings: WorkerSettings) -> None:
+def start(settings: WorkerSettings, solving: Solving) -> None:
     """Prepare this process for its jobs: its end, its limits, the solvers. Called once, first of all."""
     global _post
     die_with(settings.server_pid)
@@ -91,7 +93,7 @@ def start(settings: WorkerSettings) -> None:
     store = JobStore(connect(settings.store_url, durable=False))
     progress = ProgressWriter(store)
     _limit_memory(settings.memory_mb + LIBRARIES_MB)
-    _post = _Post(store, progress, settings)
+    _post = _Post(store, progress, settings, solving)
     store.ping()
     # Beside the first jobs: they find what is not loaded yet a little slower, but the service is ready seconds sooner.
     threading.Thread(target=dispatch.warm_up_rest, name="warm-up", daemon=True).start()
@@ -123,7 +125,8 @@ def run(job_id: str, mark: str) -> Ran:
 
 def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
     try:
-        result = _solve(post.progress, job_id, claim)
+        with post.solving.at_work():
+            result = _solve(post.progress, job_id, claim)
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
         stored = _stored(post.store.fail, job_id, claim.attempt, fault.as_json(job_id))

@@ -6,6 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
@@ -130,6 +131,24 @@ def stored(folder, job_id, column):
     raw = sqlite3.connect(folder / "data" / "mechsynth.sqlite3")
     try:
         return raw.execute(f"SELECT {column} FROM jobs WHERE id = ?", (job_id,)).fetchone()[0]
+    finally:
+        raw.close()
+
+
+@contextmanager
+def store_away(folder):
+    """No process can write to the store of the service in a folder: PostgreSQL is down, or SQLite's file is locked."""
+    if CHOSEN.distributed:
+        CHOSEN.postgres.stop()
+        try:
+            yield
+        finally:
+            CHOSEN.postgres.start()
+        return
+    raw = sqlite3.connect(folder / "data" / "mechsynth.sqlite3", isolation_level=None)
+    try:
+        raw.execute("BEGIN IMMEDIATE")
+        yield
     finally:
         raw.close()
 

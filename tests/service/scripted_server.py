@@ -170,10 +170,10 @@ def break_lanes():
         (FOLDER / name).unlink()
         return True
 
-    def broken_call(self, timeout_s, function, *args, job_id=None):
+    def broken_call(self, function, *args, job_id=None):
         if job_id is not None and (FOLDER / "lane-fault").exists() and told("lane-fault"):
             raise TypeError("a defect of the lane")
-        return call(self, timeout_s, function, *args, job_id=job_id)
+        return call(self, function, *args, job_id=job_id)
 
     def broken_context(method):
         if (FOLDER / "no-process").exists() and told("no-process"):

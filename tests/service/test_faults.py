@@ -13,7 +13,18 @@ import pytest
 
 from service.jobs.notifier import ChangeNotifier
 from service.jobs.progress import PERIOD_S
-from tests.service.running import SCRIPTED, SOON_S, RunningServer, alive, environment, stored, until, workers_of
+from tests.service.running import (
+    REACHED_S,
+    SCRIPTED,
+    SOON_S,
+    RunningServer,
+    alive,
+    environment,
+    store_away,
+    stored,
+    until,
+    workers_of,
+)
 from tests.service.scripted_server import (
     BROKEN,
     CONVEX,
@@ -137,6 +148,20 @@ def test_a_job_that_takes_too_long_fails(server):
     assert job["error"]["type"] == "/problems/timeout"
     assert job["error"]["instance"] == f"/v1/jobs/{job['id']}"
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
+
+
+def test_only_the_time_of_the_solver_counts_against_a_job(server):
+    """The store is away for longer than a job may take, from before the solver ends."""
+    gate = server.folder / "open"
+    gate.unlink(missing_ok=True)
+    job = server.post(GATED)
+    until(lambda: server.job(job["id"])["progress"]["message"] == "waiting", SOON_S, "the solver at work")
+    with store_away(server.folder):
+        gate.touch()
+        time.sleep(TIMEOUT_S + 2.0)  # the worker has its answer, and cannot store it
+    ended = until(lambda: (now := server.job(job["id"]))["finished_at"] and now, REACHED_S, "the end")
+    assert (ended["status"], ended["error"]) == ("succeeded", None)
+    assert stored(server.folder, job["id"], "attempt") == 1
 
 
 def test_a_job_that_takes_too_much_memory_fails(server):
