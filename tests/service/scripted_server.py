@@ -32,9 +32,11 @@ def solve(problem, progress):
         case 101:  # native code that holds the interpreter: no Python handler can run
             ctypes.PyDLL(None).sleep(60)
         case 102:
+            import numpy as np
+
             hoard = []
             while True:
-                hoard.append(bytearray(16 << 20))
+                hoard.append(np.empty(16 << 17))  # reserved, and not written to, which would take its time
         case 103:
             raise ValueError("a secret of the implementation")
         case 104:
