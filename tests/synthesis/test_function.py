@@ -84,6 +84,12 @@ def holds(result, lengths, digits=1e-6):
     return any(np.allclose(proportions(design), lengths, rtol=digits) for design in result.designs)
 
 
+def box(places, margin):
+    """The region around places, with a margin on all sides."""
+    x, y = [complex(z).real for z in places], [complex(z).imag for z in places]
+    return {"x": [min(x) - margin, max(x) + margin], "y": [min(y) - margin, max(y) + margin]}
+
+
 def pairs_of(inputs, outputs):
     return [{"input": float(x), "output": float(y)} for x, y in zip(inputs, outputs, strict=True)]
 
@@ -159,6 +165,41 @@ class TestPrecisionPoints:
                     rotations(drive_again(design, stated)), rotations([p["output"] for p in stated]), atol=1e-7
                 )
 
+    def test_zeros_that_are_left_out_are_open_where_held_ones_have_no_answer(self):
+        rng = np.random.default_rng(41)
+        demands = {"min_transmission_angle": 25.0, "max_link_ratio": 6.0}
+        held = opened = 0
+        for _ in range(8):
+            _, inputs, outputs = planted_fourbar(rng, 3)
+            # Read off dials that stand anywhere on the links.
+            pairs = pairs_of(inputs + rng.uniform(-180.0, 180.0), outputs + rng.uniform(-180.0, 180.0))
+            result = solved(pairs=pairs, constraints=demands)
+            assert result.designs
+            for design in result.designs:
+                assert design.verification.passed
+                assert np.allclose(
+                    rotations(drive_again(design, pairs)), rotations([p["output"] for p in pairs]), atol=1e-7
+                )
+            if "The zeros were held" in result.summary:
+                held += 1
+                dial = result.designs[0].dials.input
+                assert math.remainder(dial.place - dial.at, 180.0) == pytest.approx(0.0, abs=1e-7)
+            else:
+                opened += 1
+                assert "with the zeros left open" in result.summary
+                assert not result.search.complete
+        assert opened >= 4
+
+    def test_null_leaves_zeros_open_at_once(self):
+        _, inputs, outputs = planted_fourbar(np.random.default_rng(1), 3)
+        pairs = pairs_of(inputs, outputs)
+        result = solved(pairs=pairs, zeros=None, constraints=UNBOUNDED)
+        assert not result.search.complete
+        assert len(result.designs) == 10
+        held = solved(pairs=pairs, constraints=UNBOUNDED)
+        assert len(held.designs) == 1
+        assert "State null to leave them open" in held.summary
+
     def test_a_reversed_link_is_found_and_said(self):
         # The planted input dial is the extension of the link beyond its pivot.
         rng = np.random.default_rng(7)
@@ -177,7 +218,7 @@ class TestPrecisionPoints:
             lengths, inputs, outputs = planted_fourbar(rng, count)
             middle = inputs[count // 2], outputs[count // 2]
             shifted = np.mod(inputs - middle[0], 360.0), np.mod(outputs - middle[1], 360.0)
-            zeros = {"input": middle[0], "output": middle[1]} if count == 3 else None
+            zeros = {"input": middle[0], "output": middle[1]} if count == 3 else "auto"
             for order in (slice(None), slice(None, None, -1)):
                 stated = pairs_of(shifted[0][order], shifted[1][order])
                 assert holds(solved(pairs=stated, zeros=zeros, constraints=UNBOUNDED), lengths, 1e-5)
@@ -192,7 +233,7 @@ class TestPrecisionPoints:
                 if np.diff(inputs).min() < 4.0:
                     continue
                 travel = slider_crank.positions(linkage, np.radians(inputs)).travel
-                zeros = {3: None, 4: {"output": 0.0}, 5: None}[count]
+                zeros = {3: "auto", 4: {"output": 0.0}, 5: None}[count]
                 result = solved(
                     mechanism="slider_crank", pairs=pairs_of(inputs, travel), zeros=zeros, constraints=UNBOUNDED
                 )
@@ -447,6 +488,47 @@ class TestPlaceAndSize:
         region = {"x": [-10.0, -5.0], "y": [3.0, 4.0]}
         pivots = solved(**{**task, "constraints": {"fixed_pivot_region": region}}).designs[0].mechanism.fixed_pivots
         assert -10.0 <= pivots.input[0] < pivots.output[0] <= -5.0
+
+    @pytest.mark.parametrize("seed", range(8))
+    def test_a_planted_linkage_is_put_where_regions_and_lengths_let_it_be(self, seed):
+        rng = np.random.default_rng(seed)
+        (a, b, c), inputs, outputs = planted_fourbar(rng, 5)
+        o2, along = complex(*rng.normal(size=2)) * 200.0, 80.0 * np.exp(1j * rng.uniform(0.0, math.tau))
+        pin = o2 + along * a * np.exp(1j * math.radians(inputs[0]))
+        joint = o2 + along * (1.0 + c * np.exp(1j * math.radians(outputs[0])))
+        lengths = [80.0, 80.0 * a, 80.0 * b, 80.0 * c]
+        demands = {
+            **UNBOUNDED,
+            "fixed_pivot_region": box([o2, o2 + along], 4.0),
+            "moving_pivot_region": box([pin, joint], 4.0),
+            "link_length": {"min": 0.95 * min(lengths), "max": 1.05 * max(lengths)},
+        }
+        result = solved(pairs=pairs_of(inputs, outputs), constraints=demands)
+        assert result.search.complete
+        assert holds(result, (a, b, c))
+        # Away from there it is proven that none fits.
+        demands["moving_pivot_region"] = box([pin + 1000.0], 4.0)
+        nowhere = solved(pairs=pairs_of(inputs, outputs), constraints=demands)
+        assert (nowhere.designs, nowhere.search.complete) == ([], True)
+
+    def test_a_slider_crank_is_turned_into_its_region(self):
+        rng = np.random.default_rng(5)
+        for _ in range(5):
+            a, b, e = 10.0, rng.uniform(14.0, 40.0), rng.uniform(-3.0, 3.0)
+            linkage = SliderCrank(0.0, 1j * e, 0.0, a, b)
+            inputs = 20.0 + np.array([0.0, 20.0, 45.0, 80.0, 110.0])
+            at = slider_crank.positions(linkage, np.radians(inputs))
+            o2, along = complex(*rng.normal(size=2)) * 50.0, np.exp(1j * rng.uniform(0.0, math.tau))
+            demands = {
+                **UNBOUNDED,
+                "fixed_pivot_region": box([o2], 1.0),
+                "moving_pivot_region": box([o2 + along * complex(at.a[0]), o2 + along * complex(at.b[0])], 1.0),
+            }
+            result = solved(mechanism="slider_crank", pairs=pairs_of(inputs, at.travel), constraints=demands)
+            assert result.search.complete
+            assert any(
+                np.allclose((d.mechanism.links.crank, d.mechanism.links.coupler), (a, b)) for d in result.designs
+            )
 
 
 REFUSED = [

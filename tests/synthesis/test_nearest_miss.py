@@ -22,7 +22,9 @@ def motion(**constraints):
 
 OUT_OF_REACH = {
     "path": limited(examples("path")[1], min_transmission_angle=88.5),
-    "function": limited(examples("function")[1], min_transmission_angle=88.5),
+    "function": limited(
+        {**examples("function")[1], "zeros": {"input": 0.0, "output": 0.0}}, min_transmission_angle=88.5
+    ),
     "quick_return": limited(examples("quick_return")[0], min_transmission_angle=88.5),
     "straight_line": limited(examples("straight_line")[0], min_transmission_angle=88.5),
     "dwell": limited(examples("dwell")[1], min_transmission_angle=88.5),

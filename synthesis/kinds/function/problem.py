@@ -153,10 +153,11 @@ class FunctionProblem(LinkageProblem):
         "open and for seven both are.",
     )
     scale_limits: Interval = Field(default=(0.25, 4.0), description="Of scales that are left open.")
-    zeros: Zeros | None = Field(
-        default=None,
-        description="Left out, two or three pairs are angles from the ground line, of a link or its extension; "
-        "otherwise both zeros are open.",
+    zeros: Zeros | Literal["auto"] | None = Field(
+        default="auto",
+        description="null leaves both open. `auto` reads two or three pairs as angles from the ground line, of a link "
+        "or its extension, and leaves the zeros open where no such linkage satisfies all demands; it leaves them open "
+        "for everything else.",
     )
     precision_points: Annotated[Count, Field(ge=2, le=MOST_EXACT)] | None = Field(
         default=None, description="Points of the function that are met exactly."
@@ -171,7 +172,8 @@ class FunctionProblem(LinkageProblem):
     fixed_pivots: GroundPivots | None = Field(
         default=None,
         description="Of a fourbar, and of a slider-crank with `output` a point towards which the slide points. Left "
-        "out: O2 at the origin and the ground line along +x, in a size that keeps the limits of length.",
+        "out: place, direction and size (of a slider-crank place and direction) are chosen so that pivots lie in "
+        "their regions and lengths within their limits; O2 at the origin and the ground line along +x where that fits.",
     )
     constraints: FunctionConstraints = FunctionConstraints()
 
@@ -191,20 +193,20 @@ class FunctionProblem(LinkageProblem):
 
     @property
     def from_ground(self) -> bool:
-        """Whether pairs are angles from the ground line by default, of a link or its extension."""
-        return self.zeros is None and self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
+        """Whether pairs are at first read as angles from the ground line, of a link or its extension."""
+        return self.zeros == "auto" and self.pairs is not None and len(self.pairs) <= EXACT_PAIRS
 
     @property
     def stated_zeros(self) -> tuple[float | None, float | None]:
         """Zeros of input and output, None where they are open."""
         if self.from_ground:
             return 0.0, 0.0
-        return (None, None) if self.zeros is None else (self.zeros.input, self.zeros.output)
+        return (self.zeros.input, self.zeros.output) if isinstance(self.zeros, Zeros) else (None, None)
 
     @property
     def most_exact(self) -> int:
         """Pairs that can be met at most: proportions, zeros and scales that are open."""
-        zeros = 2 if self.zeros is None else [self.zeros.input, self.zeros.output].count(None)
+        zeros = [self.zeros.input, self.zeros.output].count(None) if isinstance(self.zeros, Zeros) else 2
         if self.function is not None:
             free = [self.input_range, self.output_range].count(None)
         elif self.scales is not None:

@@ -8,6 +8,7 @@ a grid of scales is searched. Every linkage is verified by driving it.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
@@ -21,7 +22,7 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
 from synthesis.kinds.function.task import FunctionTask, built, function_task
 from synthesis.kinds.function.verification import verify_function
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 
@@ -48,6 +49,9 @@ USABLE = math.sin(math.radians(30.0))
 UNCHANGED = 1e-7
 """Scales this near to 1 leave the pairs as they are."""
 
+HELD_SHARE = 0.5
+"""Share of the progress that pairs as angles from the ground line count for, before their zeros are left open."""
+
 _REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "reversed_link"}
 """Why a design was rejected, by the check that it failed; other checks go by their own name."""
 
@@ -57,6 +61,30 @@ _NUMERICAL = {"residual", "cannot_be_driven"}
 
 def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve a problem of function generation."""
+    if not problem.from_ground:
+        return _with_zeros(problem, progress)
+    held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE))
+    if any(design.verification.passed for design in held.designs):
+        progress(1.0, "verified")
+        return held.model_copy(update={"summary": f"{held.summary}{_HELD}"})
+    opened = _with_zeros(problem.model_copy(update={"zeros": None}), part_of(progress, HELD_SHARE, 1.0))
+    account = opened.search.model_copy(
+        update={
+            "candidates": held.search.candidates + opened.search.candidates,
+            "rejected": dict(Counter(held.search.rejected) + Counter(opened.search.rejected)),
+        }
+    )
+    return opened.model_copy(
+        update={
+            "designs": [*opened.designs, *held.designs][: problem.max_designs],
+            "search": account,
+            "summary": f"{_OPENED} {opened.summary}",
+        }
+    )
+
+
+def _with_zeros(problem: FunctionProblem, progress: Progress) -> FunctionResult:
+    """The answer with the zeros that the problem has, stated or held."""
     task = function_task(problem)
     progress(0.0, "stated")
     rng = np.random.default_rng(problem.seed)
@@ -82,6 +110,13 @@ def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResu
         # Pairs of a linkage that moves as others do, a parallelogram's for example, do not determine it.
     _family(task, harvest, rng, progress)
     return harvest.searched("family")
+
+
+_HELD = " The zeros were held: the values are angles from the ground line. State null to leave them open."
+
+_OPENED = (
+    "No linkage that has the values as angles from the ground line satisfies all demands; with the zeros left open:"
+)
 
 
 def warm_up() -> None:

@@ -19,15 +19,13 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.structural_error import Generators
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, slider_crank_mechanism, to_complex
+from synthesis.outcome.placement import placement
 
 Real = NDArray[np.float64]
 ScaleRange = tuple[float, float]
 
 USUAL_GROUND = 100.0
-"""Length of the ground link where nothing tells it, length units."""
-
-IN_REGION = 0.98
-"""Share of a region's width that the ground link takes where it is put there."""
+"""Length of the ground link where it fits, length units."""
 
 SAMPLES = 121
 """Places of the range at which an approximation is fitted, closer together at its ends."""
@@ -137,13 +135,13 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
     place = float(task.inputs[0])
     theta = start + k * place
     pin = cmath.rect(a, theta)
-    origin, along = _ground(task, [1.0, a, b, c])
     if problem.slides:
         joint = complex(a * math.cos(theta) + sign * math.sqrt(max(b * b - (c - pin.imag) ** 2, 0.0)), c)
     else:
         f = abs(1.0 - pin)
         x = (f * f + (b - c) * (b + c)) / (2.0 * f)
         joint = pin + (1.0 - pin) / f * complex(x, sign * math.sqrt(max(b * b - x * x, 0.0)))
+    origin, along = _placed(task, [1.0, a, b, c], pin, joint)
     pin, joint = origin + along * pin, origin + along * joint
     frame = math.degrees(cmath.phase(along))
     to_input = 180.0 / math.pi
@@ -177,24 +175,17 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
     return fourbar_mechanism(FourbarConfiguration(origin, pin, joint, origin + along, pin)), dials
 
 
-def _ground(task: FunctionTask, lengths: list[float]) -> tuple[complex, complex]:
-    """O2, and the vector that the solver's unit along the ground line or the slide becomes."""
+def _placed(task: FunctionTask, lengths: list[float], pin: complex, joint: complex) -> tuple[complex, complex]:
+    """O2, and the vector that the solver's unit along the ground line or the slide becomes.
+
+    ``lengths`` are those of the links, and A and B stand at ``pin`` and ``joint``, in the solver's frame.
+    """
     problem = task.problem
-    limits, region = problem.constraints.link_length, problem.constraints.fixed_pivot_region
     if problem.fixed_pivots is not None:
         o2 = to_complex(problem.fixed_pivots.input)
         along = to_complex(problem.fixed_pivots.output) - o2
         return o2, along / abs(along) * task.unit if problem.slides else along
-    centre = 0j if region is None else complex(sum(region.x) / 2.0, sum(region.y) / 2.0)
-    if problem.slides:
-        return centre, complex(task.unit)
-    size = USUAL_GROUND
-    if region is not None:
-        size = min(size, IN_REGION * (region.x[1] - region.x[0]))
-    if limits is not None:
-        # In the middle, by ratio, of what the limits leave; outside of them only where nothing is left.
-        least = limits.min / min(lengths)
-        most = math.inf if limits.max is None else limits.max / max(lengths)
-        if not least <= size <= most:
-            size = math.sqrt(least * most) if least > 0.0 and math.isfinite(most) else max(least, min(most, size))
-    return (centre if region is None else centre - 0.5 * size), complex(size)
+    fixed, sized = ([0j], None) if problem.slides else ([0j, 1 + 0j], lengths)
+    preferred = complex(task.unit if problem.slides else USUAL_GROUND)
+    found = placement(problem.constraints, fixed, [pin, joint], sized, preferred)
+    return found.origin, found.along
