@@ -1,4 +1,4 @@
-"""Two hundred designs on the page, and the chosen one moves without stutter."""
+"""How fast the page is: a dragged pin, and the motion beside two hundred designs. Run with nothing beside it."""
 
 import statistics
 from itertools import pairwise
@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from synthesis.registry import example
-from tests.browser.test_studio import state
+from tests.browser.test_studio import PLAIN, state
 from tests.service.running import until
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
@@ -55,3 +55,44 @@ def test_two_hundred_designs_are_shown_and_one_of_them_moves_smoothly(open_studi
     last.click()
     page.wait_for_selector("#design h3:has-text('Design 200')")
     studio.screen("two-hundred")
+
+
+FRAMES = """() => {
+  window.frames_ms = [];
+  addEventListener("pointermove", () => {
+    const began = performance.now();
+    requestAnimationFrame(() => {
+      const after = new MessageChannel();
+      after.port1.onmessage = () => frames_ms.push(performance.now() - began);
+      after.port2.postMessage(null);
+    });
+  }, true);
+}"""
+"""Notes how long after a move of the pointer the next frame is done."""
+
+
+def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
+    page = studio.page
+    state(page, PLAIN)
+    studio.solve()
+    page.wait_for_selector(".moving .live .link")
+    page.click("#explore summary")
+    page.wait_for_selector("#explore .curve[d]")
+    page.evaluate(FRAMES)
+    curves = set()
+    dot = page.locator("#explore .target").last.locator(".dot")
+    dot.scroll_into_view_if_needed()
+    box = dot.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for k in range(40):
+        page.mouse.move(x + k, y - 0.5 * k)
+        curves.add(page.get_attribute("#explore .curve", "d"))
+    page.mouse.up()
+    taken = page.evaluate("frames_ms")
+    assert len(taken) >= 40
+    median = statistics.median(taken)
+    print(f"the picture follows a dragged pin in {median:.1f} ms (median of {len(taken)} moves)")
+    assert median <= 50.0
+    assert len(curves) >= 10, "the curve follows while the pin is dragged, not when it is let go"
