@@ -10,6 +10,7 @@ demand              g, h margin
 link lengths        g    ln(l / least), ln(most / l), so that short and long weigh alike
 link ratio          g    ln(ratio · lᵢ / lₖ)
 pivot regions       g    distance from each side of a box
+moving pivots       g    the same of A and B, where the crank stands at the first end of the used range
 coupler point       g    distance from each side of a box in the coupler's frame
 transmission angle  g    cos γ_least ∓ cos γ, cos γ = (b² + c² − d² − a² + 2 a d cos φ) / 2bc
 Grashof             g    ln(sₖ / least share of all links): away from change points
@@ -29,29 +30,34 @@ from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, LENGTHS, OPTIONS, POINT
+from synthesis.fit.coupler_curve import place_with_slopes
 
 Real = NDArray[np.float64]
 
 FAMILY, SIGN, WHOLE = range(3)
 """Places in a setting: the chart's family, the assembly sign, and whether the crank turns through."""
 
-LINKS, RATIO, BOXES, POINT_BOX, COSINE, CHANGE_POINT, GIVEN = 3, 5, 6, 14, 18, 19, 20
+LINKS, RATIO, BOXES, POINT_BOX, COSINE, CHANGE_POINT, GIVEN, MOVING = 3, 5, 6, 14, 18, 19, 20, 24
 """Places of demands in a setting: least and most length, link ratio, boxes (x from, to, y from, to) of O2 and O4, of P
 on the coupler, cosine of the least transmission angle, least of s₁, s₂, s₃ as a share of all links together, given
-coordinates (O2, O4; NaN where open). Infinite where nothing is demanded; 0 for a least length or share."""
+coordinates (O2, O4; NaN where open), box of both A and B. Infinite where nothing is demanded; 0 for a least length or
+share."""
 
-DEMANDS = 24
+DEMANDS = 28
 """Number of entries of a setting that are demands; a fit's own entries come after them."""
 
 EQUATIONS = 4
 """Number of margins, the last ones, that must be zero: coordinates of given pivots."""
 
-LIMITS = 8 + 12 + 8 + 4 + 8 + 3 + EQUATIONS
-"""Margins: lengths, pairs of them, sides of the pivots' boxes and of P's, transmission, Grashof, given pivots."""
+LIMITS = 8 + 12 + 8 + 4 + 8 + 8 + 3 + EQUATIONS
+"""Margins: lengths, pairs of them, sides of the fixed pivots' boxes, of P's and of the moving pivots', transmission,
+Grashof, given pivots."""
 
 
 @njit(**OPTIONS)
-def margins(x: Real, lengths: Real, slopes: Real, ends: Real, setting: Real, values: Real, gradients: Real) -> None:
+def margins(
+    x: Real, lengths: Real, slopes: Real, ends: Real, turn: Real, setting: Real, values: Real, gradients: Real
+) -> None:
     """The margins of a fourbar's demands, and their derivatives by the unknowns.
 
     Parameters
@@ -61,7 +67,9 @@ def margins(x: Real, lengths: Real, slopes: Real, ends: Real, setting: Real, val
     lengths, slopes : float64, shapes (4,) and (4, 4)
         Of :func:`synthesis.fit.chart.natural`.
     ends : float64, shape (2,)
-        Crank angles from the ground line at the ends of the used range, which do not move with x.
+        Crank angles from the ground line at the ends of the used range. Transmission angles take them for fixed.
+    turn : float64, shape (n,)
+        Derivatives of the first of them by the unknowns.
     setting : float64, shape (DEMANDS or more,)
         See :data:`LINKS`.
     values, gradients : float64, shapes (LIMITS,) and (LIMITS, n)
@@ -72,6 +80,7 @@ def margins(x: Real, lengths: Real, slopes: Real, ends: Real, setting: Real, val
     first = _ratios(lengths, slopes, setting, values, gradients, first)
     first = _pivots(x, lengths, slopes, setting, values, gradients, first)
     first = _coupler_point(x, setting, values, gradients, first)
+    first = _moving_pivots(x, lengths, slopes, ends[0], turn, setting, values, gradients, first)
     first = _transmission(lengths, slopes, ends, setting, values, gradients, first)
     if setting[FAMILY] < FOURBAR and setting[CHANGE_POINT] > 0.0:
         around = lengths.sum()
@@ -165,6 +174,50 @@ def _coupler_point(x: Real, setting: Real, values: Real, gradients: Real, number
                 gradients[number] = 0.0
                 gradients[number, POINT + axis] = toward
             number += 1
+    return number
+
+
+@njit(**OPTIONS)
+def _moving_pivots(
+    x: Real,
+    lengths: Real,
+    slopes: Real,
+    angle: float,
+    turn: Real,
+    setting: Real,
+    values: Real,
+    gradients: Real,
+    number: int,
+) -> int:
+    """Distances of A and B from the sides of their box, with the crank at ``angle`` from the ground line.
+
+    A moving pivot is a point of the coupler with the coordinates (0, 0) or (b, 0), and moves as P does.
+    """
+    box = setting[MOVING : MOVING + 4]
+    if not (np.abs(box) < np.inf).any():
+        return number + 8
+    by, pin = np.empty(10, np.complex128), x[: POINT + 2].copy()
+    for pivot in range(2):
+        pin[POINT], pin[POINT + 1] = pivot * lengths[2], 0.0
+        closes, place = place_with_slopes(FOURBAR, pin, lengths, slopes, setting[SIGN], 0.0, x[2] + angle, by)
+        if not closes:
+            return number + 8 - 4 * pivot
+        by[2] += by[9]
+        for axis in range(2):
+            for side in range(2):
+                limit = box[2 * axis + side]
+                if abs(limit) < np.inf:
+                    toward = 1.0 if side == 0 else -1.0
+                    values[number] = toward * ((place.real if axis == 0 else place.imag) - limit)
+                    row = gradients[number]
+                    for j in range(len(row)):
+                        moved = by[9] * turn[j]
+                        if j < POINT:
+                            moved += by[j]
+                        if pivot == 1 and LENGTHS <= j < POINT:
+                            moved += by[POINT] * slopes[2, j - LENGTHS]
+                        row[j] = toward * (moved.real if axis == 0 else moved.imag)
+                number += 1
     return number
 
 

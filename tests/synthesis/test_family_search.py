@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmarks.demands import path_constraints
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
 from synthesis.fit.chart import CRANK_ROCKER, natural
@@ -73,6 +74,18 @@ def test_a_crank_rocker_in_a_region_is_found(n):
         for pivot in pivots(design):
             assert region["x"][0] <= pivot.real <= region["x"][1]
             assert region["y"][0] <= pivot.imag <= region["y"][1]
+
+
+@pytest.mark.parametrize("n", [0, 5, *(pytest.param(n, marks=pytest.mark.campaign) for n in (10, 16, 20, 22))])
+def test_members_are_moved_into_demands_that_none_of_them_keeps(n):
+    """All constraints 5 % looser than a planted linkage has it: no member that a descent happens to meet keeps them."""
+    task = list(path_constraints.tasks(n + 1, 0))[n]
+    result = solve(parse_problem({**task.statement, "rounds": 1}), lambda share, message: None)
+    assert result.search.method == "family_search"
+    assert task.answered(result)
+    points = np.array([complex(point["x"], point["y"]) for point in task.statement["points"]])
+    for design in result.designs:
+        keeps(design, points)
 
 
 @pytest.mark.parametrize("n", [6, *(pytest.param(n, marks=pytest.mark.campaign) for n in (4, 5, 7))])

@@ -8,6 +8,9 @@ import pytest
 from benchmarks.path_fit import best_published, rows, statement
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from synthesis.dispatch import solve
+from synthesis.fit.chart import natural
+from synthesis.fit.demands import CHANGE_POINT, FAMILY, GIVEN, LIMITS, LINKS, MOVING, SIGN, margins
+from synthesis.kinds.path.limits import SETTING
 from synthesis.registry import parse_problem
 from tests.campaign import sampled
 from tests.oracles.fourbar_sweep import coupler_points, least_sum_in_order
@@ -147,6 +150,54 @@ def test_limits_are_hard():
         )
         assert math.degrees(math.acos(float(np.abs(cosine).max()))) >= 40.0 - 1e-6
         assert design.metrics.sum_of_squares >= free.metrics.sum_of_squares
+
+
+@pytest.mark.parametrize("phase", [None, "free", "absolute", "ground_line"])
+def test_moving_pivots_are_brought_into_their_region(phase):
+    rng = np.random.default_rng(5)
+    angles = np.linspace(20.0, 340.0, 12)
+    ground = {"absolute": 0.0, "ground_line": math.atan2(3.0, 6.0)}.get(phase, 0.3)
+    points = positions(CRANK_ROCKER, np.radians(angles) + ground, OPEN).p
+    points = points + 0.02 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
+    timing = {"angles": angles, "crank_phase": phase} if phase else {}
+    free = fit(points, constraints={"grashof": "crank_rocker"}, **timing).designs[0]
+    joints = [complex(*free.mechanism.skeleton.joints[name]) for name in "AB"]
+    x, y = [z.real for z in joints], [z.imag for z in joints]
+    region = {"x": [min(x) - 1.0, max(x) - 0.05], "y": [min(y) + 0.05, max(y) + 1.0]}
+    result = fit(points, constraints={"grashof": "crank_rocker", "moving_pivot_region": region}, **timing)
+    assert result.designs
+    design = result.designs[0]
+    for name in "AB":
+        x, y = design.mechanism.skeleton.joints[name]
+        assert region["x"][0] - 1e-8 <= x <= region["x"][1] + 1e-8
+        assert region["y"][0] - 1e-8 <= y <= region["y"][1] + 1e-8
+    assert free.metrics.rms_distance < design.metrics.rms_distance < 0.1
+
+
+def test_margins_of_moving_pivots_have_the_derivatives_of_their_places():
+    rng = np.random.default_rng(2)
+    setting = np.full(SETTING, np.inf)
+    setting[FAMILY], setting[SIGN], setting[MOVING : MOVING + 4] = 1.0, -1.0, (-1.0, 2.0, -3.0, 1.5)
+    setting[LINKS] = setting[CHANGE_POINT] = 0.0
+    setting[GIVEN : GIVEN + 4] = np.nan
+
+    def at(x, angle, turn):
+        lengths, slopes, values = np.empty(4), np.empty((4, 4)), np.empty(LIMITS)
+        gradients = np.zeros((LIMITS, len(x)))
+        natural(1, x, lengths, slopes)
+        margins(x, lengths, slopes, np.array([angle, angle + 3.0]), turn, setting, values, gradients)
+        return values, gradients
+
+    for _ in range(20):
+        x, turn, angle = 0.5 * rng.normal(size=9), rng.normal(size=9), rng.uniform(-3.0, 3.0)
+        values, gradients = at(x, angle, turn)
+        stated = np.isfinite(values)
+        assert stated.sum() == 8
+        for k in range(9):
+            step = 1e-6 * np.eye(9)[k]
+            ahead, behind = (at(x + s * step, angle + s * 1e-6 * turn[k], turn)[0] for s in (1.0, -1.0))
+            slope = (ahead[stated] - behind[stated]) / 2e-6
+            assert np.allclose(gradients[stated, k], slope, rtol=1e-6, atol=1e-6)
 
 
 def test_given_pivots_are_kept():

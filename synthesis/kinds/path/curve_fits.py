@@ -238,7 +238,7 @@ def held_fit(
         reached = descend_within(fit.family, x, theta, fit.sign, target.fitted[part], target.weights[part], demanded)
         if reached is None:
             return None
-        x, theta = reached
+        x, theta = reached.x, reached.theta
     return fit_of(target, fit.family, x, fit.sign, at_all_points(target, theta, part))
 
 

@@ -8,6 +8,7 @@ steer fits of points. The start is the fit without demands.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -43,9 +44,6 @@ Complex = NDArray[np.complex128]
 LENGTH_TOLERANCE = 1e-9
 """Relative excess of a length that is rounding: cognates repeat a curve to some roundings."""
 
-REGION_MARGIN = 1e-7
-"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
-
 SOFT_WEIGHT, SOFT_TOLERANCE = 10.0, 1e-4
 """Weight of demands, in the target's unit, in descents from the shape library, and the tolerance of these."""
 
@@ -70,13 +68,12 @@ def curve_setting(problem: PathProblem, centre: complex, size: float) -> Real:
 def pivot_limits(problem: PathProblem, centre: complex, size: float) -> Real:
     """Least and greatest x and y of O2, then of the other fixed pivot, shape (4, 2), in the task's unit.
 
-    Regions are drawn in by :data:`REGION_MARGIN`; where a coordinate is given both are it.
+    Where a coordinate is given both are it.
     """
     setting = setting_of(problem, centre, size, sign=1.0, family=FOURBAR)
     within = setting[BOXES : BOXES + 8].reshape(4, 2)
-    margin = np.minimum(REGION_MARGIN, 0.25 * (within[:, 1] - within[:, 0]))
     given = setting[GIVEN : GIVEN + 4, None]
-    return np.where(np.isnan(given), within + np.stack([margin, -margin], axis=1), given)
+    return np.where(np.isnan(given), within, given)
 
 
 def usable(setting: Real, degrees: float, ratio: float) -> Real:
@@ -95,10 +92,18 @@ def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> boo
     return bool(long <= most * slack and short * slack >= least and long <= ratio * short * slack)
 
 
+class Held(NamedTuple):
+    """A fit that keeps all demands: unknowns (m,), crank angles (points,), and its weighted sum of squares."""
+
+    x: Real
+    theta: Real
+    cost: float
+
+
 def descend_within(
     family: int, x: Real, theta: Real, sign: float, points: Complex, weights: Real, setting: Real
-) -> tuple[Real, Real] | None:
-    """Unknowns and crank angles of the fit nearest to a given one that keeps all demands; None where none was reached.
+) -> Held | None:
+    """The fit nearest to a given one that keeps all demands; None where none was reached.
 
     Parameters
     ----------
@@ -122,7 +127,7 @@ def descend_within(
     status = hold(path_rows, x, rows, demanded, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE):
         return None
-    return x, state[:n] + x[2]
+    return Held(x, state[:n] + x[2], 2.0 * float(ended[0]))
 
 
 def descend_softly(
@@ -151,16 +156,22 @@ def descend_softly(
 
 
 def broken(family: int, x: Real, theta: Real, sign: float, setting: Real) -> float:
-    """By how much a fit breaks the demand that it breaks most, in the units of margins; 0 where it keeps all."""
+    """By how much a fit breaks the demand that it breaks most, in the units of margins; 0 where it keeps all.
+
+    The order of points is one of them: what counts is the crank's greatest step back, or what it turns beyond a turn.
+    """
     lengths, slopes = np.empty(4), np.empty((4, 4))
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, len(x)))
     natural(family, x, lengths, slopes)
     stated = setting.copy()
     stated[FAMILY], stated[SIGN] = family, sign
-    margins(x, lengths, slopes, theta[[0, -1]] - x[2], stated, values, gradients)
+    margins(x, lengths, slopes, theta[[0, -1]] - x[2], np.zeros(len(x)), stated, values, gradients)
     values[LIMITS - EQUATIONS :] = -np.abs(values[LIMITS - EQUATIONS :])
     values[np.isinf(values)] = 0.0
     worst = -float(values.min())
+    if setting[ORDERED] > 0.0 and len(theta) > 1:
+        steps = np.diff(theta) * math.copysign(1.0, theta[-1] - theta[0])
+        worst = max(worst, -float(steps.min()), abs(float(theta[-1] - theta[0])) - 2.0 * math.pi)
     return worst if worst > LIMIT_MARGIN else 0.0
 
 
@@ -182,10 +193,10 @@ def shapes_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
 def _all_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:
     lengths, slopes = np.empty(4), np.empty((4, 4))
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
-    kept = np.empty(len(x), np.bool_)
+    kept, still = np.empty(len(x), np.bool_), np.zeros(x.shape[1])
     for i in range(len(x)):
         natural(family, x[i], lengths, slopes)
-        margins(x[i], lengths, slopes, np.zeros(2), setting, values, gradients)
+        margins(x[i], lengths, slopes, np.zeros(2), still, setting, values, gradients)
         kept[i] = values.min() >= 0.0
     return kept
 

@@ -19,6 +19,7 @@ from synthesis.fit.demands import (
     FAMILY,
     GIVEN,
     LINKS,
+    MOVING,
     POINT_BOX,
     RATIO,
     SIGN,
@@ -53,6 +54,10 @@ LIMIT_WEIGHT = 1e3
 
 LIMIT_MARGIN = 1e-10
 """Relative margin by which limits are tightened."""
+
+
+REGION_MARGIN = 1e-7
+"""Regions are aimed at with this margin, a share of the task's size, so that a pivot on their edge is in them."""
 
 
 class Usable(NamedTuple):
@@ -94,6 +99,7 @@ def setting_of(
                 out[POINT_BOX + 2 * k : POINT_BOX + 2 * k + 2] = interval[0] / size, interval[1] / size
     if limits.min_transmission_angle is not None:
         out[COSINE] = min(out[COSINE], math.cos(math.radians(limits.min_transmission_angle)) * (1.0 - LIMIT_MARGIN))
+    out[MOVING : MOVING + 4] = _box([limits.moving_pivot_region], origin, size)
     out[GIVEN : GIVEN + 4] = math.nan
     for k, pivot in enumerate((problem.fixed_pivots.input, problem.fixed_pivots.output)):
         x, y = pivot or (None, None)
@@ -105,10 +111,18 @@ def setting_of(
 
 
 def _box(regions: list[Region | None], origin: complex, size: float) -> tuple[float, float, float, float]:
-    """The box common to all regions that are stated, as least and greatest x, least and greatest y."""
+    """The box common to all regions that are stated, drawn in by a margin: least and greatest x, least and greatest y.
+
+    A narrow one keeps half of its width.
+    """
     x, y = (-math.inf, math.inf), (-math.inf, math.inf)
     for region in regions:
         if region is not None:
             x = max(x[0], (region.x[0] - origin.real) / size), min(x[1], (region.x[1] - origin.real) / size)
             y = max(y[0], (region.y[0] - origin.imag) / size), min(y[1], (region.y[1] - origin.imag) / size)
-    return *x, *y
+    return *_drawn_in(*x), *_drawn_in(*y)
+
+
+def _drawn_in(low: float, high: float) -> tuple[float, float]:
+    margin = min(REGION_MARGIN, 0.25 * (high - low))
+    return low + margin, high - margin

@@ -27,6 +27,7 @@ from synthesis.numerics.augmented_lagrangian import limit_rows
 from synthesis.numerics.levenberg import ROWS
 
 Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 PHASE = 9
 """Index of the crank's phase among the unknowns, behind those of the chart; only where the phase is free."""
@@ -118,6 +119,24 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
     return True
 
 
+@njit(cache=True, nogil=True)
+def _first_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> None:
+    """How the crank angle at the first point, from the ground line, moves with the unknowns.
+
+    With free timing P stays where its way past the point is nearest: what ``by`` moves it along its way is undone.
+    """
+    if timed:
+        if absolute:
+            turn[2] = -1.0
+        elif len(turn) > PHASE:
+            turn[PHASE] = 1.0
+        return
+    square = by[9].real * by[9].real + by[9].imag * by[9].imag
+    if square > MIN_DIRECTION:
+        for i in range(9):
+            turn[i] = -(by[9].real * by[i].real + by[9].imag * by[i].imag) / square
+
+
 @njit(ROWS, cache=True, nogil=True)
 def path_rows(
     x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
@@ -130,6 +149,7 @@ def path_rows(
     """
     n = len(points)
     lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty(10, np.complex128)
+    turn = np.zeros(x.size)
     for i in range(LENGTHS, LENGTHS + 4):
         if not -MAX_ABS_LOG < x[i] < MAX_ABS_LOG:
             return -1
@@ -156,6 +176,8 @@ def path_rows(
         # The crank stands still to the ground line, not in the plane, where crank angles are not absolute.
         if not absolute:
             by[2] += by[9]
+        if k == 0:
+            _first_turn(by, timed, absolute, turn)
         if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
             # Alone at its angle: what lies across the curve is all that is left.
             fast = math.sqrt(tx * tx + ty * ty)
@@ -182,5 +204,5 @@ def path_rows(
         m += 2
     ends = np.array([state[0], state[n - 1]])
     values, gradients = state[state.size - LIMITS :], np.empty((LIMITS, unknowns))
-    margins(x, lengths, slopes, ends, setting, values, gradients)
+    margins(x, lengths, slopes, ends, turn, setting, values, gradients)
     return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)

@@ -8,6 +8,8 @@ the fixed pivot O2, the ground vector and the coupler point turned with it. With
 numbers to draw: three ratios, and the crank's phase. With free timing the angles are drawn too, as a run of the crank
 along the points, and are then improved in alternation: the path that results is sampled, points are assigned to samples
 in order, and the linear problem is solved again.
+
+A ``setting`` is one of :func:`synthesis.kinds.path.limits.setting_of`.
 """
 
 from __future__ import annotations
