@@ -45,6 +45,9 @@ MET = 1e-13
 """Residual at which a real point counts as common to all quadrics where it cannot be proved: a double root, which data
 a few roundings away would have or not have."""
 
+NOTHING = 1e-150
+"""Stands for a singular value that is not known to differ from zero; its square does not underflow."""
+
 SAME_DIRECTION = 1e-14
 """1 − |cos| of two unit vectors that are one point, met twice: some roundings."""
 
@@ -71,13 +74,15 @@ class CommonPoints(NamedTuple):
     unproved: Complex
 
 
-def common_points(forms: Real) -> CommonPoints:
+def common_points(forms: Real, error: float = 0.0) -> CommonPoints:
     """Real common points of quadrics xᵀ Q x = 0.
 
     Parameters
     ----------
     forms : float64, shape (m − 1, m, m)
         Symmetric matrices Q of unit norm, 2 ≤ m ≤ 4.
+    error : float
+        Norm of what the matrices may be off, beyond their rounding: what is proved then holds for all such quadrics.
     """
     m = forms.shape[-1]
     frame = _frame(m)
@@ -97,7 +102,7 @@ def common_points(forms: Real) -> CommonPoints:
     monomials = basis @ vectors
     largest = np.abs(monomials[frame.powers]).argmax(axis=0)
     points = monomials[frame.lines[largest], np.arange(roots)[:, None]]
-    return _refined(forms, points)
+    return _refined(forms, points, error)
 
 
 class _Frame(NamedTuple):
@@ -140,7 +145,7 @@ def _frame(m: int) -> _Frame:
     )
 
 
-def _refined(forms: Real, points: Numbers) -> CommonPoints:
+def _refined(forms: Real, points: Numbers, error: float) -> CommonPoints:
     """Newton's method from each point, real ones among the reals, and the proof of their number."""
     m = forms.shape[-1]
     points = _newton(forms, points / np.linalg.norm(points, axis=1)[:, None])
@@ -149,8 +154,8 @@ def _refined(forms: Real, points: Numbers) -> CommonPoints:
     nearly = np.abs(points.imag).max(axis=1) <= NEARLY_REAL
     reals = points[nearly].real
     reals = _newton(forms, reals / np.linalg.norm(reals, axis=1)[:, None])
-    real_radius, real_alone, residual = _certificate(forms, reals)
-    radius, alone, _ = _certificate(forms, points[~nearly])
+    real_radius, real_alone, residual = _certificate(forms, reals, error)
+    radius, alone, _ = _certificate(forms, points[~nearly], error)
     imaginary = np.abs(points[~nearly].imag).max(axis=1)
     everywhere = np.concatenate([reals, points[~nearly]])
     apart = _apart(everywhere, np.concatenate([real_radius, radius]))
@@ -186,7 +191,7 @@ def _newton(forms: Real, points: Numbers) -> Numbers:
     return best
 
 
-def _certificate(forms: Real, points: Numbers) -> tuple[Real, NDArray[np.bool_], Real]:
+def _certificate(forms: Real, points: Numbers, error: float) -> tuple[Real, NDArray[np.bool_], Real]:
     """Newton–Kantorovich at unit vectors: radius in which a root lies, whether that is proved, and the residual.
 
     With K a Lipschitz constant of the Jacobian J and η = |J⁻¹f|, a root lies within 2η where K|J⁻¹|η ≤ 1/2
@@ -196,9 +201,10 @@ def _certificate(forms: Real, points: Numbers) -> tuple[Real, NDArray[np.bool_],
     values = np.einsum("kqi,ki->kq", images, points)
     jacobian = np.concatenate([2.0 * images, np.conj(points)[:, None, :]], axis=1)
     least = np.linalg.svd(jacobian, compute_uv=False)[:, -1] if len(points) else np.empty(0)
-    least = np.maximum(least, np.finfo(np.float64).tiny)
+    error *= math.sqrt(len(forms))
+    least = np.maximum(least - 2.0 * error, NOTHING)
     residual = np.linalg.norm(values, axis=1)
-    step = (residual + ROUNDING) / least
+    step = (residual + ROUNDING + error) / least
     lipschitz = 2.0 * math.sqrt(len(forms))
     alone = lipschitz * step / least <= 0.5
     return np.where(alone, 2.0 * step, CLUSTER), alone, np.abs(values).max(axis=1, initial=0.0)

@@ -358,3 +358,54 @@ def test_examples_of_the_options_have_answers(number: int) -> None:
     example = dict(schema_extra["examples"][number])
     assert example.pop("kind") == "motion"
     assert len(run(**example).designs) == 3
+
+
+def drifting(n: int, share: float, offset: complex = 0j) -> list[dict[str, float]]:
+    """Positions of a body that hardly turns: dyads with two pins exist, the farther away the less it turns."""
+    poses = [(-40.0, -30.0, -60.0), (-15.0, 4.0, -25.0), (5.0, 12.0, 7.0), (33.0, 9.0, 41.0), (60.0, -5.0, 80.0)]
+    return [{"x": x + offset.real, "y": y + offset.imag, "angle": share * a} for x, y, a in poses[:n]]
+
+
+@pytest.mark.parametrize("share", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12])
+def test_a_body_that_hardly_turns_is_not_proved_to_have_no_linkage(share: float) -> None:
+    """Two real dyads exist, about a task size over the turn away: nothing that has them may be said to be all."""
+    for sides in ({}, {"input_side": {"dyad": "RR"}, "output_side": {"dyad": "RR"}}):
+        result = run(positions=drifting(5, share), **sides)
+        assert result.designs == []
+        assert not result.search.complete
+        assert "These are all" not in result.summary
+        assert "does not prove" in result.summary or result.search.candidates == 0
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-5, 1e-7])
+def test_an_arc_is_not_taken_for_a_rotation_about_one_point(share: float) -> None:
+    """A planted fourbar that moves by a small share of its size: a linkage exists, and is not ruled out."""
+    planted = plant(np.random.default_rng(3), 5)
+    one, other = planted.input_side, planted.output_side
+    a, b = one.moving_pivot - one.fixed_pivot, other.moving_pivot - other.fixed_pivot
+    ground, p = other.fixed_pivot - one.fixed_pivot, one.coupler_vector
+    poses = []
+    for turn in share * np.array([0.0, 0.2, 0.45, 0.7, 1.0]):
+        pin = a * cmath.exp(1j * turn)
+        coupler, output = abs(one.moving_pivot - other.moving_pivot), abs(b)
+        base = ground - pin
+        along = (abs(base) ** 2 + coupler**2 - output**2) / (2.0 * abs(base))
+        up = math.sqrt(coupler**2 - along**2)
+        side = ((other.moving_pivot - one.moving_pivot) * base.conjugate()).imag
+        unit = base / abs(base) * complex(along, math.copysign(up, side))
+        spin = unit / (other.moving_pivot - one.moving_pivot)
+        z = pin + p * spin
+        poses.append({"x": z.real, "y": z.imag, "angle": math.degrees(cmath.phase(spin))})
+    result = run(positions=poses)
+    assert result.designs or not result.search.complete
+
+
+@pytest.mark.parametrize("n", [3, 4, 5])
+def test_a_stated_pivot_is_not_ruled_out_by_digits_that_are_lost(n: int) -> None:
+    """The images of any point of a body that moves along an arc by little are nearly in line."""
+    arc = [
+        {"x": 1e5 * math.sin(t), "y": 2e5 * math.sin(0.5 * t) ** 2, "angle": 1e-4 * k}
+        for k, t in enumerate(1e-10 * np.array([0.0, 1.0, 2.5, 3.5, 5.0]))
+    ]
+    result = run(positions=arc[:n], input_side={"moving_pivot": [0.0, 0.0]})
+    assert result.designs or not result.search.complete

@@ -27,13 +27,22 @@ def lengths_vary(task: MotionTask, fixed: np.ndarray, moving: np.ndarray) -> flo
     return float((np.ptp(links, axis=1) / (1.0 + np.abs(fixed) + np.abs(moving))).max(initial=0.0))
 
 
-def rational_task(rng: np.random.Generator) -> tuple[MotionTask, int]:
-    """Five positions by rational numbers, and how many real dyads they have."""
+def rational_task(
+    rng: np.random.Generator, moved: Fraction = Fraction(1), turned: Fraction = Fraction(1)
+) -> tuple[MotionTask, int]:
+    """Five positions by rational numbers, and how many real dyads they have; moves and turns may be made small.
+
+    The task's unit is the greatest move, as it is of a stated one.
+    """
     numbers = np.stack([rng.choice(829, 5, replace=False) - 414 for _ in range(3)], axis=1)
-    poses = [tuple(Fraction(int(v), 997) for v in row) for row in numbers]
-    points = np.array([complex(float(x), float(y)) for x, y, _ in poses])
-    turns = np.array([(1.0 + 1j * float(t)) ** 2 / (1.0 + float(t) ** 2) for _, _, t in poses])
-    return MotionTask(points - points[0], turns / turns[0], 0j, 1.0), real_dyads(poses)  # type: ignore[arg-type]
+    scales = moved, moved, turned
+    poses = [tuple(Fraction(int(v), 997) * scale for v, scale in zip(row, scales, strict=True)) for row in numbers]
+    first = poses[0]
+    points = np.array([complex(float(x - first[0]), float(y - first[1])) for x, y, _ in poses])
+    halves = [float((t - first[2]) / (1 + t * first[2])) for _, _, t in poses]
+    turns = np.array([(1.0 + 1j * t) ** 2 / (1.0 + t**2) for t in halves])
+    size = float(np.abs(points[:, None] - points).max()) if moved < 1 else 1.0
+    return MotionTask(points / size, turns, 0j, size), real_dyads(poses)  # type: ignore[arg-type]
 
 
 def compared_with_the_oracle(seed: int, count: int) -> None:
@@ -52,6 +61,23 @@ def compared_with_the_oracle(seed: int, count: int) -> None:
 
 def test_number_of_real_dyads_is_exact() -> None:
     compared_with_the_oracle(0, 40)
+
+
+@pytest.mark.parametrize("moved", [0, 4, 9])
+@pytest.mark.parametrize("turned", [1, 2, 3, 4, 5, 6, 7, 9, 12])
+def test_what_is_lost_in_digits_is_never_proved(moved: int, turned: int) -> None:
+    """Small moves and turns: the number of dyads is the exact one, or it is not said to be all."""
+    rng = np.random.default_rng([moved, turned])
+    proofs = 0
+    for _ in range(5):
+        task, expected = rational_task(rng, Fraction(1, 10**moved), Fraction(1, 10**turned))
+        found = section(task, open_choices(task))
+        if found.finite and found.proved:
+            assert len(found.dyads.fixed) + len(found.sliders) == expected
+            assert found.far == 0
+            proofs += 1
+    # A body that turns by some degrees leaves digits enough, however small the unit is.
+    assert proofs == 5 or turned > 2
 
 
 @pytest.mark.campaign

@@ -22,6 +22,7 @@ from synthesis.kinds.motion import burmester
 from synthesis.kinds.motion.draws import distances, points_around
 from synthesis.kinds.motion.dyads import (
     FAR,
+    LOST,
     DyadConditions,
     Dyads,
     Line,
@@ -53,13 +54,21 @@ NEAREST_SAMPLES = 4000
 """Samples of a curve among which the pivot nearest to a stated one is looked for."""
 
 REDUNDANT = 1e-9
-"""Part of a position's condition that is new, below which it adds nothing to the conditions of the others."""
+"""Part of a position's condition that is new, below which it adds nothing to the conditions of the others. Above
+:data:`~synthesis.kinds.motion.dyads.LOST` it does, in digits that are lost."""
 
 REGION_DRAWS = 6
 """Draws of a whole cloud at most, until half of it lies in the client's regions."""
 
-SAME_PLACE = 1e-12
-"""Angles (radians) and lengths (task sizes) that differ by less are equal: rounding of the positions, no motion."""
+SAME_PLACE = 2e-15
+"""Angles (radians) and lengths (task sizes) that differ by no more are equal: some roundings of the positions."""
+
+SAME_POLE = 8.0
+"""Roundings of its images by which a pole may move in a rotation about it."""
+
+PLAIN = 1e-9
+"""Rounding of the positions as a share of what a body that turns swings out of its straight way: up to this a rotation
+about one point is told from all other motions."""
 
 _NO_DYADS = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
 
@@ -142,11 +151,11 @@ def side_dyads(
     task: MotionTask, problem: MotionProblem, choices: DyadChoices, rng: np.random.Generator, count: int
 ) -> Cloud:
     """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open."""
-    reason = why_no_dyads(task)
-    if reason:
-        return Cloud(_NO_DYADS, False, True, reason)
+    impossible = why_no_dyads(task)
+    if impossible is not None:
+        return Cloud(_NO_DYADS, False, impossible.proved, impossible.text)
     conditions, constraints = stated_conditions(task, problem, choices), problem.constraints
-    essential, conditions = _without_redundant_positions(task, conditions)
+    essential, conditions, lost = _without_redundant_positions(task, conditions)
     free = 5 - len(essential.points) - conditions.count()
     if conditions.linear and (free <= 0 or _pivot(conditions) is not None):
         cloud = _of_family(essential, conditions, constraints, rng, count)
@@ -158,21 +167,31 @@ def side_dyads(
         cloud = _of_draws(essential, conditions, constraints, rng, count)
     if len(essential.points) == len(task.points):
         return cloud
+    meets = "meets all" if not lost else "meets to nine digits all"
     return cloud._replace(
-        remark=f"A dyad that meets {len(essential.points)} of the positions meets all {len(task.points)}. "
-        f"{cloud.remark}"
+        complete=cloud.complete and not lost,
+        remark=f"A dyad that meets {len(essential.points)} of the positions {meets} {len(task.points)}. {cloud.remark}",
     )
 
 
-def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -> tuple[MotionTask, DyadConditions]:
+class _Essential(NamedTuple):
+    """The task and the choices without some positions; ``lost`` where these said something in digits that are lost."""
+
+    task: MotionTask
+    conditions: DyadConditions
+    lost: bool
+
+
+def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -> _Essential:
     """The task and the choices without positions whose condition follows from those of the others.
 
     So it is for a translation along a circle, where three positions say all. A position whose rotation is stated is
     kept.
     """
     rows = pose_rows(task)
-    if np.linalg.svd(rows, compute_uv=False)[-1] > REDUNDANT:
-        return task, conditions
+    s = np.linalg.svd(rows, compute_uv=False)
+    if s[-1] > REDUNDANT:
+        return _Essential(task, conditions, False)
     kept: list[int] = []
     for k, row in enumerate(rows):
         others = rows[kept]
@@ -180,10 +199,11 @@ def _without_redundant_positions(task: MotionTask, conditions: DyadConditions) -
         if np.linalg.norm(new) > REDUNDANT or conditions.rotations[k] is not None:
             kept.append(k)
     if len(kept) == len(rows):
-        return task, conditions
+        return _Essential(task, conditions, False)
     order = [0, *(k + 1 for k in kept)]
     reduced = task._replace(points=task.points[order], turns=task.turns[order])
-    return reduced, replace(conditions, rotations=tuple(conditions.rotations[k] for k in kept))
+    rotations = tuple(conditions.rotations[k] for k in kept)
+    return _Essential(reduced, replace(conditions, rotations=rotations), bool(np.any((s > LOST) & (s <= REDUNDANT))))
 
 
 def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Generator) -> Cloud:
@@ -199,7 +219,12 @@ def _of_section(task: MotionTask, conditions: DyadConditions, rng: np.random.Gen
         dyads = Dyads(np.where(kept, refined.fixed, dyads.fixed), np.where(kept, refined.moving, dyads.moving))
     remark = ""
     if intersection.double.any():
-        remark = "Two dyads of the side coincide (a double root) and are counted as one."
+        remark = "Dyads of the side coincide (a double root), or too nearly so to tell how many they are."
+    if intersection.far:
+        word = "dyad of the side has" if intersection.far == 1 else "dyads of the side have"
+        remark += f" {intersection.far} {word} a pivot more than {FAR:.0e} task sizes away."
+    elif not intersection.proved and not remark:
+        remark = "The positions and choices of the side leave too few digits to tell how many dyads there are."
     text = "No dyad with two pins satisfies the positions and choices of the side."
     return Cloud(dyads, False, intersection.proved, text, remark, intersection.sliders)
 
@@ -269,35 +294,44 @@ def _in_regions(task: MotionTask, constraints: Constraints, dyads: Dyads) -> NDA
     return fixed & task.within(constraints.moving_pivot_region, dyads.moving)
 
 
-def why_no_dyads(task: MotionTask) -> str:
-    """Why no pin-jointed dyad of positive length exists for the positions, in a sentence; empty where some do.
+class Impossible(NamedTuple):
+    """Why there are no dyads, in a sentence, and whether the positions have the digits to prove it."""
+
+    text: str
+    proved: bool = True
+
+
+def why_no_dyads(task: MotionTask) -> Impossible | None:
+    """Why no pin-jointed dyad of positive length exists for the positions; None where some do.
 
     There is none for a translation through three or more positions, unless P moves on a circle; nor for a rotation
     about one point, which every dyad would have for its fixed pivot.
     """
     if len(task.points) < 3:
-        return ""
+        return None
     if np.abs(task.turns - 1.0).max() <= SAME_PLACE:
         sides = task.points[1:] - task.points[0]
         if np.abs((np.conj(sides[0]) * sides).imag).max() <= SAME_PLACE:
-            return (
+            return Impossible(
                 "The positions are a translation along a straight line: every point of the body moves on a line, "
                 "so only a slider can guide it and no pin-jointed fourbar exists."
             )
         if np.linalg.svd(pose_rows(task), compute_uv=False)[2:].max(initial=0.0) <= REDUNDANT:
-            return ""
-        return (
+            return None
+        return Impossible(
             "The positions are a translation, and not along a circle: every point of the body takes the same places "
             "as P, so no link of one length can hold it and no pin-jointed fourbar exists."
         )
     turning = int(np.abs(task.turns - 1.0).argmax())
     pole = _pole(task, turning)
-    if np.abs(task.images(np.asarray(pole)) - pole).max() > SAME_PLACE * (1.0 + abs(pole)):
-        return ""
-    return (
-        "The positions are a rotation about one point: a pin joint there carries the body, "
-        "and every dyad would have it for its fixed pivot, so no fourbar exists."
-    )
+    turned = float(abs(task.turns[turning] - 1.0))
+    rounding = SAME_POLE * np.finfo(np.float64).eps * (1.0 + abs(task.origin) / task.size + abs(pole))
+    if np.abs(task.images(np.asarray(pole)) - pole).max() > rounding:
+        return None
+    about = "The positions are a rotation about one point: a pin joint there carries the body"
+    if rounding > PLAIN * turned:
+        return Impossible(f"{about}, to the digits that are given.", proved=False)
+    return Impossible(f"{about}, and every dyad would have it for its fixed pivot, so no fourbar exists.")
 
 
 def _pole(task: MotionTask, k: int) -> complex:
@@ -316,42 +350,42 @@ def _of_family(
 ) -> Cloud:
     """The dyads of linear conditions: one, none, or a cloud where a freedom is left or a pivot is a pole."""
     family = linear_family(task, conditions)
-    if family is None:
-        return Cloud(_NO_DYADS, False, True, _why_contradictory(task, conditions))
+    if family.dyad is None:
+        return Cloud(_NO_DYADS, False, family.proved, _why_contradictory(task, conditions, proved=family.proved))
     free = len(family.directions)
     if not free:
         reach = max(abs(family.dyad.fixed[0]), abs(family.dyad.moving[0]))
         if reach >= FAR:
             text = f"The other pivot of the side would lie about {reach:.0e} task sizes away; a slider stands for that."
             return Cloud(_NO_DYADS, False, False, text)
-        return _forwards(task, conditions, family.dyad, sampled=False)
+        return _forwards(task, conditions, family.dyad, sampled=False, proved=family.proved)
     distance = distances(rng, count, free)
     moved = (distance * rng.choice([-1.0, 1.0], (count, free))) @ family.directions
     dyads = Dyads(
         family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1]), family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
     )
     good = _in_regions(task, constraints, dyads)
-    return _forwards(task, conditions, Dyads(dyads.fixed[good], dyads.moving[good]), sampled=True)
+    return _forwards(task, conditions, Dyads(dyads.fixed[good], dyads.moving[good]), sampled=True, proved=False)
 
 
-def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool) -> Cloud:
+def _forwards(task: MotionTask, conditions: DyadConditions, dyads: Dyads, *, sampled: bool, proved: bool) -> Cloud:
     """Those dyads that meet stated directions forwards."""
     good = directions_hold(task, conditions, dyads)
     text = "The choices of the side are met by a link or coupler vector of negative length only."
-    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, not sampled, text)
+    return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), sampled, proved, text)
 
 
-def _why_contradictory(task: MotionTask, conditions: DyadConditions) -> str:
+def _why_contradictory(task: MotionTask, conditions: DyadConditions, *, proved: bool) -> str:
     """Why linear conditions have no solution."""
     pivot = _pivot(conditions)
     if pivot is None:
         return "The rotations of the side belong to no link of finite length."
     if len(task.points) > 3:
         return f"The stated pivot of the side is on no dyad that meets all positions. {_nearest(task, conditions)}"
-    return (
-        "The stated pivot of the side has its images on one straight line: "
-        "a slider, not a pin-jointed link, would guide it. No design exists with these choices."
-    )
+    line = "The stated pivot of the side has its images on one straight line"
+    if not proved:
+        return f"{line}, or too nearly so to tell from the digits that are given."
+    return f"{line}: a slider, not a pin-jointed link, would guide it. No design exists with these choices."
 
 
 def _nearest(task: MotionTask, conditions: DyadConditions) -> str:

@@ -42,6 +42,10 @@ SINGULAR = 1e-12
 """Determinant, relative to the product of the row norms, below which a Newton step is not taken: it would be longer
 than the farthest pivot allowed."""
 
+LOST = 1e-13
+"""The same at which it repeats them to rounding: between the two it may be one of its own, of which too few digits are
+left to tell."""
+
 DEPENDENT = 1e-9
 """Singular value, relative to the largest, below which a linear condition counts as a repetition of the others; and the
 misfit below which it then counts as met. Half of the digits of the data stand behind either."""
@@ -180,15 +184,17 @@ def _taken(conditions: DyadConditions, rows: NDArray[np.int64]) -> DyadCondition
 class Family(NamedTuple):
     """The solutions of linear conditions: a dyad, and the directions in which it may be moved; none if it is unique.
 
-    ``directions`` are rows (Re O, Im O, Re A, Im A) of unit length.
+    ``dyad`` is None where the conditions contradict each other. ``directions`` are rows (Re O, Im O, Re A, Im A) of
+    unit length. ``proved`` is False where the conditions have too few digits to tell whether they repeat one another.
     """
 
-    dyad: Dyads
+    dyad: Dyads | None
     directions: Real
+    proved: bool
 
 
-def linear_family(task: MotionTask, conditions: DyadConditions) -> Family | None:
-    """All dyads of conditions that are :attr:`DyadConditions.linear`; None where the conditions contradict each other.
+def linear_family(task: MotionTask, conditions: DyadConditions) -> Family:
+    """All dyads of conditions that are :attr:`DyadConditions.linear`.
 
     Where a pivot is a pole of the motion, or conditions repeat one another, there is a whole family of dyads.
     """
@@ -201,15 +207,17 @@ def linear_family(task: MotionTask, conditions: DyadConditions) -> Family | None
     values, jacobian = _rows(task, conditions, fixed, moving)
     value, matrix = values[0], jacobian[0][:, first:last]
     u, s, vh = np.linalg.svd(matrix, full_matrices=True)
-    rank = int(np.sum(s > DEPENDENT * max(float(s[0]), DEPENDENT)))
+    largest = max(float(s[0]), DEPENDENT)
+    rank = int(np.sum(s > DEPENDENT * largest))
+    proved = not np.any(s[rank:] > LOST * largest)
     step = np.zeros(4)
     step[first:last] = -(vh[:rank].T / s[:rank]) @ (u[:, :rank].T @ value)
     size = 1.0 + float(np.abs(step).max() + np.abs(fixed[0]) + np.abs(moving[0]))
     if np.abs(value + matrix @ step[first:last]).max() > DEPENDENT * size * size:
-        return None
+        return Family(None, np.empty((0, 4)), proved)
     directions = np.zeros((last - first - rank, 4))
     directions[:, first:last] = vh[rank:]
-    return Family(Dyads(fixed + (step[0] + 1j * step[1]), moving + (step[2] + 1j * step[3])), directions)
+    return Family(Dyads(fixed + (step[0] + 1j * step[1]), moving + (step[2] + 1j * step[3])), directions, proved)
 
 
 def _rows(task: MotionTask, conditions: DyadConditions, fixed: Complex, moving: Complex) -> tuple[Real, Real]:

@@ -30,20 +30,31 @@ Burmester have in common at infinity in addition to the four.
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from synthesis.kinds.motion.dyads import DEPENDENT, FAR, DyadConditions, Dyads, directions_hold
+from synthesis.kinds.motion.dyads import DEPENDENT, FAR, LOST, DyadConditions, Dyads, directions_hold
 from synthesis.kinds.motion.task import MotionTask, Real
 from synthesis.numerics.quadrics import common_points
 
 BLANK = 1e-10
 """Norm of a quadric on the linear space below which it vanishes there; its matrix has unit size in all."""
 
+ROW_ERROR = 2e-15
+"""Error of a unit row: some roundings."""
+
+SHARPEST = 1e-10
+"""Error of the space that the conditions leave beyond which nothing is proved of what lies in it."""
+
+IN_SPACE = 1e-13
+"""Distance of a point at infinity from the space that the conditions leave, up to which it lies in it: rounding, as is
+the error of the space that is added to it."""
+
 AT_INFINITY = 1e-5
-"""p of a unit point x, about task size over distance squared, below which a solution that is not simple lies at
-infinity: conditions on the coupler's length have double solutions there, which show half of their digits."""
+"""Distance of a solution, as a unit point x, from one at infinity that it is: conditions on the coupler's length have
+double solutions there, which show half of their digits, and threefold ones a third."""
 
 NOWHERE = 1e-6
 """A and O of a unit point x below which both pivots are at infinity: it guides nothing. Where the solution is double,
@@ -72,16 +83,21 @@ class Section(NamedTuple):
     double : bool, shape (k,)
         Two or more dyads lie here, to rounding.
     sliders : tuple of SliderDyad
-        Those with a pivot at infinity, or farther away than :data:`~synthesis.kinds.motion.dyads.FAR`.
+        Those with a pivot at infinity, to rounding.
+    far : int
+        Number of those with a pivot farther away than :data:`~synthesis.kinds.motion.dyads.FAR` that is not at
+        infinity: they are not returned.
     finite : bool
         False where a whole family of dyads meets the conditions; then none is returned.
     proved : bool
         All solutions, the complex ones included, are accounted for, but for what lies at infinity: these are all dyads.
+        Never where a dyad is far, or where the conditions leave too few digits: then it is not known.
     """
 
     dyads: Dyads
     double: np.ndarray
     sliders: tuple[SliderDyad, ...]
+    far: int
     finite: bool
     proved: bool
 
@@ -91,8 +107,9 @@ def pose_rows(task: MotionTask) -> Real:
     r = task.turns[1:]
     c = task.points[1:] - r * task.points[0]
     forward = np.conj(r) * c
-    rows = np.stack([np.abs(c) ** 2 / 2.0, forward.real, forward.imag, -c.real, -c.imag, 1.0 - r.real, r.imag], axis=1)
-    return _unit(rows)
+    # 1 − cos of a small angle by its sine, which has all digits.
+    fall = np.where(r.real > 0.0, r.imag**2 / (1.0 + np.abs(r.real)), 1.0 - r.real)
+    return _unit(np.stack([np.abs(c) ** 2 / 2.0, forward.real, forward.imag, -c.real, -c.imag, fall, r.imag], axis=1))
 
 
 def condition_rows(task: MotionTask, conditions: DyadConditions) -> Real:
@@ -134,10 +151,7 @@ def condition_rows(task: MotionTask, conditions: DyadConditions) -> Real:
 
 def null_space(rows: Real) -> Real:
     """Orthonormal columns (7, m) that span what the rows leave."""
-    _, s, vh = np.linalg.svd(rows)
-    rank = int(np.sum(s > DEPENDENT))
-    basis: Real = vh[rank:].T
-    return basis
+    return _space(rows).basis
 
 
 def variety_forms(basis: Real) -> Real:
@@ -156,9 +170,11 @@ def section(task: MotionTask, conditions: DyadConditions) -> Section:
     conditions : DyadConditions
         Numbers, not arrays. 5 − n of them at least; at most one of them a coupler length.
     """
-    basis = null_space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
+    space = _space(np.concatenate([pose_rows(task), condition_rows(task, conditions)]))
+    basis, sharp = space.basis, space.error <= SHARPEST
     m = basis.shape[1]
-    none = Section(Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128)), np.empty(0, np.bool_), (), True, True)
+    nobody = Dyads(np.empty(0, np.complex128), np.empty(0, np.complex128))
+    none = Section(nobody, np.empty(0, np.bool_), (), 0, True, sharp)
     if m == 0:
         return none
     forms = list(variety_forms(basis))
@@ -168,42 +184,79 @@ def section(task: MotionTask, conditions: DyadConditions) -> Section:
     if len(independent) < m - 1:
         return none._replace(finite=False, proved=False)
     if m == 1:
-        points, double, proved = basis.T, np.zeros(1, np.bool_), True
         met = len(independent) == 0
-        return _sorted_out(task, conditions, points, double, proved) if met else none
-    solved = common_points(independent[: m - 1])
+        return _sorted_out(task, conditions, space, basis.T, np.zeros(1, np.bool_), sharp) if met else none
+    solved = common_points(independent[: m - 1], space.error)
     if not solved.finite:
         return none._replace(finite=False, proved=False)
     met = np.abs(np.einsum("qij,ki,kj->kq", independent[m - 1 :], solved.real, solved.real)).max(axis=1, initial=0.0)
     kept = met <= DEPENDENT
-    proved = bool(np.all(np.abs(solved.unproved @ basis[0]) <= AT_INFINITY))
-    return _sorted_out(task, conditions, solved.real[kept] @ basis.T, solved.double[kept], proved)
+    proved = sharp and bool(np.all(_at_infinity(space, solved.unproved)))
+    return _sorted_out(task, conditions, space, solved.real[kept] @ basis.T, solved.double[kept], proved)
 
 
-def split(points: Real) -> tuple[Dyads, np.ndarray, tuple[SliderDyad, ...]]:
-    """Dyads of real points x (k, 7) with both pivots in reach, which points they are (bool, k), and the sliders."""
+class _Space(NamedTuple):
+    """What linear conditions leave: orthonormal columns (7, m), and by how much, about, rounding may turn them."""
+
+    basis: Real
+    error: float
+
+
+def _space(rows: Real) -> _Space:
+    _, s, vh = np.linalg.svd(rows)
+    rank = int(np.sum(s > DEPENDENT))
+    # A condition that repeats the others but for a few digits is left out, and may be off by all that it says.
+    least = float(s[rank - 1]) if rank else 1.0
+    error = math.inf if np.any(s[rank:] > LOST) else ROW_ERROR / least
+    return _Space(vh[rank:].T, error)
+
+
+def _at_infinity(space: _Space, points: np.ndarray) -> np.ndarray:
+    """Which points of a space, by their unit vectors in it (k, m), are solutions with a pivot at infinity.
+
+    p = A = 0 and p = O = 0 lie on the variety. The space has such points where three of its rows are dependent.
+    """
+    met = np.zeros(len(points), np.bool_)
+    for rows in ([0, 1, 2], [0, 3, 4]):
+        _, s, vh = np.linalg.svd(space.basis[rows])
+        depends = np.ones(space.basis.shape[1], np.bool_)
+        depends[: len(s)] = s <= IN_SPACE + space.error
+        off = points - (points @ vh[depends].T) @ vh[depends]
+        met |= np.linalg.norm(off, axis=1) <= AT_INFINITY
+    return met
+
+
+def _split(points: Real) -> tuple[Dyads, np.ndarray, np.ndarray]:
+    """Dyads of real points x (k, 7) with both pivots in reach, which points they are, and which have one in reach."""
     p = points[:, 0]
     moving, fixed = points[:, 1] + 1j * points[:, 2], points[:, 3] + 1j * points[:, 4]
-    mixed = points[:, 5] + 1j * points[:, 6]
     reach = np.maximum(np.abs(moving), np.abs(fixed))
     near = (reach < FAR * np.abs(p)) & (reach > NOWHERE)
-    far = ~near & (reach > NOWHERE)
+    scale = p[near].astype(np.complex128)
+    return Dyads(fixed[near] / scale, moving[near] / scale), near, ~near & (reach > NOWHERE)
+
+
+def _sliders(points: Real) -> tuple[SliderDyad, ...]:
+    """The sliders that points x with a pivot at infinity stand for."""
     sliders: list[SliderDyad] = []
-    for a, o, de in zip(moving[far], fixed[far], mixed[far], strict=True):
+    moving, fixed = points[:, 1] + 1j * points[:, 2], points[:, 3] + 1j * points[:, 4]
+    for a, o, de in zip(moving, fixed, points[:, 5] + 1j * points[:, 6], strict=True):
         if abs(o) > abs(a):
             sliders.append(SliderDyad("PR", complex(de * o) / abs(o) ** 2, complex(o / abs(o))))
         else:
             sliders.append(SliderDyad("RP", complex(np.conj(de) * a) / abs(a) ** 2, complex(a / abs(a))))
-    scale = p[near].astype(np.complex128)
-    return Dyads(fixed[near] / scale, moving[near] / scale), near, tuple(sliders)
+    return tuple(sliders)
 
 
 def _sorted_out(
-    task: MotionTask, conditions: DyadConditions, points: Real, double: np.ndarray, proved: bool
+    task: MotionTask, conditions: DyadConditions, space: _Space, points: Real, double: np.ndarray, proved: bool
 ) -> Section:
-    dyads, near, sliders = split(points)
+    dyads, near, single = _split(points)
     good = directions_hold(task, conditions, dyads)
-    return Section(Dyads(dyads.fixed[good], dyads.moving[good]), double[near][good], sliders, True, proved)
+    infinite = _at_infinity(space, points @ space.basis)
+    sliders, far = _sliders(points[single & infinite]), int(np.sum(~near & ~infinite))
+    kept = Dyads(dyads.fixed[good], dyads.moving[good])
+    return Section(kept, double[near][good], sliders, far, True, proved and not far)
 
 
 def _unit(rows: Real) -> Real:

@@ -89,7 +89,7 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     linked = problem.input_side if stated is problem.output_side else problem.output_side
     dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
     if not len(dyads.points):
-        return _none(problem, dyads.reason, complete=not dyads.sampled)
+        return _none(problem, dyads.reason, complete=dyads.proved)
     progress(0.1, "finding links")
     links = side_dyads(task, problem, linked, rng, LINKS if dyads.sampled else ALONE)
     if not len(links.dyads.fixed):

@@ -44,6 +44,9 @@ CURVES_REACH = 4.0
 CURVES_SAMPLES = 400
 """Samples of Burmester's curves that are returned, all branches together."""
 
+UNDECIDED = "That does not prove that none exists."
+"""What is said where the dyads, or what became of them, are not all beyond doubt."""
+
 _EITHER_WAY = {"degenerate", "residual", "cannot_be_driven", "circuit_defect"}
 """Reasons that hold whichever side drives."""
 
@@ -65,8 +68,13 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
         result = _searched(pairs, progress)
     else:
         result = _determined(pairs, progress)
+        noun = "fourbar"
         if pairs.sliders:
             result = beside_sliders(problem, result, pairs.sliders, progress)
+            noun = "linkage"
+        if not any(design.verification.passed for design in result.designs):
+            end = f"These are all, so no {noun} exists." if result.search.complete else UNDECIDED
+            result = result.model_copy(update={"summary": f"{result.summary} {end}"})
     return result if result.designs else with_sliders(problem, result, progress)
 
 
@@ -90,8 +98,8 @@ def _determined(pairs: Pairs, progress: Progress) -> MotionResult:
     progress(1.0, "verified")
     complete = all(cloud.complete for cloud in pairs.clouds) and not NUMERICAL & sifting.rejected.keys()
     designs = sifting.designs(partial(ranked, rank_by=pairs.problem.rank_by))
-    summary = _summary_of_determined(pairs, sifting, complete=complete)
-    return _result(pairs, designs, sifting.search("exact", complete=complete), summary)
+    search = sifting.search("exact", complete=complete)
+    return _result(pairs, designs, search, _summary_of_determined(pairs, sifting))
 
 
 def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
@@ -132,7 +140,7 @@ def _result(pairs: Pairs, designs: list[LinkageDesign], search: Search, summary:
     )
 
 
-def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign], *, complete: bool) -> str:
+def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign]) -> str:
     count, accepted = sifting.candidates, sifting.accepted
     verb = "carries" if accepted == 1 else "carry"
     noun = "linkage" if count == 1 else "linkages"
@@ -144,10 +152,7 @@ def _summary_of_determined(pairs: Pairs, sifting: Sifting[LinkageDesign], *, com
             text += f" {len(sifting.passed) - accepted} can be driven from either side."
     else:
         text = f"{accepted} of {count} {noun} with the stated choices {verb} the body through all positions."
-    text += sifting.reasons()
-    if not sifting.passed:
-        text += " These are all, so no fourbar exists." if complete else " That does not prove that none exists."
-    return text
+    return text + sifting.reasons()
 
 
 def _summary_of_search(sifting: Sifting[LinkageDesign], sound: int) -> str:
