@@ -34,8 +34,8 @@ FROM_END = 0.1
 LEAST_SHARE = 0.8
 """Share of the greatest size that fits above which such a size is looked for: a linkage needs not be smaller."""
 
-WIDENINGS = 60
-"""Bisections for the least widening of the boxes: to rounding."""
+WIDENED = 1e-6
+"""Share of itself to which the least widening of the boxes is known."""
 
 
 class Placing(NamedTuple):
@@ -101,7 +101,7 @@ def placed(
     while found is None:
         inner, outer = outer, 2.0 * outer
         found = _along(points, boxes.widened(outer), least, most, preferred, turned)
-    for _ in range(WIDENINGS):
+    while outer - inner > WIDENED * outer:
         middle = 0.5 * (inner + outer)
         nearer = _along(points, boxes.widened(middle), least, most, preferred, turned)
         if nearer is None:

@@ -36,6 +36,8 @@ def placement(
         Whether the direction may be another one.
     """
     limits = constraints.link_length
+    if limits is None and constraints.fixed_pivot_region is None and constraints.moving_pivot_region is None:
+        return Placing(0j, preferred, True)
     least, most = 0.0, math.inf
     if lengths is None:
         least = most = abs(preferred)

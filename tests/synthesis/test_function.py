@@ -11,7 +11,7 @@ import pytest
 
 from kinematics.linkage import SliderCrank, slider_crank
 from kinematics.linkage.fourbar import Fourbar, positions
-from synthesis.kinds.function.approximation import _Descent
+from synthesis.kinds.function.approximation import Descent
 from synthesis.kinds.function.closure import FOURBAR
 from synthesis.kinds.function.levelling import levelled
 from synthesis.kinds.function.precision import many_exact
@@ -448,8 +448,8 @@ class TestApproximations:
     def test_an_answer_near_rounding_is_not_refined_without_end(self, monkeypatch):
         # The error falls to 2e-6 degrees and goes on falling: of two hundred level linkages only the best are improved.
         done = []
-        improve = _Descent.minimax
-        monkeypatch.setattr(_Descent, "minimax", lambda *given: done.append(1) or improve(*given))
+        improve = Descent.minimax
+        monkeypatch.setattr(Descent, "minimax", lambda *given: done.append(1) or improve(*given))
         function = {"name": "power", "exponent": 1.5, "x": [3.511, 4.147]}
         best = solved(function=function, input_range=60.0, constraints=UNBOUNDED).designs[0]
         assert best.structural_error.max < 1e-5

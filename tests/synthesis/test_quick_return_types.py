@@ -196,3 +196,17 @@ def test_a_swing_of_nearly_half_a_turn_is_answered(limits: dict[str, float]) -> 
     for kind in ("fourbar", "drag_link_rocker"):
         found = answer(mechanism=kind, time_ratio=1.0, swing=179.9999999, constraints=limits)
         assert all(design.verification.passed for design in found.designs)
+
+
+@pytest.mark.parametrize("limit", [None, 80.0])
+@pytest.mark.parametrize("ratio", [13.0, 14.5, 15.0, 30.0, 200.0])
+def test_a_crank_shaper_reverses_twice_at_large_time_ratios(ratio: float, limit: float | None) -> None:
+    constraints = {} if limit is None else {"min_transmission_angle": limit}
+    found = answer(mechanism="crank_shaper", time_ratio=ratio, stroke=40.0, constraints=constraints)
+    (design,) = found.designs
+    links = design.mechanism.links
+    # Crank over ground is the sine of half the link's swing, 90° (T − 1)/(T + 1).
+    half = 0.5 * math.pi * (ratio - 1.0) / (ratio + 1.0)
+    assert links.crank / links.ground == pytest.approx(math.sin(half), rel=1e-12)
+    assert design.metrics.time_ratio == pytest.approx(ratio, rel=1e-9)
+    assert design.metrics.stroke == pytest.approx(40.0, rel=1e-9)

@@ -20,6 +20,7 @@ both zeros are given, the design equation's convex least squares in K gives a st
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -88,6 +89,9 @@ PENALTY = 10.0
 SAME = 1e-3
 """Optima whose numbers differ by less are one."""
 
+SCALES = (5, 6)
+"""Where a generator has its scales."""
+
 DENSE = 801
 """Places at which an error is looked at for its extremes."""
 
@@ -109,10 +113,12 @@ class Approximations(NamedTuple):
     improved: int
 
 
-def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progress) -> Approximations:
-    """The best approximations that are reached from many starts."""
-    limits = GeneratorLimits(task)
-    descent = _Descent(task, limits)
+def approximations(
+    task: FunctionTask, rng: np.random.Generator, progress: Progress, least: float | None = None
+) -> Approximations:
+    """The best approximations that are reached from many starts; ``least`` as for :class:`GeneratorLimits`."""
+    limits = GeneratorLimits(task, least)
+    descent = Descent(task, limits)
     pool, signs = _starts(task, limits, rng)
     progress(0.2, f"{len(pool)} starts")
     if not len(pool):
@@ -126,7 +132,7 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
     # What is not levelled, or not among the inequalities, may have its best elsewhere.
     inside &= not task.free[5:].any() and task.problem.constraints.grashof in ("any", "crank_rocker", "double_crank")
     effort = FEW if inside else MANY
-    chosen = _best_distinct(descent, pool, signs, effort.starts)
+    chosen = descent.best_apart(pool, signs, effort.starts)
     improve = descent.minimax if task.problem.aim == "minimax" else descent.least_squares
     rough = []
     for n, j in enumerate(chosen):
@@ -143,7 +149,7 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
     if optima and not optima[0].arrived:
         # The best is on its way still: on to the end, and from where its errors are level if that is better.
         best = optima[0]
-        level, theirs = levelled(task, best.generator[None], np.array([best.sign]))
+        level, theirs = levelled(task, best.generator[None, :STEPS], np.array([best.sign]))
         level = limits.contained(level)
         nearest = np.argsort(descent.sizes(level, theirs))[:ONWARD]
         onward = [(best.generator, best.sign), *zip(level[nearest], theirs[nearest], strict=True)]
@@ -154,9 +160,9 @@ def approximations(task: FunctionTask, rng: np.random.Generator, progress: Progr
 
 def _same(one: Approximation, other: Approximation) -> bool:
     """Whether two optima are one; angles without full turns, which a slider's position is never near to."""
-    gaps = one.generator - other.generator
+    gaps = one.generator[:STEPS] - other.generator[:STEPS]
     gaps[3:5] -= math.tau * np.round(gaps[3:5] / math.tau)
-    return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator))))
+    return one.sign == other.sign and bool(np.all(np.abs(gaps) <= SAME * (1.0 + np.abs(other.generator[:STEPS]))))
 
 
 def _starts(task: FunctionTask, limits: GeneratorLimits, rng: np.random.Generator) -> tuple[Real, Real]:
@@ -241,37 +247,22 @@ def _with_scales(found: Real, k: Real, scale: Real) -> Real:
     return np.column_stack([found[:, :5], k[index], scale[index]])
 
 
-def _best_distinct(descent: _Descent, pool: Real, signs: Real, count: int) -> list[int]:
-    """Starts with the least errors that differ from one another."""
-    merit = descent.merits(pool, signs)
-    features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
-    chosen: list[int] = []
-    # Half of them from within all limits, if there are such: a descent comes into them, but not from everywhere.
-    for inside, most in ((True, count // 2), (False, count)):
-        for j in np.argsort(merit):
-            if not math.isfinite(merit[j]) or len(chosen) == most:
-                break
-            if inside and float(descent.limits.values(pool[j])[0].max(initial=0.0)) > 0.0:
-                continue
-            gaps = np.abs(features[chosen] - features[j]).max(axis=1) if chosen else np.array([np.inf])
-            if gaps.min() > SAME_START:
-                chosen.append(int(j))
-    return chosen
-
-
-class _Descent:
+class Descent:
     """Improves one generator at a time."""
 
     def __init__(self, task: FunctionTask, limits: GeneratorLimits) -> None:
         self.task, self.limits = task, limits
-        self.coarse = task.samples()
+        exact = task.problem.aim == "precision"
+        self.coarse = task.points() if exact else task.samples()
         function = task.problem.function
-        if function is None:
+        if function is None or exact:
             self.dense = self.coarse
         else:
             shares = 0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, DENSE))
             self.dense = Generators(task.problem.slides, shares, function.share_along(shares))
         self.free = task.free
+        if limits.regions is not None:
+            self.free = np.concatenate([self.free, limits.regions.free])
         # With the output's range open its errors are shares of it; else the least range would be the best.
         self.relative = bool(self.free[6])
         self.square = task.problem.aim == "least_squares"
@@ -283,6 +274,27 @@ class _Descent:
             short = math.sqrt(max(1.0 - self.limits.cosine**2, 0.0)) - self.limits.transmission(pool)
             size = size + np.maximum(short, 0.0)
         return np.asarray(size)
+
+    def best_apart(self, pool: Real, signs: Real, count: int) -> list[int]:
+        """Starts with the least errors that differ from one another.
+
+        Half of them are from within all limits, if there are such: a descent comes into them, but not from everywhere.
+        """
+        merit, lacking = self.merits(pool, signs), self.limits.lacking(pool)
+        inside = self.apart(pool, np.where(lacking > 0.0, np.inf, merit), count // 2)
+        return self.apart(pool, merit, count, inside)
+
+    def apart(self, pool: Real, merit: Real, count: int, chosen: Sequence[int] = ()) -> list[int]:
+        """The rows of a pool with the least merit that differ from one another and from those chosen before."""
+        features = np.column_stack([np.log(np.abs(pool[:, :3]) + 1e-12), pool[:, 3:5], np.log(np.abs(pool[:, 5:]))])
+        found = list(chosen)
+        for j in np.argsort(merit):
+            if not math.isfinite(merit[j]) or len(found) >= count:
+                break
+            gaps = np.abs(features[found] - features[j]).max(axis=1) if found else np.array([np.inf])
+            if gaps.min() > SAME_START:
+                found.append(int(j))
+        return found
 
     def sizes(self, pool: Real, signs: Real) -> Real:
         """The criterion's error of many generators; infinite beyond use."""
@@ -299,24 +311,24 @@ class _Descent:
         return np.asarray(errors / abs(at[6]) if self.relative else errors)
 
     def _slopes(self, generators: Generators, at: Real, errors: Real) -> Real:
-        if not self.relative:
-            return generators.derivatives(at, errors)
-        slopes = generators.derivatives(at, errors * abs(at[6])) / abs(at[6])
-        slopes[:, 6] -= errors
-        return np.asarray(slopes)
+        unit = abs(at[6]) if self.relative else 1.0
+        slopes = generators.derivatives(at, errors * unit) / unit
+        if self.relative:
+            slopes[:, 6] -= errors
+        return np.pad(slopes, ((0, 0), (0, len(at) - STEPS)))  # wherever it stands
 
     def _scale_rows(self, at: Real) -> tuple[Real, Real]:
         """How far ln of each scale may still go down and up, shapes (2,)."""
-        low, high = np.zeros(STEPS), np.zeros(STEPS)
+        low, high = np.zeros(len(at)), np.zeros(len(at))
         for side, column in ((0, 5), (1, 6)):
             choice = [limits for limits in self.task.scales[side] if limits[0] * at[column] > 0.0]
             ends = sorted(abs(x) for x in choice[0])
             low[column], high[column] = (math.log(end / abs(at[column])) for end in ends)
         return low, high
 
-    def minimax(self, at: Real, sign: float, rounds: int) -> Approximation:
-        """Sequential linear programs from one generator."""
-        trust = TRUST
+    def minimax(self, at: Real, sign: float, rounds: int, enough: float = 0.0) -> Approximation:
+        """Sequential linear programs from one generator, until error and violation are ``enough`` or settled."""
+        trust, at = TRUST, self.limits.put(at)
         errors = self._errors(self.dense, at, sign)
         greatest = float(np.abs(errors).max()) if np.isfinite(errors).all() else math.inf
         if not math.isfinite(greatest):
@@ -341,7 +353,7 @@ class _Descent:
                 trust *= 2.0
             elif share < 0.25:
                 trust *= 0.25
-            if trust < MIN_TRUST:
+            if trust < MIN_TRUST or merit <= enough:
                 arrived = True
                 break
         return Approximation(at, sign, merit, arrived)
@@ -365,7 +377,7 @@ class _Descent:
         lower = np.hstack([-slopes[:, free] / unit, -ones, zero])
         limited = np.hstack([g_slopes[:, free], np.zeros((len(g), 1)), -np.ones((len(g), 1))])
         low, high = self._scale_rows(at)
-        bounded = self.free & (np.arange(STEPS) >= 5)
+        bounded = np.isin(np.arange(len(at)), SCALES)
         floors = [max(-trust, low[j]) if bounded[j] else -trust for j in free]
         ceilings = [min(trust, high[j]) if bounded[j] else trust for j in free]
         done = least(
@@ -377,17 +389,17 @@ class _Descent:
         )
         if done is None:
             return None, math.inf
-        step = np.zeros(STEPS)
+        step = np.zeros(len(at))
         step[free] = done.at[: len(free)]
         return step, done.value * unit
 
     def least_squares(self, at: Real, sign: float, rounds: int) -> Approximation:
         """Sequential quadratic programs from one generator."""
-        free = np.flatnonzero(self.free)
+        free, at = np.flatnonzero(self.free), self.limits.put(at)
         weights = self._weights()
 
         def whole(x: Real) -> Real:
-            step = np.zeros(STEPS)
+            step = np.zeros(len(at))
             step[free] = x
             return self.dense.stepped(at, step)
 
@@ -406,7 +418,7 @@ class _Descent:
             return float(weights @ errors**2) / unit, 2.0 * (weights * errors) @ slopes / unit
 
         low, high = self._scale_rows(at)
-        bounds = [(low[j], high[j]) if j >= 5 else (-1.5, 1.5) for j in free]
+        bounds = [(low[j], high[j]) if j in SCALES else (-1.5, 1.5) for j in free]
         limits = {
             "type": "ineq",
             "fun": lambda x: -self.limits.values(whole(x))[0],

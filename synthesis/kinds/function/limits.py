@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.function.regions import Regions
 from synthesis.kinds.function.structural_error import STEPS
 from synthesis.kinds.function.task import FunctionTask
 
@@ -26,14 +27,25 @@ LOOKED_AT = 25
 INSIDE = 1e-7
 """Relative distance that is kept from every limit, so that rounding does not violate it."""
 
+PLACES_TRIED = 1000
+"""Generators whose regions are looked at, of many, those that lack least of all else."""
+
 TURNING = 1e-4
 """Margin in Grashof's condition, in lengths of the shortest link: with none the linkage has a change point."""
 
 
 class GeneratorLimits:
-    """Inequalities g(generator) ≤ 0 of a task."""
+    """Inequalities g(generator) ≤ 0 of a task.
 
-    def __init__(self, task: FunctionTask) -> None:
+    Parameters
+    ----------
+    task : FunctionTask
+        Whose client states limits.
+    least : float, optional
+        Transmission angle, degrees, that is kept where the client states none.
+    """
+
+    def __init__(self, task: FunctionTask, least: float | None = None) -> None:
         problem, demanded = task.problem, task.problem.constraints
         self.slides = problem.slides
         ratio = WITHOUT_END if demanded.max_link_ratio is None else min(demanded.max_link_ratio, WITHOUT_END)
@@ -48,7 +60,7 @@ class GeneratorLimits:
         elif low > 0.0 and math.isfinite(high):
             ratio = min(ratio, high / low)
         self.ratio = ratio / (1.0 + INSIDE)
-        least = demanded.min_transmission_angle
+        least = demanded.min_transmission_angle if demanded.min_transmission_angle is not None else least
         self.cosine = None if least is None else math.cos(math.radians(least)) - INSIDE
         inputs = task.sample_inputs
         self.places = np.linspace(float(inputs.min()), float(inputs.max()), LOOKED_AT)
@@ -56,6 +68,9 @@ class GeneratorLimits:
         if self.slides:
             self.shortest_link = None
         self.turns_through = demanded.full_rotation
+        self.never_turns = demanded.grashof == "non_grashof"
+        zones = (demanded.fixed_pivot_region, demanded.moving_pivot_region)
+        self.regions = Regions(task) if problem.fixed_pivots is None and zones != (None, None) else None
 
     def contained(self, generators: Real) -> Real:
         """Generators (k, 7) with their lengths moved into the limits of ratio and size."""
@@ -86,7 +101,57 @@ class GeneratorLimits:
         return np.asarray((excess < -TURNING * lengths.min(axis=0)) & np.isin(shortest, wanted))
 
     def values(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
-        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, 7)."""
+        """g and, where asked for, its derivatives by the steps: shapes (m,) and (m, n).
+
+        n is 7, or 11 for a generator with its place, whose regions are then among the inequalities.
+        """
+        g, slopes = self._of_linkage(generator[:STEPS], derivatives=derivatives)
+        if len(generator) == STEPS or self.regions is None:
+            return g, slopes
+        placed, rows = self.regions.values(generator)
+        slopes = np.pad(slopes, ((0, 0), (0, len(generator) - STEPS)))
+        return np.concatenate([g, placed + INSIDE]), np.concatenate([slopes, rows])
+
+    def put(self, generator: Real) -> Real:
+        """A generator with the place that fits it best, where there are regions to be kept; else as it is."""
+        return generator if self.regions is None or len(generator) > STEPS else self.regions.put(generator)
+
+    def lacking(self, generators: Real) -> Real:
+        """What many generators lack of the limits, the worst of each, coarsely: shape (k,).
+
+        Infinite where a linkage cannot be assembled, and where too many others lack less to look at its regions.
+        """
+        lengths = generators[:, :2] if self.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
+        least, most = lengths.min(axis=1), lengths.max(axis=1)
+        rows = [np.log(most / least / self.ratio), self._lacking_class(lengths)]
+        sized = lengths if self.slides else lengths[:, 1:]
+        if self.shortest > 0.0:
+            rows.append(np.log(self.shortest / sized.min(axis=1)))
+        if math.isfinite(self.longest):
+            rows.append(np.log(sized.max(axis=1) / self.longest))
+        if self.cosine is not None:
+            rows.append(np.sqrt(1.0 - self.transmission(generators) ** 2) - self.cosine)
+        worst = np.maximum(np.max(rows, axis=0), 0.0)
+        if self.regions is None:
+            return np.asarray(worst)
+        nearest = np.argsort(worst)[:PLACES_TRIED]
+        placed = np.full(len(worst), np.inf)
+        placed[nearest] = np.maximum(worst[nearest], self.regions.outside(generators[nearest]))
+        return placed
+
+    def _lacking_class(self, lengths: Real) -> Real:
+        """What many linkages lack of the class that is demanded, by their lengths (k, 2 or 4): shape (k,)."""
+        if self.slides or (self.shortest_link is None and not self.turns_through and not self.never_turns):
+            return np.zeros(len(lengths))
+        least = lengths.min(axis=1)
+        excess = (2.0 * (least + lengths.max(axis=1)) - lengths.sum(axis=1)) / least
+        if self.never_turns:
+            return np.asarray(TURNING - excess)
+        wanted = [0, 1] if self.shortest_link is None else [self.shortest_link]
+        return np.asarray(np.maximum(excess + TURNING, np.log(lengths[:, wanted].min(axis=1) / least)))
+
+    def _of_linkage(self, generator: Real, *, derivatives: bool = False) -> tuple[Real, Real]:
+        """The same of the linkage alone, wherever it stands."""
         rows = [*self._ratios(generator), *self._grashof(generator)]
         g = np.array([value for value, _ in rows])
         slopes = np.array([slope for _, slope in rows]).reshape(-1, STEPS)
@@ -101,8 +166,17 @@ class GeneratorLimits:
         cosines = self._cosines(*(generators[:, j, None] for j in range(6)))
         return np.asarray(np.sqrt(np.maximum(1.0 - np.abs(cosines).max(axis=1) ** 2, 0.0)))
 
+    def _thetas(self, start: Real, k: Real) -> Real:
+        """Input angles at which the transmission angle is looked at: over the range, and where it is extreme within."""
+        theta = np.asarray(start + k * self.places)
+        first, last = theta[..., :1], theta[..., -1:]
+        turned = 0.5 * math.pi if self.slides else 0.0
+        inner = turned + math.pi * np.ceil((np.minimum(first, last) - turned) / math.pi)
+        extremes = np.minimum(np.concatenate([inner, inner + math.pi], axis=-1), np.maximum(first, last))
+        return np.concatenate([theta, extremes], axis=-1)
+
     def _cosines(self, a: Real, b: Real, c: Real, start: Real, _zero: Real, k: Real) -> Real:
-        theta = start + k * self.places
+        theta = self._thetas(start, k)
         if self.slides:
             return np.asarray((c - a * np.sin(theta)) / b)
         f2 = 1.0 + a * a - 2.0 * a * np.cos(theta)
@@ -113,7 +187,7 @@ class GeneratorLimits:
         cosines = self._cosines(a, b, c, start, zero, k)
         slopes = np.zeros((len(cosines), STEPS))
         if derivatives:
-            theta = start + k * self.places
+            theta = self._thetas(start, k)
             if self.slides:
                 slopes[:, 0], slopes[:, 1], slopes[:, 2] = -a * np.sin(theta) / b, -cosines, 1.0 / b
                 slopes[:, 3] = -a * np.cos(theta) / b
@@ -121,7 +195,7 @@ class GeneratorLimits:
                 slopes[:, 0] = -(2.0 * a * a - 2.0 * a * np.cos(theta)) / (2.0 * b * c)
                 slopes[:, 1], slopes[:, 2] = b / c - cosines, c / b - cosines
                 slopes[:, 3] = -2.0 * a * np.sin(theta) / (2.0 * b * c)
-            slopes[:, 5] = slopes[:, 3] * k * self.places
+            slopes[:, 5] = slopes[:, 3] * (theta - start)
         return cosines, slopes
 
     def _ratios(self, generator: Real) -> list[tuple[float, Real]]:
@@ -152,6 +226,8 @@ class GeneratorLimits:
             return [((a + sign * e - b) / b + TURNING, (slope + sign * _unit(2)) / b) for sign in (1.0, -1.0)]
         lengths = [1.0, *(float(x) for x in generator[:3])]
         short = self.shortest_link
+        if self.never_turns:
+            return [self._change_point(lengths)]
         if short is None:
             if not self.turns_through:
                 return []
@@ -167,6 +243,19 @@ class GeneratorLimits:
                 excess = (2.0 * pair - total) / unit
                 rows.append((excess + TURNING, (2.0 * slope - total_slope - excess * slopes[short]) / unit))
         return rows
+
+    def _change_point(self, lengths: list[float]) -> tuple[float, Real]:
+        """Of a linkage without a link that turns: shortest and longest are together longer than the other two."""
+        excess, slope, unit = 0.0, np.zeros(STEPS), min(lengths)
+        for j, length in enumerate(lengths):
+            side = -1.0 if length in (unit, max(lengths)) else 1.0
+            excess += side * length / unit
+            if j:
+                slope += side * length / unit * _unit(j - 1)
+        shortest = lengths.index(unit)
+        if shortest:
+            slope -= excess * _unit(shortest - 1)
+        return excess + TURNING, slope
 
 
 def _unit(j: int) -> Real:

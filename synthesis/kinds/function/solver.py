@@ -14,12 +14,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.function.approximation import approximations
+from synthesis.kinds.function.approximation import Descent, approximations
 from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.precision import exact, family, many_exact, polished
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.scales import Scaling, one_scale, two_scales
+from synthesis.kinds.function.structural_error import STEPS
 from synthesis.kinds.function.task import FunctionTask, built, function_task
 from synthesis.kinds.function.verification import verify_function
 from synthesis.model.kind import Progress, part_of
@@ -36,6 +37,23 @@ SLICES = 40
 
 TRIED = 6
 """Members of a family that are verified at most, for each design wanted."""
+
+AWAY = (30.0, 10.0, 2.0)
+"""Least transmission angles, degrees, that keep approximations from a toggle or change point, where the best without a
+limit stands in one and cannot be driven."""
+
+COARSE = 0.02
+"""What a member may lack of the limits, as they are first judged, and still be verified."""
+
+STEERINGS, STEERED, STEERING_STEPS, ENOUGH_STEERED = 4, 24, 40, 3
+"""Where no member that was drawn lies within the limits: how often others are drawn and the nearest moved into them,
+how many at a time, steps of each, and how many are enough."""
+
+MET, NEARLY_MET = 1e-12, 1e-7
+"""Error and what lacks of the limits below which a member has arrived, and with which it is polished and verified."""
+
+HOPELESS = 0.2
+"""Error, with what lacks of the limits as the descents weigh it, above which no others are drawn: a fiftieth."""
 
 APART = 0.1
 """Members of a family differ by this much in the logarithm of a length or in an angle."""
@@ -63,7 +81,7 @@ def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResu
     """Solve a problem of function generation."""
     if not problem.from_ground:
         return _with_zeros(problem, progress)
-    held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE))
+    held = _with_zeros(problem, part_of(progress, 0.0, HELD_SHARE), steered=False)
     if any(design.verification.passed for design in held.designs):
         progress(1.0, "verified")
         return held.model_copy(update={"summary": f"{held.summary}{_HELD}"})
@@ -83,18 +101,23 @@ def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResu
     )
 
 
-def _with_zeros(problem: FunctionProblem, progress: Progress) -> FunctionResult:
-    """The answer with the zeros that the problem has, stated or held."""
+def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool = True) -> FunctionResult:
+    """The answer with the zeros that the problem has, stated or held; ``steered`` as for :func:`_family`."""
     task = function_task(problem)
     progress(0.0, "stated")
     rng = np.random.default_rng(problem.seed)
     harvest = _Harvest(task)
     if problem.aim != "precision":
-        found = approximations(task, rng, progress)
-        for one in found.optima:
-            harvest.verify(one.generator, one.sign)
+        judged = improved = 0
+        for least in (None, *(AWAY if problem.constraints.min_transmission_angle is None else ())):
+            found = approximations(task, rng, progress, least)
+            judged, improved = judged + found.judged, improved + found.improved
+            for one in found.optima:
+                harvest.verify(one.generator, one.sign)
+            if harvest.passed:
+                break
         progress(1.0, "verified")
-        return harvest.approximated(found.judged, found.improved)
+        return harvest.approximated(judged, improved)
     missing = 3 + sum(zero is None for zero in task.zeros) - len(task.inputs)
     open_scales = int(task.free[5]) + int(task.free[6])
     if missing == -2 or (missing == -1 and open_scales == 2):
@@ -108,7 +131,7 @@ def _with_zeros(problem: FunctionProblem, progress: Progress) -> FunctionResult:
         if harvest.passed or proved:
             return harvest.determined(proved, "exact")
         # Pairs of a linkage that moves as others do, a parallelogram's for example, do not determine it.
-    _family(task, harvest, rng, progress)
+    _family(task, harvest, rng, progress, steered=steered)
     return harvest.searched("family")
 
 
@@ -171,19 +194,25 @@ def _with_two_scales(task: FunctionTask, harvest: _Harvest, missing: int, progre
                     harvest.polish_and_verify(generator, scales_given=True)
 
 
-def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress) -> None:
-    """The best members of a family that differ from one another."""
-    generators = _members(task, rng)
+def _family(
+    task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, progress: Progress, *, steered: bool
+) -> None:
+    """The best members of a family that differ from one another.
+
+    Where none that was drawn satisfies the demands, others are moved until they do, if that is wanted (``steered``).
+    """
+    members = _members(task, rng)
     limits = GeneratorLimits(task)
-    progress(0.3, f"{len(generators)} members of the family")
-    signs = task.points().signs(generators)
-    one_assembly = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
-    generators, signs = generators[one_assembly], signs[one_assembly, 0]
-    harvest.reject("circuit_defect", int(np.count_nonzero(~one_assembly)))
+    progress(0.3, f"{len(members)} members of the family")
+    generators, signs = _in_one_assembly(task, members)
+    harvest.reject("circuit_defect", len(members) - len(generators))
     sine = limits.transmission(generators)
-    worth = _worth(task, limits, generators, signs, sine)
-    sound = np.isfinite(worth)
-    harvest.reject("branch_defect", int(np.count_nonzero(~sound)))
+    lacking = limits.lacking(generators)
+    worth = _worth(task, generators, signs, sine)
+    closed = np.isfinite(worth)
+    harvest.reject("branch_defect", int(np.count_nonzero(~closed)))
+    worth = np.where(lacking > COARSE, np.inf, worth)
+    harvest.reject("constraints", int(np.count_nonzero(closed & ~np.isfinite(worth))))
     order = np.argsort(worth)
     order = order[np.isfinite(worth[order])]
     features = np.column_stack([np.log(np.abs(generators[:, :3]) + 1e-12), generators[:, 3:5]])
@@ -198,8 +227,40 @@ def _family(task: FunctionTask, harvest: _Harvest, rng: np.random.Generator, pro
         chosen.append(int(j))
         tried += 1
         harvest.polish_and_verify(generators[j], scales_given=True)
-        progress(0.3 + 0.6 * tried / most, "verifying")
+        progress(0.3 + 0.4 * tried / most, "verifying")
     harvest.reject(OUTRANKED, len(order) - tried)
+    if steered and not harvest.passed:
+        _into_limits(task, limits, harvest, rng, progress)
+
+
+def _into_limits(
+    task: FunctionTask, limits: GeneratorLimits, harvest: _Harvest, rng: np.random.Generator, progress: Progress
+) -> None:
+    """Members of a family that lack least are moved within it, until they satisfy the demands."""
+    descent = Descent(task, limits)
+    enough = min(ENOUGH_STEERED, task.problem.max_designs)
+    for n in range(STEERINGS):
+        progress(0.7 + 0.3 * n / STEERINGS, "moving members into the limits")
+        generators, signs = _in_one_assembly(task, _members(task, rng))
+        nearest = math.inf
+        for j in descent.apart(generators, limits.lacking(generators), STEERED):
+            moved = descent.minimax(generators[j], float(signs[j]), STEERING_STEPS, enough=MET)
+            nearest = min(nearest, moved.error)
+            if moved.error > NEARLY_MET:
+                harvest.reject("constraints")
+                continue
+            harvest.polish_and_verify(moved.generator[:STEPS], scales_given=True)
+            if len(harvest.passed) >= enough:
+                return
+        if harvest.passed or nearest > HOPELESS:
+            return
+
+
+def _in_one_assembly(task: FunctionTask, generators: Real) -> tuple[Real, Real]:
+    """The members that meet all places in one assembly, and that."""
+    signs = task.points().signs(generators)
+    same = np.abs(signs.sum(axis=1)) > signs.shape[1] - 0.5
+    return generators[same], signs[same, 0]
 
 
 def _members(task: FunctionTask, rng: np.random.Generator) -> Real:
@@ -225,16 +286,11 @@ def _drawn(limits: tuple[float, float], count: int, rng: np.random.Generator) ->
     return np.asarray(low * (high / low) ** rng.random(count))
 
 
-def _worth(task: FunctionTask, limits: GeneratorLimits, generators: Real, signs: Real, sine: Real) -> Real:
+def _worth(task: FunctionTask, generators: Real, signs: Real, sine: Real) -> Real:
     """What members are ordered by, least first: the structural error of a function, else quality; infinite unfit."""
     problem, demanded = task.problem, task.problem.constraints
     lengths = generators[:, :2] if problem.slides else np.column_stack([np.ones(len(generators)), generators[:, :3]])
     ratio = lengths.max(axis=1) / lengths.min(axis=1)
-    unfit = sine <= 0.0
-    if demanded.max_link_ratio is not None:
-        unfit |= ratio > demanded.max_link_ratio
-    if demanded.min_transmission_angle is not None:
-        unfit |= sine < math.sin(math.radians(demanded.min_transmission_angle))
     if problem.function is not None:
         errors = np.abs(task.samples().errors(generators, signs)).max(axis=1)
         if task.free[6]:
@@ -245,7 +301,7 @@ def _worth(task: FunctionTask, limits: GeneratorLimits, generators: Real, signs:
     else:
         reach = lengths.max(axis=1) if problem.slides else 0.0
         worth = -sine / (1.0 + (ratio / 8.0) ** 2) / (1.0 + (reach / 3.0) ** 2)
-    return np.where(unfit | ~np.isfinite(worth), np.inf, worth)
+    return np.where((sine <= 0.0) | ~np.isfinite(worth), np.inf, worth)
 
 
 def _within(scale: float, choices: list[tuple[float, float]]) -> bool:

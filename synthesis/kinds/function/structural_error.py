@@ -15,6 +15,9 @@ Real = NDArray[np.float64]
 STEPS = 7
 """Numbers that a linkage and its scales have."""
 
+PLACED = STEPS + 4
+"""The same with size, direction and place: see :mod:`synthesis.kinds.function.regions`."""
+
 ERROR = 1.0
 """Structural errors are wrapped into half a turn; beyond this many radians (or ranges of a slider) an approximation is
 none."""
@@ -65,7 +68,7 @@ class Generators:
             return self._derivatives(dimensions, errors)
 
     def _derivatives(self, dimensions: Real, errors: Real) -> Real:
-        a, b, c, start, zero, k, scale = dimensions
+        a, b, c, start, zero, k, scale = dimensions[:STEPS]
         theta = start + k * self.inputs
         if self.slides:
             x = zero + scale * self.outputs + errors - a * np.cos(theta)
@@ -102,4 +105,5 @@ class Generators:
         adds = [2, 3, 4] if self.slides else [3, 4]
         found[logs] *= np.exp(step[logs])
         found[adds] += step[adds]
+        found[STEPS:] += step[STEPS:]
         return found

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from synthesis.kinds.function.closure import Closure, closure_of
 from synthesis.kinds.function.design import Dials, InputDial, OutputDial
 from synthesis.kinds.function.problem import FunctionProblem
-from synthesis.kinds.function.structural_error import Generators
+from synthesis.kinds.function.structural_error import STEPS, Generators
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, slider_crank_mechanism, to_complex
 from synthesis.outcome.placement import placement
@@ -125,13 +125,13 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
     ----------
     task : FunctionTask
         The task.
-    generator : float, shape (7,)
-        See :mod:`synthesis.kinds.function.structural_error`.
+    generator : float, shape (7,) or (11,)
+        With a place or without, which is chosen anew. See :mod:`synthesis.kinds.function.structural_error`.
     sign : float
         Its assembly.
     """
     problem = task.problem
-    a, b, c, start, zero, k, scale = (float(x) for x in generator)
+    a, b, c, start, zero, k, scale = (float(x) for x in generator[:STEPS])
     place = float(task.inputs[0])
     theta = start + k * place
     pin = cmath.rect(a, theta)

@@ -5,7 +5,9 @@ Both invert the slider-crank, with the crank shorter or longer than the ground. 
 * crank-shaper: the link swings by ψ between the tangents from O4 to the crank's circle, sin(ψ/2) = a/d, and the crank
   turns by π + ψ in the slow stroke: ψ = δ. Its arm O4–C of r = H/(2 sin(ψ/2)) has its ends at one height, so that a ram
   across the middle of the swing has the stroke H exactly; at the height in the middle of the arc's rise the coupler
-  leans least, by sin⁻¹ of r (1 − cos(ψ/2))/2b.
+  leans least, by sin⁻¹ of r (1 − cos(ψ/2))/2b. Near its ends the arc is steep, and a coupler square to it would turn
+  the ram back before the link is there: with the line z above the ends it leans there by λ, sin λ = z/b, and the ram
+  goes on where cos(ψ/2 + λ) > 0, z < b cos(ψ/2). From ratios of about 14 on the line is therefore lower.
 * Whitworth: the link turns through. The ram's line passes through O4 square to the ground line; the ram's limits stand
   where C is on that line, H = 2r, and the crank turns by π + 2 sin⁻¹(d/a) in the slow stroke: d/a = sin(δ/2). The
   coupler leans most by sin⁻¹(r/b).
@@ -31,6 +33,9 @@ REACH = 0.9
 SHAPER_COUPLER = 1.0
 """Coupler of a crank-shaper in strokes, where no transmission angle asks for a longer one."""
 
+CLEAR = 0.9
+"""Height of the ram's line over the ends of the arc, as a share of that at which the ram would turn back too early."""
+
 WHITWORTH_COUPLER = 4.0
 """Coupler of a Whitworth in arms, for a transmission angle of 75.5°, where none asks for a longer one."""
 
@@ -53,8 +58,12 @@ def crank_shapers(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:
     rocker = 0.5 * problem.stroke / sine
     ground = REACH * rocker / (1.0 + sine)
     rise = rocker * 2.0 * math.sin(0.5 * half) ** 2
-    coupler = max(SHAPER_COUPLER * problem.stroke, 0.5 * rise * _stretch(problem))
-    return [_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, rocker - 0.5 * rise, -half)]
+    shortest = SHAPER_COUPLER * problem.stroke
+    above = min(0.5 * rise, CLEAR * shortest * math.cos(half))
+    coupler = max(shortest, (rise - above) * _stretch(problem))
+    # With a longer coupler the line may be higher, and the coupler leans less than was asked for.
+    height = rocker * math.cos(half) + min(0.5 * rise, CLEAR * coupler * math.cos(half))
+    return [_mechanism(problem, "crank_shaper", ground, ground * sine, rocker, coupler, height, -half)]
 
 
 def whitworths(problem: QuickReturnProblem) -> list[QuickReturnMechanism]:

@@ -1,0 +1,141 @@
+"""Regions of pivots as inequalities of a function generator and of its place, with derivatives by its steps.
+
+A generator does the same in any place, direction and size, so that regions leave four numbers more to choose: with w
+the vector of the ground line (of a slider-crank the slide's, of given size) and o the place of O2, joint p stands at
+o + w p. Steps are those of the generator, then of ln |w|, arg w, and of o in units of the regions' extent.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.function.structural_error import PLACED, STEPS, Generators
+from synthesis.kinds.function.task import USUAL_GROUND, FunctionTask
+from synthesis.outcome.placement import boxes, placement
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DIRECTIONS, SIZES = 144, 5
+"""Directions and sizes in which many generators are tried: to two hundredths of their size."""
+
+SMALLEST = 0.2
+"""Least share of the greatest size that is tried where no limit of length says how small a linkage may be."""
+
+
+class Regions:
+    """Regions that pivots must lie in, of a task that leaves the place open."""
+
+    def __init__(self, task: FunctionTask) -> None:
+        self.task, self.constraints = task, task.problem.constraints
+        self.slides = task.problem.slides
+        fixed = 1 if self.slides else 2
+        regions = [self.constraints.fixed_pivot_region] * fixed + [self.constraints.moving_pivot_region] * 2
+        self.boxes = boxes(regions)
+        sides = np.concatenate([self.boxes.right - self.boxes.left, self.boxes.high - self.boxes.low])
+        self.extent = float(sides[np.isfinite(sides)].max(initial=0.0)) or USUAL_GROUND
+        limits = self.constraints.link_length
+        self.shortest = 0.0 if limits is None else limits.min
+        self.longest = math.inf if limits is None or limits.max is None else limits.max
+        self.first = Generators(self.slides, task.inputs[:1], task.outputs[:1])
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Which of the four numbers of the place are open."""
+        return np.array([not self.slides, True, True, True])
+
+    def joints(self, generators: Real) -> Complex:
+        """Pivots at the first target in the solver's frame, fixed ones first, of generators (k, 7): shape (k, n)."""
+        a, _, c, start, zero, k, scale = (generators[:, j] for j in range(STEPS))
+        errors = self.first.errors(generators, self.first.signs(generators))[:, 0]
+        errors = np.where(np.isfinite(errors), errors, 0.0)
+        pin = a * np.exp(1j * (start + k * self.first.inputs[0]))
+        stands = zero + scale * self.first.outputs[0] + errors
+        fixed = [np.zeros_like(pin)]
+        if self.slides:
+            joint = stands + 1j * c
+        else:
+            fixed.append(np.ones_like(pin))
+            joint = 1.0 + c * np.exp(1j * stands)
+        return np.stack([*fixed, pin, joint], axis=-1)
+
+    def put(self, generator: Real) -> Real:
+        """A generator (7,) with the place that fits it best: shape (11,)."""
+        joints = self.joints(generator[None])[0]
+        moving, fixed = list(joints[-2:]), list(joints[:-2])
+        lengths = None if self.slides else [1.0, *(float(x) for x in generator[:3])]
+        preferred = complex(self.task.unit if self.slides else USUAL_GROUND)
+        found = placement(self.constraints, fixed, moving, lengths, preferred)
+        at = found.origin / self.extent
+        place = [math.log(abs(found.along)), float(np.angle(found.along)), at.real, at.imag]
+        return np.concatenate([generator, place])
+
+    def outside(self, generators: Real) -> Real:
+        """How far many generators lie outside at least, in units of the regions' extent: shape (k,); coarse."""
+        joints = self.joints(generators)
+        if self.slides:
+            sizes = np.full((len(joints), 1), self.task.unit)
+        else:
+            lengths = np.column_stack([np.ones(len(joints)), generators[:, :3]])
+            most = np.minimum(self.longest / lengths.max(axis=1), 2.0 * self.extent)
+            least = np.maximum(self.shortest / lengths.min(axis=1), 0.0)
+            least = np.where(least > 0.0, np.minimum(least, most), SMALLEST * most)
+            sizes = least[:, None] * (most / least)[:, None] ** np.linspace(0.0, 1.0, SIZES)
+        best = np.full(len(joints), np.inf)
+        for turn in np.exp(1j * math.tau * np.arange(DIRECTIONS) / DIRECTIONS):
+            moved = (sizes * turn)[..., None] * joints[:, None, :]
+            # Half of what the joints are farther apart than their boxes allow.
+            x = (self.boxes.left - moved.real).max(axis=-1) - (self.boxes.right - moved.real).min(axis=-1)
+            y = (self.boxes.low - moved.imag).max(axis=-1) - (self.boxes.high - moved.imag).min(axis=-1)
+            best = np.minimum(best, np.maximum(x, y).min(axis=1))
+        return np.asarray(np.maximum(0.5 * best, 0.0) / self.extent)
+
+    def values(self, at: Real) -> tuple[Real, Real]:
+        """Inequalities g ≤ 0 of a generator with its place (11,), and their derivatives: shapes (m,) and (m, 11)."""
+        generator, (log_size, turn, x, y) = at[:STEPS], at[STEPS:]
+        along, origin = math.exp(log_size) * complex(math.cos(turn), math.sin(turn)), self.extent * complex(x, y)
+        joints = self.joints(generator[None])[0]
+        places = origin + along * joints
+        slopes = np.zeros((len(joints), PLACED), np.complex128)
+        slopes[-2:, :STEPS] = along * self._turned(generator)
+        slopes[:, STEPS], slopes[:, STEPS + 1] = along * joints, 1j * along * joints
+        slopes[:, STEPS + 2], slopes[:, STEPS + 3] = self.extent, 1j * self.extent
+        left, right, low, high = self.boxes
+        g = np.concatenate([left - places.real, places.real - right, low - places.imag, places.imag - high])
+        rows = np.concatenate([-slopes.real, slopes.real, -slopes.imag, slopes.imag])
+        stated = np.isfinite(g)
+        g, rows = g[stated] / self.extent, rows[stated] / self.extent
+        if self.slides:
+            return g, rows
+        logs = np.log(np.array([1.0, *generator[:3]])) + log_size
+        of_logs = np.zeros((4, PLACED))
+        of_logs[1:, :3] = np.eye(3)
+        of_logs[:, STEPS] = 1.0
+        if self.shortest > 0.0:
+            g, rows = np.concatenate([g, math.log(self.shortest) - logs]), np.concatenate([rows, -of_logs])
+        if math.isfinite(self.longest):
+            g, rows = np.concatenate([g, logs - math.log(self.longest)]), np.concatenate([rows, of_logs])
+        return g, rows
+
+    def _turned(self, generator: Real) -> Complex:
+        """Derivatives of A and B at the first target in the solver's frame by the generator's steps: shape (2, 7)."""
+        a, _, c, start, zero, k, scale = (float(x) for x in generator)
+        place, wanted = float(self.first.inputs[0]), float(self.first.outputs[0])
+        errors = self.first.errors(generator[None], self.first.signs(generator[None]))[0]
+        pin = a * np.exp(1j * (start + k * place))
+        slopes = np.zeros((2, STEPS), np.complex128)
+        slopes[0, [0, 3, 5]] = pin, 1j * pin, 1j * pin * k * place
+        stands = self.first.derivatives(generator, errors)[0] if np.isfinite(errors[0]) else np.zeros(STEPS)
+        stands = np.where(np.isfinite(stands), stands, 0.0)
+        stands[[4, 6]] += 1.0, scale * wanted
+        if self.slides:
+            slopes[1] = stands
+            slopes[1, 2] += 1j
+            return slopes
+        arm = c * np.exp(1j * (zero + scale * wanted + (errors[0] if np.isfinite(errors[0]) else 0.0)))
+        slopes[1] = 1j * arm * stands
+        slopes[1, 2] += arm
+        return slopes
