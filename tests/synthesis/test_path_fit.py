@@ -93,12 +93,14 @@ def test_a_planted_path_without_timing_is_recovered():
     assert best.metrics.full_rotation
 
 
-def test_verified_sums_agree_with_brute_force():
-    rng = np.random.default_rng(3)
+@pytest.mark.parametrize(("seed", "least"), [(3, 2), (6, 4)])
+def test_verified_sums_agree_with_brute_force(seed, least):
+    rng = np.random.default_rng(seed)
     points = positions(CRANK_ROCKER, np.linspace(0.0, 5.5, 14), OPEN).p + 0.3 * rng.normal(size=(14, 2)) @ [1.0, 1.0j]
     # Away from change points, beside which P goes far between two samples of the brute force.
     result = fit(points, constraints={"full_rotation": True, "min_transmission_angle": 15.0})
-    assert len(result.designs) >= 2, "others are near the points alone, and go astray between them"
+    # Of the first points other fits are near the points alone, and go astray between them.
+    assert len(result.designs) >= least
     for design in result.designs[:4]:
         found = design.metrics.sum_of_squares
         inputs = np.array([target.input_angle for target in design.targets])
