@@ -24,24 +24,29 @@ Motion = Callable[[Real], tuple[Complex, Real]]
 def closest_inputs(motion: Motion, target: Demanded, low: float, high: float) -> tuple[Real, Real]:
     """The input at which the body is nearest to each demanded pose, between two inputs.
 
-    Where coordinates of a pose are held these alone decide, once it is known which of several places is meant.
+    Where coordinates of a pose are held these alone decide, once it is known which of several places is meant. Where
+    all have a tolerance the nearest is the place at which the greatest share of a tolerance that is used is least.
 
     Returns
     -------
     inputs : float, shape (n,)
         NaN where the mechanism has no position at all in the range.
     misses : float, shape (n,)
-        Deviations at these inputs, the root of the sum of squares in units of their limits (or the task's size).
+        Deviations at these inputs in units of their limits (or the task's size): the root of the sum of squares, or the
+        greatest where all have a tolerance.
     """
     n = len(target.points)
     held = target.held
     units = target.units
+    tolerated = np.all(np.isfinite(target.limits) & ~held, axis=1)
     weights = np.where(held, HELD_WEIGHT, 1.0) / units
     alone = np.where(np.any(held, axis=1)[:, None], held / units, 1.0 / units)
 
     def missed_by(points: Complex, turns: Real, by: Real) -> Real:
         offsets = target.offsets(points, turns) * by[:, None, :]
-        missed = np.sqrt(np.einsum("...c,...c->...", offsets, offsets))
+        missed = np.where(
+            tolerated[:, None], np.abs(offsets).max(axis=-1), np.sqrt(np.einsum("...c,...c->...", offsets, offsets))
+        )
         return np.where(np.isfinite(missed), missed, np.inf)
 
     grid = np.linspace(low, high, GRID + 1)

@@ -117,6 +117,7 @@ def undriven(problem: MotionProblem) -> MotionProblem:
     return problem.model_copy(
         update={
             "driver_dyad": False,
+            "method": "auto" if problem.approximate else "exact",
             "max_designs": min(max(SPARE * problem.max_designs, LEAST_SPARE), 200),
             "include_failed": False,
             "input_side": problem.input_side.model_copy(update=pins),

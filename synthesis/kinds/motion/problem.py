@@ -150,6 +150,13 @@ class DyadChoices(Statement):
         return sum(s is not None for s in scalars)
 
     @property
+    def pivots_alone(self) -> bool:
+        """Whether nothing but pivots is fixed, or their coordinates."""
+        vector = self.coupler_vector
+        whole = vector is None or (vector.length is not None and vector.angle is not None)
+        return whole and self.link_angle is None and not any(b is not None for b in self.rotations or [])
+
+    @property
     def one_pivot(self) -> bool:
         """Whether one whole pivot is all that is fixed."""
         pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)
@@ -250,6 +257,19 @@ class MotionProblem(LinkageProblem):
                     "kind": "motion",
                     "positions": [
                         {"x": 0.0, "y": 0.0, "angle": 0.0},
+                        {"x": 230.0, "y": 240.0, "angle": 40.0, "tolerance": {"x": 40.0, "y": 40.0, "angle": 15.0}},
+                        {"x": 190.0, "y": 470.0, "angle": 85.0, "tolerance": {"x": 30.0, "y": 30.0, "angle": 3.0}},
+                    ],
+                    "constraints": {
+                        "fixed_pivot_region": {"x": [-250.0, -30.0], "y": [120.0, 290.0]},
+                        "moving_pivot_region": {"x": [-60.0, -10.0], "y": [-280.0, 280.0]},
+                    },
+                    "max_designs": 5,
+                },
+                {
+                    "kind": "motion",
+                    "positions": [
+                        {"x": 0.0, "y": 0.0, "angle": 0.0},
                         {"x": 40.0, "y": 15.0, "angle": -25.0},
                         {"x": 75.0, "y": 5.0, "angle": -60.0},
                     ],
@@ -285,7 +305,8 @@ class MotionProblem(LinkageProblem):
     ground_line: GroundLine | None = Field(default=None, description="Both fixed pivots lie on this line.")
     method: Literal["auto", "exact", "least_squares"] = Field(
         default="auto",
-        description="How positions are met: exactly (five at most) or as nearly as can be. auto: exactly up to five.",
+        description="How positions are met: exactly (five at most) or as nearly as can be, within tolerances where "
+        "these are stated. auto: exactly up to five, but for positions with tolerances.",
     )
 
     driver_dyad: Flag | DriverDyad = Field(
@@ -331,19 +352,30 @@ class MotionProblem(LinkageProblem):
 
         Where some position has a tolerance, the others are met exactly.
         """
-        if any(position.tolerance is not None for position in self.positions):
+        if self._toleranced:
             return False
         enough = len(self.positions) >= MOST_HELD + (self.method == "auto")
         return self.method != "exact" and enough
 
     @property
     def approximate(self) -> bool:
-        """Whether the positions are fitted, with tolerances or without.
+        """Whether the positions are fitted, with tolerances or without: five of them or more."""
+        return self.fitted or (self._toleranced and len(self.positions) >= MOST_HELD)
 
-        Up to four positions are met exactly although they have tolerances: enough linkages do.
+    @property
+    def steered(self) -> bool:
+        """Whether tolerances of two to four positions are used: those of fourbars, where pivots are all that is stated.
+
+        Sliders, rotations of links and a driver dyad belong to positions that are met exactly.
         """
-        toleranced = any(position.tolerance is not None for position in self.positions)
-        return self.fitted or (toleranced and len(self.positions) >= MOST_HELD)
+        sides = self.input_side, self.output_side
+        pins = all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
+        few = self._toleranced and len(self.positions) < MOST_HELD
+        return few and self.method != "exact" and pins and self.driver is None
+
+    @property
+    def _toleranced(self) -> bool:
+        return any(position.tolerance is not None for position in self.positions)
 
     @property
     def task_size(self) -> float:
@@ -420,8 +452,9 @@ class MotionProblem(LinkageProblem):
     def _too_many_held(self) -> list[Contradiction]:
         if self.method == "exact" and len(self.positions) > MOST_HELD and not self.approximate:
             return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
-        if self.method == "least_squares" and not self.approximate:
-            return [Contradiction("/method", "fewer than five positions can be met exactly; leave the method out")]
+        if self.method == "least_squares" and not (self.approximate or self.steered):
+            detail = "fewer than five positions can be met exactly; leave the method out or state tolerances"
+            return [Contradiction("/method", detail)]
         held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
         if len(held) > MOST_HELD:
             detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"

@@ -25,6 +25,7 @@ from synthesis.kinds.motion.least_squares import solve_least_squares
 from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.slider_search import beside_sliders, solve_sliders, with_sliders
+from synthesis.kinds.motion.steered import solve_steered
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of
@@ -60,6 +61,14 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
         return solve_least_squares(problem, progress)
     if problem.slider is not None:
         return solve_sliders(problem, problem.slider, progress)
+    if problem.steered:
+        exact = _exact(problem, part_of(progress, 0.0, 0.3))
+        return solve_steered(problem, exact, part_of(progress, 0.3, 1.0))
+    return _exact(problem, progress)
+
+
+def _exact(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Two to five positions met exactly."""
     progress(0.0, "finding dyads")
     pairs = pairs_of_dyads(problem)
     if pairs.lacking is not None:

@@ -1,0 +1,240 @@
+"""Two to four positions of which some have tolerances: linkages that use them to satisfy all demands.
+
+Starts (:mod:`synthesis.kinds.motion.steered_starts`) meet poses that are drawn within the tolerances. Each is then made
+to hold all demands at once (:mod:`synthesis.kinds.motion.steered_rows`), every position within its tolerance, and is
+driven and verified like any other. Positions without a tolerance are held to rounding.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from synthesis.kinds.motion.demanded import Demanded, demanded
+from synthesis.kinds.motion.design import MotionResult
+from synthesis.kinds.motion.least_squares import fit_demands
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.screening import SHORTEST_LINK
+from synthesis.kinds.motion.steered_rows import (
+    ASSEMBLY,
+    BOXES,
+    COSINE,
+    DIRECTION,
+    GIVEN,
+    HOME,
+    LINE,
+    LINKS,
+    OTHERS,
+    PIVOTS,
+    RATIO,
+    SHORTEST,
+    STEPS,
+    WEIGHT_OF_HOME,
+    equations,
+    limits,
+    steered_rows,
+)
+from synthesis.kinds.motion.steered_starts import Start, starts, stated_coordinates
+from synthesis.kinds.motion.task import MotionTask, Real, motion_task
+from synthesis.kinds.motion.verification import verify
+from synthesis.model.kind import Progress
+from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.portions import in_portions
+from synthesis.numerics.status import Status
+from synthesis.outcome.ranking import distinct, ranked
+from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
+
+STARTED, BETTERED = 40, 8
+"""Linkages that are steered, staying near to their starts; and those of them, as many as differ, that are then brought
+to where they are most usable."""
+
+STAYING = 0.3
+"""Weight of the way from the start, in task sizes, in the first of these."""
+
+WEIGHT = 10.0
+"""Weight of limits in the first descent."""
+
+SAME_LINKAGE = 0.02
+"""Linkages whose joints differ by less than this share of the task's size are one answer; the better is kept."""
+
+LEAST_ANGLE = 2.0
+"""Degrees of transmission angle that are aimed at where the client sets no limit: away from toggles."""
+
+_SHORTEST = {"double_crank": 0, "crank_rocker": 1, "double_rocker": 2}
+"""The shortest link, in the order d, a, b, c, of classes of fourbars."""
+
+REASONS = DEFECTS | LENGTHS | {"within_tolerance": "tolerance"}
+"""Why a design was rejected, by the check that it failed; other checks go by their own name."""
+
+
+def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progress) -> MotionResult:
+    """Designs that use the tolerances, beside those that meet the positions exactly.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Two to four positions.
+    exact : MotionResult
+        The answer with all positions met exactly.
+    progress : callable
+        Told how far the work is.
+    """
+    task = motion_task(problem)
+    tolerances = fit_demands(problem, task).tolerances
+    progress(0.0, "drawing poses within the tolerances")
+    listed = starts(problem, task, tolerances, STARTED)
+    progress(0.4, f"steering {len(listed)} linkages")
+    points = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
+    rows = np.ascontiguousarray(np.concatenate([points, tolerances], axis=1))
+    begun = [_begun(problem, task, rows, start) for start in listed]
+    steered = _all_steered(rows, begun)
+    sifting = Sifting[LinkageDesign](problem, REASONS)
+    sifting.join(exact.search)
+    sifting.passed = [design for design in exact.designs if design.verification.passed]
+    sifting.failed = [design for design in exact.designs if not design.verification.passed]
+    met = len(sifting.passed)
+    different = _different(steered)
+    let_go = [_let_go(linkage) for linkage in different[:BETTERED]]
+    bettered = _all_steered(rows, let_go)
+    offered = _different([*bettered, *different])
+    sifting.reject("not_steered", len(begun) - len(steered) + len(let_go) - len(bettered))
+    sifting.reject(OUTRANKED, len(steered) + len(bettered) - len(offered))
+    progress(0.8, f"verifying {len(offered)} linkages")
+    target = demanded(problem)
+    sifting.sift(offered, lambda linkage: _verified(problem, task, rows, linkage.x, target))
+    progress(1.0, "verified")
+    return MotionResult(
+        designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),
+        curves=exact.curves,
+        search=sifting.search("tolerance_search"),
+        summary=_summary(sifting, len(listed), len(sifting.passed) - met, met),
+    )
+
+
+class _Linkage(NamedTuple):
+    """A linkage on its way: unknowns, and its setting (:mod:`synthesis.kinds.motion.steered_rows`)."""
+
+    x: Real
+    setting: Real
+
+
+def _begun(problem: MotionProblem, task: MotionTask, rows: Real, start: Start) -> _Linkage:
+    """A start, which is to stay near to where it is."""
+    pivots = np.ascontiguousarray(start.pivots).view(np.float64)
+    setting = _setting(problem, task, start)
+    setting[HOME : HOME + PIVOTS], setting[WEIGHT_OF_HOME] = pivots, STAYING
+    return _Linkage(np.concatenate([pivots, start.deviations[rows[:, 3:] > 0.0]]), setting)
+
+
+def _let_go(linkage: _Linkage) -> _Linkage:
+    """The same, free to go where it is most usable."""
+    setting = linkage.setting.copy()
+    setting[WEIGHT_OF_HOME] = 0.0
+    return linkage._replace(setting=setting)
+
+
+def _all_steered(rows: Real, begun: list[_Linkage]) -> list[_Linkage]:
+    """Linkages brought to where all demands hold, without those that cannot be."""
+    n = len(rows)
+    ended: list[_Linkage | None] = [None] * len(begun)
+
+    def steered(linkage: _Linkage) -> _Linkage | None:
+        x, state, cost = linkage.x.copy(), np.zeros(limits(n)), np.empty(1)
+        most = len(x) + OTHERS + limits(n)
+        status = hold(steered_rows, x, rows, linkage.setting, state, most, limits(n), equations(n), WEIGHT, cost)
+        if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(cost[0]):
+            return None
+        return _Linkage(x, linkage.setting)
+
+    def work(some: slice) -> None:
+        ended[some] = [steered(linkage) for linkage in begun[some]]
+
+    in_portions(work, len(begun), 1)
+    return [linkage for linkage in ended if linkage is not None]
+
+
+def _setting(problem: MotionProblem, task: MotionTask, start: Start) -> Real:
+    """The demands as numbers, and what a start decides: which way the input turns, and in which assembly."""
+    constraints = problem.constraints
+    n = len(start.poses)
+    setting = np.full(STEPS + n - 1, math.inf)
+    o2, o4, a, b = (complex(z) for z in start.pivots)
+    spins = np.exp(1j * start.poses[:, 2])
+    places = start.poses[:, 0] + 1j * start.poses[:, 1]
+    pins = places + spins * (a - task.points[0])
+    others = places + spins * (b - task.points[0])
+    turned = np.angle((pins - o2) / (pins[0] - o2))
+    onward, backward = np.mod(turned, math.tau), -np.mod(-turned, math.tau)
+    rises, falls = bool(np.all(np.diff(onward) > 0.0)), bool(np.all(np.diff(backward) < 0.0))
+    forward = rises and not (falls and -backward[-1] < onward[-1])
+    setting[DIRECTION] = 1.0 if forward else -1.0
+    setting[STEPS:] = np.diff(onward if forward else backward)
+    setting[ASSEMBLY] = math.copysign(1.0, float(((others - pins)[0].conjugate() * (others[0] - o4)).imag))
+    setting[SHORTEST] = _SHORTEST.get(constraints.grashof, -1)
+    if constraints.full_rotation and setting[SHORTEST] < 0:
+        setting[SHORTEST] = 0 if abs(o4 - o2) < abs(pins[0] - o2) else 1
+    setting[COSINE] = math.cos(math.radians(max(constraints.min_transmission_angle or 0.0, LEAST_ANGLE)))
+    lengths = constraints.link_length
+    setting[LINKS] = 0.0 if lengths is None else lengths.min / task.size
+    setting[LINKS + 1] = math.inf if lengths is None or lengths.max is None else lengths.max / task.size
+    setting[RATIO] = math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio
+    origin = task.origin.real, task.origin.imag
+    for at, region in ((BOXES, constraints.fixed_pivot_region), (BOXES + 4, constraints.moving_pivot_region)):
+        setting[at : at + 4 : 2], setting[at + 1 : at + 4 : 2] = -math.inf, math.inf
+        if region is not None:
+            for axis, interval in enumerate((region.x, region.y)):
+                for side in (0, 1):
+                    setting[at + 2 * axis + side] = (interval[side] - origin[axis]) / task.size
+    setting[GIVEN : GIVEN + PIVOTS] = stated_coordinates(task, problem)
+    setting[LINE : LINE + 3] = math.nan
+    if problem.ground_line is not None:
+        normal = 1j * cmath.rect(1.0, math.radians(problem.ground_line.angle))
+        offset = -problem.ground_line.offset(task.origin) / task.size
+        setting[LINE : LINE + 3] = normal.real, normal.imag, offset
+    return setting
+
+
+def _different(held: list[_Linkage]) -> list[_Linkage]:
+    """Linkages that differ, in the order in which they come."""
+    if not held:
+        return []
+    joints = np.array([linkage.x[:PIVOTS] for linkage in held]).view(np.complex128)
+    return [held[k] for k in distinct(joints, len(held), SAME_LINKAGE)]
+
+
+def _verified(
+    problem: MotionProblem, task: MotionTask, rows: Real, x: Real, target: Demanded
+) -> LinkageDesign | str | None:
+    """The linkage of steered unknowns, driven; either way round where both sides are stated alike."""
+    pose = rows[0, :3].copy()
+    free = rows[0, 3:] > 0.0
+    pose[free] += rows[0, 3:][free] * x[PIVOTS : PIVOTS + int(free.sum())]
+    place, spin = complex(pose[0], pose[1]), cmath.exp(1j * float(pose[2]))
+    o2, o4, a, b = (complex(z) for z in np.ascontiguousarray(x[:PIVOTS]).view(np.complex128))
+    o2, o4 = task.pivot(problem.input_side.fixed_pivot, o2), task.pivot(problem.output_side.fixed_pivot, o4)
+    a, b = (task.to_problem(place + spin * (z - complex(task.points[0]))) for z in (a, b))
+    joints = FourbarConfiguration(o2, a, b, o4, task.to_problem(place))
+    if not joints.has_no_link_below(SHORTEST_LINK):
+        return "degenerate"
+    angle = problem.positions[0].angle + math.degrees(float(pose[2])) if free[2] else None
+    return verify(problem, fourbar_mechanism(joints, angle), target)
+
+
+def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact: int) -> str:
+    if not sifting.passed:
+        return (
+            f"None of {started} linkages that were steered into the tolerances and demands satisfies them all "
+            f"(rejected: {sifting.listed(OUTRANKED) or 'none'}). A linkage may exist that the search did not meet."
+        )
+    best = max(design.metrics.min_transmission_angle for design in sifting.passed)
+    return (
+        f"{steered} of {started} linkages that were steered into the tolerances satisfy all demands, and {exact} that "
+        f"meet the positions exactly; the least transmission angle is up to {best:.1f}°. The tolerances were "
+        "searched from poses drawn within them; a better linkage may exist."
+    )

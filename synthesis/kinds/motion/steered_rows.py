@@ -1,0 +1,244 @@
+"""A fourbar that carries a body through poses, each within its tolerance, under all demands: residuals and limits.
+
+The unknowns are the pivots O2, O4, A and B (A and B of the body in the first demanded pose, task coordinates) and, for
+each coordinate of a pose that has a tolerance, its deviation in units of that. What has to hold are equations and
+inequalities of :mod:`synthesis.numerics.augmented_lagrangian`:
+
+=================== ==== ============================================================
+demand              g, h margin
+=================== ==== ============================================================
+tolerance           g    1 ∓ deviation
+pivot regions       g    distance from each side of a box; moving pivots in the first pose
+link lengths        g    ln(l / least), ln(most / l)
+link ratio          g    ln(ratio · lᵢ / lₖ)
+transmission angle  g    cos γ_least ∓ cos γ, at the ends of the used range and on the ground line where it is passed
+Grashof             g    P + Q − L − S for each L; the shortest link S is that of the start
+one circuit         g    sin γ in each pose, in the assembly of the start
+order               g    turn of the input from each pose to the next, and what is left of a whole turn
+the links' lengths  h    |A_k − O2| − |A − O2|, |B_k − O4| − |B − O4|
+stated coordinates  h    distance along each axis; of fixed pivots from the ground line
+=================== ==== ============================================================
+
+What is made least keeps the linkage usable: cosines of transmission angles, lengths of links, and deviations; and, with
+a weight, near to where it started, so that many starts lead to different linkages. Derivatives are central
+differences: a fourbar has no more than twenty unknowns, and what is differenced is smooth.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.numerics.augmented_lagrangian import limit_rows
+from synthesis.numerics.levenberg import ROWS
+
+Real = NDArray[np.float64]
+
+DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN, LINE, HOME, WEIGHT_OF_HOME, STEPS = (
+    0, 1, 2, 3, 4, 6, 7, 15, 23, 26, 34, 35,
+)  # fmt: skip
+"""Places in a setting: the way in which the input turns (±1), sign of the assembly, the shortest link that is demanded
+(0 to 3 for d, a, b, c; −1 where none is), cosine of the least transmission angle, least and most length (0 and infinite
+where open), link ratio (infinite where open), boxes (x from, to, y from, to) of fixed and of moving pivots, stated
+coordinates (O2, O4, A, B; NaN where open), the ground line (unit normal and offset; NaN where open), the pivots to stay
+near to and the weight of that, and from there on the input's turn from each pose to the next, to half a turn."""
+
+OTHERS = 14 + 8
+"""Number of residuals beside those of deviations."""
+
+PIVOTS = 8
+"""Number of unknowns that are coordinates of pivots."""
+
+EDGE = 1e-7
+"""Share of a tolerance, of a transmission cosine and of logarithms of lengths by which a limit is kept more narrowly
+than it is checked."""
+
+LEAST_STEP = 1e-3
+"""Turn of the input, radians, from one pose to the next, at least."""
+
+LEAST_SINE = 1e-3
+"""Sine of the transmission angle in each pose, at least: it stays in its assembly."""
+
+LEAST_LINK = 1e-6
+"""Length of a link, task sizes, below which it is none."""
+
+DIFFERENCE = 1e-5
+"""Change of an unknown over which derivatives are differenced."""
+
+BY_COSINE, BY_RATIO, BY_LENGTH, BY_ARM, BY_DEVIATION = 0.3, 0.15, 0.05, 0.05, 0.05
+"""Weights of what is made least: cosines of transmission angles, logarithms of links over their geometric mean, lengths
+of links and distances of moving pivots from P in task sizes, and deviations in tolerances."""
+
+
+@njit(cache=True, nogil=True)
+def equations(poses: int) -> int:
+    """Number of margins, the last ones, that must be zero."""
+    return 2 * (poses - 1) + PIVOTS + 2
+
+
+@njit(cache=True, nogil=True)
+def limits(poses: int) -> int:
+    """Number of all margins."""
+    return 6 * poses + 16 + 8 + 12 + 8 + 3 + poses + poses + equations(poses)
+
+
+@njit(cache=True, nogil=True)
+def _cross(u: complex, v: complex) -> float:
+    return u.real * v.imag - u.imag * v.real
+
+
+@njit(cache=True, nogil=True)
+def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: Real) -> int:
+    """Residuals and margins at x; how many residuals there are, or −1 where a link has no length."""
+    n = len(points)
+    o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
+    arm_a, arm_b = complex(x[4] - points[0, 0], x[5] - points[0, 1]), complex(x[6] - points[0, 0], x[7] - points[0, 1])
+    margins[:] = np.inf
+    a, b = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    at, m, rows = PIVOTS, 0, 0
+    pose = np.empty(3)
+    for k in range(n):
+        for c in range(3):
+            pose[c] = points[k, c]
+            if points[k, 3 + c] > 0.0:
+                pose[c] += points[k, 3 + c] * x[at]
+                margins[m], margins[m + 1] = 1.0 - EDGE - x[at], 1.0 - EDGE + x[at]
+                residuals[rows] = BY_DEVIATION * x[at]
+                at += 1
+                rows += 1
+            m += 2
+        spin, place = complex(math.cos(pose[2]), math.sin(pose[2])), complex(pose[0], pose[1])
+        a[k], b[k] = place + spin * arm_a, place + spin * arm_b
+    lengths = np.array([abs(o4 - o2), abs(a[0] - o2), abs(b[0] - a[0]), abs(b[0] - o4)])
+    if not lengths.min() > LEAST_LINK:
+        return -1
+    for pivot in range(4):
+        z = (o2, o4, a[0], b[0])[pivot]
+        box = BOXES + (0 if pivot < 2 else 4)
+        margins[m], margins[m + 1] = z.real - setting[box], setting[box + 1] - z.real
+        margins[m + 2], margins[m + 3] = z.imag - setting[box + 2], setting[box + 3] - z.imag
+        m += 4
+    m = _of_lengths(lengths, setting, margins, m)
+    d, crank, coupler, output = lengths[0], lengths[1], lengths[2], lengths[3]
+    ground = o4 - o2
+    turned = 0.0
+    order = m + 8 + 3 + n
+    for k in range(n - 1):
+        step = (a[k + 1] - o2) * (a[k] - o2).conjugate()
+        off = math.atan2(step.imag, step.real) - setting[STEPS + k]
+        step_turned = setting[STEPS + k] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
+        margins[order + k] = setting[DIRECTION] * step_turned - LEAST_STEP
+        turned += step_turned
+    margins[order + n - 1] = 2.0 * math.pi - LEAST_STEP - abs(turned)
+    first = (a[0] - o2) * ground.conjugate()
+    start = math.atan2(first.imag, first.real)
+    low, high = min(start, start + turned), max(start, start + turned)
+    for k in range(4):
+        if k < 2:
+            # The multiple of a half turn, even or odd, that lies in the range.
+            passed = 2.0 * math.pi * math.ceil((low - k * math.pi) / (2.0 * math.pi)) + k * math.pi
+            used = passed <= high
+            diagonal = d - crank if k == 0 else d + crank
+        else:
+            used = True
+            diagonal = abs(o4 - a[0 if k == 2 else n - 1])
+        cosine = (coupler * coupler + output * output - diagonal * diagonal) / (2.0 * coupler * output)
+        residuals[rows] = 0.0
+        if used:
+            residuals[rows] = BY_COSINE * cosine
+            margins[m], margins[m + 1] = setting[COSINE] - EDGE - cosine, setting[COSINE] - EDGE + cosine
+        rows += 1
+        m += 2
+    shortest = int(setting[SHORTEST])
+    if shortest >= 0:
+        around = lengths.sum()
+        place_of = m
+        for k in range(4):
+            if k != shortest:
+                margins[place_of] = around - 2.0 * (lengths[k] + lengths[shortest]) - LEAST_LINK * around
+                place_of += 1
+    m += 3
+    for k in range(n):
+        margins[m + k] = setting[ASSEMBLY] * _cross(b[k] - a[k], b[k] - o4) / (coupler * output) - LEAST_SINE
+    m += 2 * n
+    for k in range(n - 1):
+        margins[m], margins[m + 1] = abs(a[k + 1] - o2) - crank, abs(b[k + 1] - o4) - output
+        m += 2
+    for k in range(PIVOTS):
+        if not math.isnan(setting[GIVEN + k]):
+            margins[m + k] = x[k] - setting[GIVEN + k]
+    m += PIVOTS
+    if not math.isnan(setting[LINE]):
+        for k in range(2):
+            margins[m + k] = setting[LINE] * x[2 * k] + setting[LINE + 1] * x[2 * k + 1] - setting[LINE + 2]
+    mean = np.log(lengths).mean()
+    for k in range(4):
+        residuals[rows + 2 * k] = BY_RATIO * (math.log(lengths[k]) - mean)
+        residuals[rows + 2 * k + 1] = BY_LENGTH * lengths[k]
+    residuals[rows + 8], residuals[rows + 9] = BY_ARM * abs(arm_a), BY_ARM * abs(arm_b)
+    rows += 10
+    for k in range(PIVOTS):
+        residuals[rows + k] = setting[WEIGHT_OF_HOME] * (x[k] - setting[HOME + k])
+    return rows + PIVOTS
+
+
+@njit(cache=True, nogil=True)
+def _of_lengths(lengths: Real, setting: Real, margins: Real, m: int) -> int:
+    """Logarithmic margins of links from the least and the greatest length and from the ratio, from margin m on."""
+    for i in range(4):
+        if setting[LINKS] > 0.0:
+            margins[m] = math.log(lengths[i] / setting[LINKS]) - EDGE
+        if setting[LINKS + 1] < np.inf:
+            margins[m + 1] = math.log(setting[LINKS + 1] / lengths[i]) - EDGE
+        m += 2
+    for i in range(4):
+        for k in range(4):
+            if i != k:
+                if setting[RATIO] < np.inf:
+                    margins[m] = math.log(setting[RATIO] * lengths[i] / lengths[k]) - EDGE
+                m += 1
+    return m
+
+
+@njit(ROWS, cache=True, nogil=True)
+def steered_rows(
+    x: Real, points: Real, setting: Real, multipliers: Real, state: Real, residuals: Real, jacobian: Real
+) -> int:
+    """Residuals and limits with their Jacobian; see :data:`synthesis.numerics.levenberg.ROWS`.
+
+    ``points`` are rows (x, y, angle, and the tolerance of each; 0 where it is held) in task units and radians;
+    ``state`` is the margins alone.
+    """
+    n, unknowns = len(points), x.size
+    count = limits(n)
+    rows = _evaluated(x, points, setting, residuals, state)
+    if rows < 0:
+        return -1
+    gradients = np.zeros((count, unknowns))
+    changed = x.copy()
+    ahead, behind = np.empty(rows), np.empty(rows)
+    further, back = np.empty(count), np.empty(count)
+    for i in range(unknowns):
+        changed[i] = x[i] + DIFFERENCE
+        if _evaluated(changed, points, setting, ahead, further) < 0:
+            return -1
+        changed[i] = x[i] - DIFFERENCE
+        if _evaluated(changed, points, setting, behind, back) < 0:
+            return -1
+        changed[i] = x[i]
+        for k in range(rows):
+            jacobian[k, i] = (ahead[k] - behind[k]) / (2.0 * DIFFERENCE)
+        for k in range(count):
+            # A passage of the ground line that begins or ends within the difference has no margin on one side.
+            if state[k] == np.inf or (further[k] == np.inf and back[k] == np.inf):
+                continue
+            if back[k] == np.inf:
+                gradients[k, i] = (further[k] - state[k]) / DIFFERENCE
+            elif further[k] == np.inf:
+                gradients[k, i] = (state[k] - back[k]) / DIFFERENCE
+            else:
+                gradients[k, i] = (further[k] - back[k]) / (2.0 * DIFFERENCE)
+    return int(limit_rows(state, gradients, equations(n), multipliers, residuals, jacobian, rows))

@@ -1,0 +1,271 @@
+"""Pairs of dyads from which linkages are steered into tolerances and demands.
+
+Poses are drawn within the tolerances, by a sequence of low discrepancy that begins with the demanded poses themselves.
+For each set of poses many dyads are drawn in the client's regions, or around the body, and moved least so that they
+meet the poses exactly, all sets at once. What has then left its regions is kept where it is near to them: the
+tolerances are to bring it back. All pairs of a set are screened (:mod:`synthesis.kinds.motion.screening`) by the
+client's constraints, a little eased, and the best that differ are the starts.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.motion.draws import points_around
+from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.screening import demands, screen
+from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
+from synthesis.model.linkage_statement import Constraints, LengthLimits, Region
+from synthesis.outcome.ranking import widest_apart
+
+SETS = 24
+"""Sets of poses that are drawn within the tolerances."""
+
+DRAWN = 1200
+"""Dyads a side that are drawn for each set."""
+
+KEPT = 110
+"""Dyads a side of a set of which pairs are made, those nearest to their regions."""
+
+STEPS = 4
+"""Gauss–Newton steps that bring dyads to the poses of their set."""
+
+MET = 1e-3
+"""Change of a link's length, task sizes, up to which a dyad meets the poses of its set."""
+
+RIDGE = 1e-9
+"""Share of its trace that is added to a normal matrix, so that a singular one is no error."""
+
+FARTHEST = 50.0
+"""Pivots farther away than this many task sizes are not started from."""
+
+ASTRAY = 0.1
+"""Distance from its region, in task sizes, at which a pivot counts half."""
+
+EASED_ANGLE, EASED_LENGTH = 0.6, 1.3
+"""Share of the demanded transmission angle, and factor of limits of lengths and ratio, by which starts are screened."""
+
+POOL = 4000
+"""Best pairs from which distinct ones are chosen."""
+
+APART = 0.3 * 0.5 ** np.arange(8)
+"""Distinct starts move some joint by at least this share of the task's size: the first at which there are enough."""
+
+
+class Start(NamedTuple):
+    """A linkage to start from.
+
+    ``pivots`` are O2, O4, A and B, the moving ones of the body as it lies in the first demanded pose, shape (4,).
+    ``deviations``, in tolerances, and ``poses``, in task units and radians, have the shape (n, 3).
+    """
+
+    pivots: Complex
+    deviations: Real
+    poses: Real
+
+
+def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: int) -> list[Start]:
+    """The best pairs that differ, best first.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        What was asked.
+    task : MotionTask
+        The demanded poses.
+    tolerances : float, shape (n, 3)
+        Of x, y (task units) and angle (radians); 0 where a coordinate is held.
+    count : int
+        How many are wanted.
+    """
+    rng = np.random.default_rng(problem.seed)
+    deviations = _deviations(tolerances, SETS if tolerances.any() else 1)
+    demanded = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
+    poses = demanded + deviations * tolerances
+    sides = problem.input_side, problem.output_side
+    inputs = _side(problem, task, poses, sides[0], rng)
+    outputs = inputs if sides[0] == sides[1] else _side(problem, task, poses, sides[1], rng)
+    eased = _eased(problem.constraints)
+    limit = problem.constraints.min_transmission_angle or 0.0
+    wanted = demands(eased, task, EASED_ANGLE * limit, problem.rank_by)
+    chosen: list[tuple[Real, Complex, NDArray[np.int64]]] = []
+    for k, (one, other) in enumerate(zip(inputs, outputs, strict=True)):
+        if not len(one.dyads.fixed) or not len(other.dyads.fixed):
+            continue
+        drawn = _task_of(poses[k])
+        score = screen(drawn, one.dyads, other.dyads, wanted).score * np.outer(one.weight, other.weight)
+        best = np.argpartition(-score, min(POOL // SETS, score.size - 1), axis=None)[: POOL // SETS]
+        best = best[score.ravel()[best] > 0.0]
+        i, j = np.unravel_index(best, score.shape)
+        joints = [one.dyads.fixed[i], other.dyads.fixed[j], one.dyads.moving[i], other.dyads.moving[j]]
+        chosen.append((score.ravel()[best], np.stack(joints, axis=1), np.full(len(best), k)))
+    if not chosen:
+        return []
+    score, pivots, sets = (np.concatenate(column) for column in zip(*chosen, strict=True))
+    order = np.argsort(-score, kind="stable")
+    picked = order[widest_apart(pivots[order], count, APART)]
+    found = []
+    for n in picked:
+        pose = poses[sets[n]]
+        # The body as it lies in the first demanded pose.
+        first, turn = complex(pose[0, 0], pose[0, 1]), complex(np.exp(-1j * pose[0, 2]))
+        body = task.points[0] + turn * (pivots[n, 2:] - first)
+        found.append(Start(np.concatenate([pivots[n, :2], body]), deviations[sets[n]], pose))
+    return found
+
+
+def _deviations(tolerances: Real, sets: int) -> Real:
+    """Deviations in (−1, 1) of each coordinate with a tolerance, shape (sets, n, 3); none in the first set.
+
+    Roberts' sequence: multiples of the powers of 1/φ with φ^(d+1) = φ + 1, d coordinates, modulo 1.
+    """
+    free = tolerances > 0.0
+    d = int(free.sum())
+    deviations = np.zeros((sets, *tolerances.shape))
+    if d:
+        ratio = 2.0
+        for _ in range(60):
+            ratio = (1.0 + ratio) ** (1.0 / (d + 1.0))
+        powers = ratio ** -np.arange(1.0, d + 1.0)
+        deviations[1:, free] = 2.0 * np.mod(0.5 + np.outer(np.arange(1, sets), powers), 1.0) - 1.0
+    return deviations
+
+
+def _task_of(poses: Real) -> MotionTask:
+    """A set of poses as a task; what is in the first pose stays where it is."""
+    turns = np.exp(1j * (poses[:, 2] - poses[0, 2]))
+    return MotionTask(poses[:, 0] + 1j * poses[:, 1], turns, 0j, 1.0)
+
+
+class _Drawn(NamedTuple):
+    """Dyads that meet the poses of one set, moving pivots in its first pose, and how they weigh by their regions."""
+
+    dyads: Dyads
+    weight: Real
+
+
+def _side(
+    problem: MotionProblem, task: MotionTask, poses: Real, choices: DyadChoices, rng: np.random.Generator
+) -> list[_Drawn]:
+    """The dyads of one side for each set."""
+    constraints, count = problem.constraints, len(poses) * DRAWN
+    regions = constraints.fixed_pivot_region, constraints.moving_pivot_region
+    fixed = _drawn(task, regions[0], complex(task.points.mean()), rng, count)
+    moving = _drawn(task, regions[1], complex(task.points[0]), rng, count)
+    stated = [stated_pivot(task, choices, fixed=side) for side in (True, False)]
+    free = np.repeat([pivot is None for pivot in stated], 2).astype(np.float64)
+    if stated[0] is not None:
+        fixed[:] = stated[0]
+    if stated[1] is not None:
+        moving[:] = stated[1]
+    of = np.repeat(np.arange(len(poses)), DRAWN)
+    places, spins = poses[..., 0] + 1j * poses[..., 1], np.exp(1j * poses[..., 2])
+    fixed, moving, off = _brought(places[of], spins[of], fixed, moving - task.points[0], free)
+    pins = places[of, 0] + spins[of, 0] * moving
+    reach = np.maximum(np.abs(fixed), np.abs(pins))
+    astray = _outside(task, regions[0], fixed) + _outside(task, regions[1], pins)
+    sound = (off <= MET) & (reach < FARTHEST) & np.isfinite(reach)
+    rank = np.where(sound, astray, np.inf)
+    found = []
+    for k in range(len(poses)):
+        rows = slice(k * DRAWN, (k + 1) * DRAWN)
+        best = np.argsort(rank[rows], kind="stable")[:KEPT]
+        best = best[np.isfinite(rank[rows][best])] + k * DRAWN
+        dyads = Dyads(fixed[best].copy(), pins[best].copy())
+        found.append(_Drawn(dyads, 1.0 / (1.0 + (astray[best] / ASTRAY) ** 2)))
+    return found
+
+
+def _drawn(task: MotionTask, region: Region | None, centre: complex, rng: np.random.Generator, count: int) -> Complex:
+    """Random pivots in their region, or around a centre."""
+    if region is None:
+        return points_around(centre, rng, count)
+    z = rng.uniform(*region.x, count) + 1j * rng.uniform(*region.y, count)
+    return np.asarray((z - task.origin) / task.size)
+
+
+def _outside(task: MotionTask, region: Region | None, z: Complex) -> Real:
+    """Distance of pivots from their region, in task sizes."""
+    if region is None:
+        return np.zeros(z.shape)
+    at = task.origin + z * task.size
+    across = np.maximum(np.maximum(region.x[0] - at.real, at.real - region.x[1]), 0.0)
+    along = np.maximum(np.maximum(region.y[0] - at.imag, at.imag - region.y[1]), 0.0)
+    return np.asarray(np.hypot(across, along) / task.size)
+
+
+def _brought(
+    places: Complex, spins: Complex, fixed: Complex, arms: Complex, free: Real
+) -> tuple[Complex, Complex, Real]:
+    """Dyads moved least so that their links keep their lengths in their poses.
+
+    Parameters
+    ----------
+    places, spins : complex, shape (m, n)
+        P, and the body's turn from where its points are ``arms`` from P.
+    fixed, arms : complex, shape (m,)
+        The dyads: fixed pivots, and moving pivots from P.
+    free : float, shape (4,)
+        1 for the coordinates of both that may be moved, else 0.
+
+    Returns
+    -------
+    fixed, arms : complex, shape (m,)
+        The dyads.
+    off : float, shape (m,)
+        The greatest change of the link's length that is left.
+    """
+    off = np.full(len(fixed), np.inf)
+    for step in range(STEPS + 1):
+        links = places + spins * arms[:, None] - fixed[:, None]
+        lengths = np.maximum(np.abs(links), np.finfo(np.float64).tiny)
+        gaps = lengths[:, 1:] - lengths[:, :1]
+        off = np.abs(gaps).max(axis=1)
+        if step == STEPS:
+            break
+        units = links / lengths
+        by_fixed = -(units[:, 1:] - units[:, :1])
+        turned = units * np.conj(spins)
+        by_arm = turned[:, 1:] - turned[:, :1]
+        jacobian = np.stack([by_fixed.real, by_fixed.imag, by_arm.real, by_arm.imag], axis=-1) * free
+        square = jacobian @ jacobian.swapaxes(-1, -2)
+        trace = np.trace(square, axis1=-2, axis2=-1)[:, None, None]
+        square += (RIDGE * trace + np.finfo(np.float64).tiny) * np.eye(square.shape[-1])
+        move = -(jacobian.swapaxes(-1, -2) @ np.linalg.solve(square, gaps[..., None]))[..., 0]
+        move /= np.maximum(np.linalg.norm(move, axis=1, keepdims=True), 1.0)
+        fixed = fixed + (move[:, 0] + 1j * move[:, 1])
+        arms = arms + (move[:, 2] + 1j * move[:, 3])
+    return fixed, arms, off
+
+
+def _eased(constraints: Constraints) -> Constraints:
+    """Constraints by which starts are screened; regions are looked at apart."""
+    lengths, ratio = constraints.link_length, constraints.max_link_ratio
+    if lengths is not None:
+        most = None if lengths.max is None else EASED_LENGTH * lengths.max
+        lengths = LengthLimits.model_construct(min=lengths.min / EASED_LENGTH, max=most)
+    update = {"link_length": lengths, "max_link_ratio": None if ratio is None else EASED_LENGTH * ratio}
+    return constraints.model_copy(update=update)
+
+
+def stated_coordinates(task: MotionTask, problem: MotionProblem) -> Real:
+    """What is stated of O2, O4, A and B, coordinate by coordinate in task units, NaN where it is open; shape (8,)."""
+    stated = np.full(8, math.nan)
+    for side, choices in enumerate((problem.input_side, problem.output_side)):
+        for moving, partial in ((False, choices.fixed_pivot), (True, choices.moving_pivot)):
+            at = 4 * moving + 2 * side
+            whole = stated_pivot(task, choices, fixed=not moving)
+            if whole is not None:
+                stated[at : at + 2] = whole.real, whole.imag
+            elif partial is not None and whole_point(partial) is None:
+                origin = task.origin.real, task.origin.imag
+                for axis in (0, 1):
+                    value = partial[axis]
+                    if value is not None:
+                        stated[at + axis] = (value - origin[axis]) / task.size
+    return stated
