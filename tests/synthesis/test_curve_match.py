@@ -7,11 +7,13 @@ import pytest
 from pydantic import ValidationError
 
 from benchmarks.curve_match import curve_cases, matched, noisy, published_rms, reference_rms
+from benchmarks.demands import closed_curves
 from kinematics.linkage import SliderCrank
 from kinematics.linkage.fourbar import OPEN, Fourbar, positions
 from kinematics.linkage.planar.catalogue import geared_fivebar
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.slider_crank import closed_form as sliders
+from synthesis.dispatch import solve
 from synthesis.fit.chart import (
     CRANK_ROCKER,
     DOUBLE_CRANK,
@@ -26,7 +28,7 @@ from synthesis.fit.coupler_curve import place, place_with_slopes, sweep
 from synthesis.kinds.path.curve_candidates import draw
 from synthesis.kinds.path.curve_descent import descend
 from synthesis.kinds.path.curve_fits import with_cognates
-from synthesis.kinds.path.curve_shapes import alike
+from synthesis.kinds.path.curve_shapes import alike, compared, most_alike
 from synthesis.kinds.path.curve_target import SHAPE_POINTS, equal_steps
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
@@ -279,6 +281,26 @@ def test_a_limit_of_the_coupler_point_steers_the_match():
         at = place_on_the_coupler(design)
         assert box["along"][0] * (1.0 - 1e-9) <= at.real <= box["along"][1] * (1.0 + 1e-9)
         assert box["across"][0] * (1.0 - 1e-9) <= at.imag <= box["across"][1] * (1.0 + 1e-9)
+
+
+def test_zones_of_pivots_choose_what_the_match_begins_with():
+    """No member that is most alike stands near the zones, and none of their cognates does."""
+    task = list(closed_curves.tasks(17, 0))[16]
+    assert task.answered(solve(parse_problem(task.statement)))
+
+
+def test_starts_that_are_wanted_somewhere_stand_nearer_to_it():
+    target, _ = equal_steps(positions(EGG, np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False), OPEN).p, True, 48)
+    library = compared(CRANK_ROCKER, target, True, 4096)
+    wanted = complex(target.mean()) + 12.0
+
+    def lost(x, theta, sign):
+        return np.abs(x[:, 0] + 1j * x[:, 1] - wanted)
+
+    likest, nearest = most_alike(library, 20), most_alike(library, 20, lost=lost)
+    away = [lost(starts.x, starts.theta, starts.sign) for starts in (likest, nearest)]
+    assert np.median(away[1]) < 0.6 * np.median(away[0])
+    assert np.all(np.diff(np.hypot(nearest.unlike, away[1])) >= 0.0)
 
 
 def test_a_curve_of_free_size_is_sized_to_its_limit_of_the_coupler_point():

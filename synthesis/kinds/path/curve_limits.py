@@ -24,6 +24,8 @@ from synthesis.fit.demands import (
     GIVEN,
     LIMITS,
     LINKS,
+    MOVING,
+    POINT_BOX,
     RATIO,
     SIGN,
     WHOLE,
@@ -82,6 +84,14 @@ def usable(setting: Real, degrees: float, ratio: float) -> Real:
     stated[COSINE] = math.cos(math.radians(degrees))
     stated[RATIO] = min(stated[RATIO], ratio)
     return stated
+
+
+def bounds_places(setting: Real) -> bool:
+    """Whether it matters to the demands where a linkage stands, and how large it is, beyond its longest link."""
+    boxes = np.concatenate(
+        [setting[BOXES : BOXES + 8], setting[MOVING : MOVING + 4], setting[POINT_BOX : POINT_BOX + 4]]
+    )
+    return bool(np.isfinite(boxes).any() or setting[LINKS] > 0.0)
 
 
 def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> bool:
@@ -160,19 +170,33 @@ def broken(family: int, x: Real, theta: Real, sign: float, setting: Real) -> flo
 
     The order of points is one of them: what counts is the crank's greatest step back, or what it turns beyond a turn.
     """
-    lengths, slopes = np.empty(4), np.empty((4, 4))
-    values, gradients = np.empty(LIMITS), np.empty((LIMITS, len(x)))
-    natural(family, x, lengths, slopes)
-    stated = setting.copy()
-    stated[FAMILY], stated[SIGN] = family, sign
-    margins(x, lengths, slopes, theta[[0, -1]] - x[2], np.zeros(len(x)), stated, values, gradients)
-    values[LIMITS - EQUATIONS :] = -np.abs(values[LIMITS - EQUATIONS :])
-    values[np.isinf(values)] = 0.0
-    worst = -float(values.min())
+    worst = float(all_broken(family, x[None], theta[None], np.array([sign]), setting)[0])
     if setting[ORDERED] > 0.0 and len(theta) > 1:
         steps = np.diff(theta) * math.copysign(1.0, theta[-1] - theta[0])
         worst = max(worst, -float(steps.min()), abs(float(theta[-1] - theta[0])) - 2.0 * math.pi)
     return worst if worst > LIMIT_MARGIN else 0.0
+
+
+@njit(cache=True, nogil=True)
+def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> Real:
+    """By how much each of many linkages, shape (n, m), breaks the demand that it breaks most, but for the order.
+
+    ``theta``, shape (n, points), are crank angles at the points; a linkage that does not close there breaks none by its
+    moving pivots.
+    """
+    lengths, slopes, still = np.empty(4), np.empty((4, 4)), np.zeros(x.shape[1])
+    values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
+    stated, worst = setting.copy(), np.zeros(len(x))
+    stated[FAMILY] = family
+    for i in range(len(x)):
+        stated[SIGN] = sign[i]
+        natural(family, x[i], lengths, slopes)
+        ends = np.array([theta[i, 0] - x[i, 2], theta[i, -1] - x[i, 2]])
+        margins(x[i], lengths, slopes, ends, still, stated, values, gradients)
+        for k in range(LIMITS):
+            if values[k] < np.inf:
+                worst[i] = max(worst[i], abs(values[k]) if k >= LIMITS - EQUATIONS else -values[k])
+    return worst
 
 
 def shapes_kept(family: int, x: Real, setting: Real) -> NDArray[np.bool_]:

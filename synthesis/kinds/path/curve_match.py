@@ -38,6 +38,8 @@ from synthesis.kinds.path.curve_fits import (
     with_cognates,
 )
 from synthesis.kinds.path.curve_limits import (
+    all_broken,
+    bounds_places,
     curve_setting,
     descend_softly,
     descend_within,
@@ -188,7 +190,17 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
     free.sort(key=lambda fit: fit.error)
 
     def suited(demands: Real) -> list[Starts]:
-        return [most_alike(one, MAX_SUITED, longest, shapes_kept(one.family, one.drawn.x, demands)) for one in library]
+        chosen = []
+        for one in library:
+            kept = shapes_kept(one.family, one.drawn.x, demands)
+            chosen.append(most_alike(one, MAX_SUITED, longest, kept))
+            if bounds_places(demands):
+
+                def lost(x: Real, theta: Real, sign: Real, family: int = one.family) -> Real:
+                    return all_broken(family, x, theta, sign, demands)
+
+                chosen.append(most_alike(one, MAX_SUITED, longest, kept, lost))
+        return chosen
 
     asked = fits_within(target, free, partial(suited, setting), families, setting, MAX_OFFERED)
     traded: list[Fit] = []

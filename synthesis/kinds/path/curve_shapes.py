@@ -58,6 +58,9 @@ SAME_START = 0.12
 OVERSUPPLY = 6
 """The most alike candidates are often nearly equal: so many times the wanted number are sifted for different ones."""
 
+WIDELY = 8
+"""So many times more are sifted where it matters too where they come to lie."""
+
 MAX_OVERSIZE = 2.0
 """Starts with links at most this many times too long are still followed: most shrink in the descent."""
 
@@ -295,7 +298,13 @@ def compared(
     return Compared(family, drawn, ratio, _Likeness(rho, where), swept, target, closed)
 
 
-def most_alike(of: Compared, keep: int, longest: float = math.inf, suited: Mask | None = None) -> Starts:
+def most_alike(
+    of: Compared,
+    keep: int,
+    longest: float = math.inf,
+    suited: Mask | None = None,
+    lost: Callable[[Real, Real, Real], Real] | None = None,
+) -> Starts:
     """The candidates whose curves are most like the target, placed on it.
 
     Parameters
@@ -308,15 +317,25 @@ def most_alike(of: Compared, keep: int, longest: float = math.inf, suited: Mask 
         Longest link, in the target's units, of what is kept.
     suited : bool, shape (candidates,), optional
         Which of the candidates may be chosen.
+    lost : callable, optional
+        Tells, of candidates on the target (x, theta, sign), how far each is from where it is wanted, shape (n,), in the
+        target's unit. Then :data:`WIDELY` as many are placed, and those come first that are least unlike and away.
     """
     family, drawn, target = of.family, of.drawn, of.target
     rho = of.likeness.rho if suited is None else np.where(suited, of.likeness.rho, -1.0)
-    order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep]
+    order = np.argsort(-rho, kind="stable")[: OVERSUPPLY * keep * (1 if lost is None else WIDELY)]
     order = order[rho[order] > 0.0]
     x, theta, sign = _placed(family, drawn, order, of.likeness.where[order], target, of.closed, of.ratio)
+    if lost is not None:
+        near = np.argsort(np.hypot(_unlike(rho[order]), lost(x, theta, sign)), kind="stable")
+        order, x, theta, sign = order[near], x[near], theta[near], sign[near]
     chosen = _different(x, theta, np.ptp(target.real) + np.ptp(target.imag), longest, family, keep)
-    unlike = np.sqrt(np.maximum(0.0, 1.0 - rho[order[chosen]] ** 2))
-    return Starts(family, x[chosen], sign[chosen], theta[chosen], unlike, of.swept)
+    return Starts(family, x[chosen], sign[chosen], theta[chosen], _unlike(rho[order[chosen]]), of.swept)
+
+
+def _unlike(rho: Real) -> Real:
+    """What the best similarity transformation leaves of the difference of curves of unit norm."""
+    return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - rho**2)))
 
 
 def _swept(drawn: Draw, family: int, rows: Any, ratio: float) -> tuple[Complex, Real, Mask, Mask]:
@@ -343,28 +362,55 @@ def _placed(
     curves, theta, _, rings = _swept(drawn, family, order, ratio)
     x, sign = drawn.x[order].copy(), drawn.sign[order].copy()
     at = np.empty((len(order), SHAPE_POINTS))
-    place = np.arange(SHAPE_POINTS)
     cycles = drawn.end[order] - drawn.begin[order]
-    for i, (length, start, manner) in enumerate(where):
-        ring = bool(rings[i])
-        if closed:
-            share = (place - start) / SHAPE_POINTS
-        else:
-            size = WINDOW_LENGTHS[length]
-            begin = start / WINDOW_STARTS if ring else (1.0 - size) * start / (WINDOW_STARTS - 1)
-            share = begin + size * place / (SHAPE_POINTS - 1)
-        z, at[i] = _at_shares(curves[i], theta[i], ring, float(cycles[i]), share)
-        if manner % 2:
-            z, at[i] = z[::-1], at[i, ::-1].copy()
-        if manner >= 2:
-            z = z.conj()
-            at[i] *= -1.0
-            _mirror(family, x[i], sign, i)
-        about = z - z.mean()
-        alpha = complex(np.vdot(about, target)) / float(np.vdot(about, about).real)
-        _move(family, x[i], ratio, alpha, complex(target.mean()) - alpha * complex(z.mean()))
-        at[i] += cmath.phase(alpha)
+    _place_each(
+        family, ratio, curves, theta, rings, cycles, where, np.array(WINDOW_LENGTHS), target, closed, x, sign, at
+    )
     return x, at, sign
+
+
+@njit(cache=True, nogil=True)
+def _place_each(
+    family: int,
+    ratio: float,
+    curves: Complex,
+    theta: Real,
+    rings: Mask,
+    cycles: Real,
+    where: NDArray[np.int64],
+    windows: Real,
+    target: Complex,
+    closed: bool,
+    x: Real,
+    sign: Real,
+    at: Real,
+) -> None:
+    """Every candidate put on the target in place; ``at`` gets the crank angles at its points."""
+    count = len(target)
+    place, middle = np.arange(count), target.mean()
+    for i in range(len(x)):
+        start, manner = where[i, 1], where[i, 2]
+        if closed:
+            share = (place - start) / count
+        else:
+            size = windows[where[i, 0]]
+            begin = start / WINDOW_STARTS if rings[i] else (1.0 - size) * start / (WINDOW_STARTS - 1)
+            share = begin + size * place / (count - 1)
+        z, angles = _at_shares(curves[i], theta[i], rings[i], cycles[i], share)
+        if manner % 2 == 1:
+            z, angles = z[::-1].copy(), angles[::-1].copy()
+        if manner >= 2:
+            z, angles = z.conj(), -angles
+            _mirror(family, x[i], sign, i)
+        here = z.mean()
+        likeness, norm = 0j, 0.0
+        for k in range(count):
+            about = z[k] - here
+            likeness += about.conjugate() * target[k]
+            norm += about.real * about.real + about.imag * about.imag
+        alpha = likeness / norm
+        _move(family, x[i], ratio, alpha, middle - alpha * here)
+        at[i] = angles + cmath.phase(alpha)
 
 
 @njit(cache=True, nogil=True)
@@ -384,6 +430,7 @@ def _at_shares(curve: Complex, theta: Real, ring: bool, cycle: float, share: Rea
     return z, np.interp(inside, along, angles) + cycle * turns
 
 
+@njit(cache=True, nogil=True)
 def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
     """The linkage mirrored in the real axis, in place; crank angles change sign with it."""
     x[1] = -x[1]
@@ -398,6 +445,7 @@ def _mirror(family: int, x: Real, sign: Real, i: int) -> None:
         sign[i] = -sign[i]
 
 
+@njit(cache=True, nogil=True)
 def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> None:
     """The linkage under z → αz + β, in place; crank angles grow by the phase of α."""
     size, turn = abs(alpha), cmath.phase(alpha)
@@ -420,16 +468,27 @@ def _move(family: int, x: Real, ratio: float, alpha: complex, beta: complex) -> 
 
 def _different(x: Real, theta: Real, size: float, longest: float, family: int, keep: int) -> NDArray[np.int64]:
     """Rows that are not near one another, nor far too large, at most ``keep`` of them."""
+    rows, marks = _marked(x, theta, longest, family)
+    return np.asarray(rows[distinct(marks, keep, SAME_START * size)])
+
+
+@njit(cache=True, nogil=True)
+def _marked(x: Real, theta: Real, longest: float, family: int) -> tuple[NDArray[np.int64], Real]:
+    """Rows that are not far too large, and what tells each from others: O2, A and the other lengths."""
     lengths, chart = np.empty(4), np.empty((4, 4))
-    rows: list[int] = []
-    marks: list[list[float]] = []
+    rows, marks, count = np.empty(len(x), np.int64), np.empty((len(x), 8)), 0
+    shift = 0 if family == GEARED_FIVEBAR else 1
     for i in range(len(x)):
         lengths[:] = 0.0
         natural(family, x[i], lengths, chart)
-        if max(float(np.abs(lengths).max()), math.hypot(x[i, -2], x[i, -1])) > MAX_OVERSIZE * longest:
+        if max(np.abs(lengths).max(), math.hypot(x[i, -2], x[i, -1])) > MAX_OVERSIZE * longest:
             continue
-        pin = complex(x[i, 0], x[i, 1]) + lengths[0 if family > FOURBAR else 1] * cmath.exp(1j * theta[i, 0])
-        far = lengths[:4] if family == GEARED_FIVEBAR else lengths[1:]
-        rows.append(i)
-        marks.append([x[i, 0], x[i, 1], pin.real, pin.imag, *far])
-    return np.array(rows, np.int64)[distinct(marks, keep, SAME_START * size)]
+        crank = lengths[0 if family > FOURBAR else 1]
+        rows[count] = i
+        marks[count] = 0.0
+        marks[count, 0], marks[count, 1] = x[i, 0], x[i, 1]
+        marks[count, 2] = x[i, 0] + crank * math.cos(theta[i, 0])
+        marks[count, 3] = x[i, 1] + crank * math.sin(theta[i, 0])
+        marks[count, 4 : 8 - shift] = lengths[shift:]
+        count += 1
+    return rows[:count], marks[:count]
