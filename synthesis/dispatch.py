@@ -57,7 +57,10 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
 def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> Result[Any]:
     """An answer without designs, with those that were found without the demands, or with the nearest miss."""
     if not found.sound:
-        return result.model_copy(update={"nearest_miss": found.nearest_miss})
+        miss = found.nearest_miss
+        longest = None if miss is None else miss.reachable.dwell_angle
+        told = "" if longest is None else f" Dwells of up to {longest:.4g}° were found."
+        return result.model_copy(update={"nearest_miss": miss, "summary": result.summary + told})
     designs = found.sound[: problem.max_designs]
     count, search = len(designs), result.search
     account = {"complete": False, "candidates": search.candidates + count, "accepted": count}

@@ -4,8 +4,8 @@ One constraint after another is left out and the task is solved again: what the 
 reached beside all other demands. Where that gives none, all constraints are left out together. A limit that alone is
 out of reach is then approached: the task is solved with limits between what was reached and what is demanded, by
 bisection. A design that satisfies all demands although it was found without one is an answer: no demand hides what the
-task without it shows. Of gears it is the tolerance that is left out. Everything else has its nearest miss among the
-designs that were driven and failed.
+task without it shows. Of gears it is the tolerance that is left out, and a dwell is made shorter. Everything else has
+its nearest miss among the designs that were driven and failed.
 """
 
 from __future__ import annotations
@@ -108,6 +108,10 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Rela
     if sound:
         return Relaxation(sound, None)
     misses = misses or _without_tolerance(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+    if not misses:
+        sound, misses = _with_shorter_dwells(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+        if sound:
+            return Relaxation(sound, None)
     misses = misses or _failed(problem, solve, part_of(progress, 0.8, 1.0))
     progress(1.0, "verified")
     if not misses:
@@ -181,6 +185,36 @@ def _without_tolerance(problem: Any, solve: Solve, progress: Progress, reachable
         misses.append(_Miss(design.model_copy(update={"verification": verification}), [broken]))
         reachable["tolerance"] = error
     return misses
+
+
+def _with_shorter_dwells(
+    problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]
+) -> tuple[list[Any], list[_Miss]]:
+    """What rests for longest where nothing rests for as long as is demanded, approached by bisection.
+
+    Returns designs that satisfy all demands all the same, and those that do not. ``reachable`` is filled.
+    """
+    if problem.kind != "dwell":
+        return [], []
+    from synthesis.kinds.dwell.verification import verify_dwell  # nobody else waits for it
+
+    reached, unreached = 0.0, problem.dwell_angle
+    misses: list[_Miss] = []
+    for n in range(APPROACHES):
+        tried = 0.5 * (reached + unreached)
+        update = {"dwell_angle": tried, "include_failed": False, "max_designs": MAX_DESIGNS}
+        span = part_of(progress, n / APPROACHES, (n + 1) / APPROACHES)
+        found = solve(problem.model_copy(update=update), span).designs
+        if not found:
+            unreached = tried
+            continue
+        reached = reachable["dwell_angle"] = tried
+        verified = [design for one in found if (design := verify_dwell(problem, one.mechanism)) is not None]
+        sound = [design for design in verified if design.verification.passed]
+        if sound:
+            return sound, []
+        misses = [_Miss(one, [check for check in one.verification.checks if not check.passed]) for one in verified]
+    return [], misses
 
 
 def _failed(problem: StatedProblem, solve: Solve, progress: Progress) -> list[_Miss]:

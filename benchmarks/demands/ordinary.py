@@ -1,7 +1,8 @@
 """Ordinary tasks of all linkage kinds without any limit: is the first answer one that somebody would build?
 
-Answered where the first design has a least transmission angle of 30° and a link ratio of at most 10; or where the
-summary says why it has not, and no other design of the answer that is as near to the task, or half as near, has both.
+Answered where the first design has a least transmission angle of 30°, a link ratio of at most 10 and no link longer
+than five sizes of the task; or where the summary says why it has not, and no other design of the answer that is as near
+to the task, or half as near, has all of it, or angle and ratio where the first has not.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from synthesis.outcome.front import error_of
 FAR = 2.0
 """A design with so many times the error of another is no better answer, however well it runs."""
 
-TRANSMISSION, RATIO = 30.0, 10.0
-"""What practice asks of the transmission angle, degrees, and of the longest link over the shortest."""
+TRANSMISSION, RATIO, REACH = 30.0, 10.0, 5.0
+"""What practice asks of the transmission angle, degrees, of the longest link over the shortest, and of the longest link
+over the task's size."""
 
 Statement = dict[str, Any]
 
@@ -38,16 +40,23 @@ def _buildable(result: Any) -> bool:
         return True
     if _sound(result.designs[0]):
         return True
-    metrics = result.designs[0].metrics
-    told = (metrics.min_transmission_angle >= TRANSMISSION or f"{TRANSMISSION:.0f}°" in result.summary) and (
-        metrics.link_ratio <= RATIO or "ratio" in result.summary
+    first, error = result.designs[0], FAR * error_of(result.designs[0])
+    told = (
+        (first.metrics.min_transmission_angle >= TRANSMISSION or f"{TRANSMISSION:.0f}°" in result.summary)
+        and (first.metrics.link_ratio <= RATIO or "ratio" in result.summary)
+        and (not _even(first) or "task's size" in result.summary)
     )
-    error = FAR * error_of(result.designs[0])
-    return told and not any(_sound(design) and error_of(design) <= error for design in result.designs)
+    near = [design for design in result.designs if error_of(design) <= error]
+    return told and not any(map(_sound, near)) and (_even(first) or not any(map(_even, near)))
+
+
+def _even(design: Any) -> bool:
+    return bool(design.metrics.min_transmission_angle >= TRANSMISSION and design.metrics.link_ratio <= RATIO)
 
 
 def _sound(design: Any) -> bool:
-    return bool(design.metrics.min_transmission_angle >= TRANSMISSION and design.metrics.link_ratio <= RATIO)
+    reach = getattr(design.metrics, "reach", None)
+    return _even(design) and (reach is None or reach <= REACH)
 
 
 def _motion(positions: int) -> Callable[[np.random.Generator], Statement]:

@@ -83,6 +83,7 @@ class Reachable(Answer):
     min_transmission_angle: Annotated[float, ANGLE] | None = optional("Degrees.")
     max_link_ratio: float | None = optional()
     tolerance: float | None = optional("Of a gear ratio: the least relative error.")
+    dwell_angle: Annotated[float, ANGLE] | None = optional("Degrees of the crank: the longest dwell that was found.")
 
 
 class NearestMiss(Answer, Generic[Design]):

@@ -260,6 +260,10 @@ class MotionMetrics(Answer):
     )
     full_rotation: bool
     link_ratio: float = Field(description="Longest link over shortest.")
+    reach: float | None = optional(
+        "Greatest distance between two joints of one link, in sizes of the task (docs/ranking.md); left out where a "
+        "task has no size."
+    )
     size: Length = Field(description="Diagonal of the box around all joints and the point P over that motion.")
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 

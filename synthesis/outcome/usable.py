@@ -1,7 +1,8 @@
 """Which design of an answer stands first where the client sets no limits: one that somebody would build.
 
 Practice wants a transmission angle of 30 to 40 degrees at least and links of which none is more than about ten times
-as long as another (Norton, *Design of Machinery*, Sec. 3.3 and 4.10). What is a little nearer to the task and cannot be
+as long as another (Norton, *Design of Machinery*, Sec. 3.3 and 4.10), and a link that is many times as long as the task
+is wide finds no room. What is a little nearer to the task and cannot be
 built is no better answer.
 """
 
@@ -20,6 +21,9 @@ TRANSMISSION_ANGLE = 30.0
 
 LINK_RATIO = 10.0
 
+REACH = 5.0
+"""Greatest distance between two joints of one link, in sizes of the task."""
+
 HELD = 1e-6
 """Relative rounding of designs that a fit holds at one of these."""
 
@@ -34,11 +38,17 @@ class Ordered(NamedTuple):
     remark: str
 
 
-def usable(design: Any) -> bool:
+def even(design: Any) -> bool:
     """Whether a design that passed transmits force well and has links of like lengths."""
     measured = design.metrics
     transmits = measured.min_transmission_angle >= TRANSMISSION_ANGLE * (1.0 - HELD)
     return bool(transmits and measured.link_ratio <= LINK_RATIO * (1.0 + HELD))
+
+
+def usable(design: Any) -> bool:
+    """Whether it is, and has no link that is far longer than its task is wide."""
+    reach = getattr(design.metrics, "reach", None)
+    return even(design) and (reach is None or reach <= REACH * (1.0 + HELD))
 
 
 def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
@@ -52,18 +62,29 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
         return Ordered(list(designs), "")
     least = min((error_of(design) for design in passed), default=0.0)
     near = [design for design in passed if error_of(design) <= BAND * max(least, ROUNDING)]
-    first = [design for design in near if usable(design)]
+    missing = (
+        "No design that was found" if len(near) == len(passed) else f"No design within {BAND:g} times the least error"
+    )
     practice = f"a least transmission angle of {TRANSMISSION_ANGLE:.0f}° and a link ratio of {LINK_RATIO:.0f} or less"
-    if not first:
-        what = (
-            "No design that was found"
-            if len(near) == len(passed)
-            else f"No design within {BAND:g} times the least error"
+    compact = f"no link longer than {REACH:.0f} times the task's size"
+    first = [design for design in near if usable(design)]
+    if first:
+        return Ordered(
+            _before(first, designs), f" First stand those that have {practice} and {compact}, then the others."
         )
-        return Ordered(list(designs), f" {what} has {practice}.")
-    kept = {id(design) for design in first}
-    others = [design for design in designs if id(design) not in kept]
-    return Ordered([*first, *others], f" First stand those that have {practice}, then the others.")
+    first = [design for design in near if even(design)]
+    if not first:
+        return Ordered(list(designs), f" {missing} has {practice}.")
+    return Ordered(
+        _before(first, designs),
+        f" {missing} has {practice} and {compact}; first stand those with such an angle and ratio.",
+    )
+
+
+def _before(first: Sequence[Any], designs: Sequence[Any]) -> list[Any]:
+    """Designs with some of them before all others."""
+    chosen = {id(design) for design in first}
+    return [*first, *(design for design in designs if id(design) not in chosen)]
 
 
 def _by_default(statement: Statement, name: str) -> bool:

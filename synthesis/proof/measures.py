@@ -74,6 +74,8 @@ class Measures(NamedTuple):
         Whether no toggle lies on the way, the way is gone through in order, and the input turns through.
     link_ratio : float
         Longest link over shortest.
+    reach : float or None
+        Greatest distance between two joints of one link, in task sizes; None where a task has none.
     size : float
         Diagonal of the box around all joints.
     quality : float
@@ -90,6 +92,7 @@ class Measures(NamedTuple):
     visits_in_order: bool
     full_rotation: bool
     link_ratio: float
+    reach: float | None
     size: float
     quality: float
     lengths: list[float]
@@ -139,6 +142,7 @@ def measured(
         visits_in_order=visits_in_order,
         full_rotation=full_rotation,
         link_ratio=ratio,
+        reach=reach / task if math.isfinite(task) else None,
         size=diagonal(places),
         quality=quality(math.sin(least), reach / task, ratio),
         lengths=lengths,

@@ -448,3 +448,27 @@ def test_a_least_force_between_two_walls_is_refused(changes) -> None:
     assert fault.path == "/dynamics/least_force"
     dynamics["least_force"] = 0.0
     assert parse_problem(statement).contradictions() == []
+
+
+@pytest.mark.parametrize(
+    ("criterion", "exploded"), [("peak_acceleration", ["jerk"]), ("peak_velocity", ["acceleration", "jerk"])]
+)
+def test_a_criterion_that_lets_another_peak_explode_is_warned_about(criterion, exploded):
+    result = answered(cam(segments=moves("optimal", "optimal"), minimize=criterion))
+    design = only(result)
+    warning = design.optimality.warning
+    assert warning in result.summary
+    rise = next(segment for segment in design.segments if segment.motion == "rise")
+    # Peaks of a cycloidal rise of h in β are 2 h/β, 2π h/β² and 4π² h/β³.
+    beta, plain = math.radians(90.0), {"velocity": 2.0, "acceleration": 2.0 * math.pi, "jerk": 4.0 * math.pi**2}
+    for order, (name, factor) in enumerate(plain.items(), 1):
+        times = getattr(rise, f"peak_{name}") / (factor * 25.0 / beta**order)
+        assert (times > 10.0) == (name in exploded)
+        if name in exploded:
+            assert f"the peak {name} is {times:.3g} times" in warning.lower()
+    assert f"state a limit on {' or '.join(exploded)}" in warning
+
+
+def test_a_sound_motion_is_not_warned_about():
+    assert only(answered(cam(segments=moves("optimal", "optimal"), minimize="peak_jerk"))).optimality.warning is None
+    assert only(answered(cam(segments=moves("modified_sine", "cycloidal")))).optimality.warning is None

@@ -148,3 +148,20 @@ def test_a_limit_that_a_kind_sets_itself_is_no_demand_of_the_clients():
     relaxation(problem, recorded, lambda *_: None)
     assert asked
     assert {constraints.max_link_ratio for constraints in asked} == {100.0}
+
+
+@pytest.mark.parametrize(("angle", "count"), [(300.0, 1), (150.0, 2)])
+def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count):
+    statement = {
+        "kind": "dwell", "dwell_angle": angle, "count": count, "output": {"type": "slider", "stroke": 50.0},
+    }  # fmt: skip
+    result = solve(parse_problem(statement))
+    assert result.designs == []
+    miss = result.nearest_miss
+    assert "dwell_1" in {gap.check for gap in miss.gaps}
+    longest = miss.reachable.dwell_angle
+    assert 0.2 * angle < longest < angle
+    assert f"Dwells of up to {longest:.4g}° were found" in result.summary
+    # The miss rests for so long; state that, and there is an answer.
+    assert min(rest.width for rest in miss.design.targets) >= longest
+    assert solve(parse_problem({**statement, "dwell_angle": longest})).designs

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ import pytest
 from benchmarks.demands import ordinary
 from synthesis import parse_problem, solve
 from synthesis.outcome.front import error_of
-from synthesis.outcome.usable import BAND, usable
+from synthesis.outcome.usable import BAND, usable, usable_first
 from tests.campaign import sampled
 
 # Fits whose nearest linkages transmit force badly: the first of the list was such a one.
@@ -40,6 +42,37 @@ def test_with_a_limit_the_order_is_the_kinds_own(limit: dict[str, float]) -> Non
     assert "First stand" not in result.summary
     errors = [error_of(design) for design in result.designs]
     assert errors[0] <= 1.0001 * min(errors)
+
+
+def made(transmission: float, ratio: float, reach: float | None, error: float = 1.0) -> Any:
+    """A design that passed, by its measures alone."""
+    return SimpleNamespace(
+        verification=SimpleNamespace(passed=True),
+        metrics=SimpleNamespace(
+            min_transmission_angle=transmission, link_ratio=ratio, reach=reach, straightness_error=error
+        ),
+    )
+
+
+def test_a_link_far_longer_than_the_task_gives_way_or_is_told() -> None:
+    problem = parse_problem(CLOSED)
+    long, short, flat = made(40.0, 3.0, 8.0), made(35.0, 4.0, 3.0), made(20.0, 4.0, 2.0)
+    found = usable_first(problem, [long, flat, short])
+    assert found.designs == [short, long, flat]
+    assert "no link longer than 5 times the task's size" in found.remark
+    # Where every one is too long, or weak, angle and ratio count before reach, and the summary says what is relaxed.
+    found = usable_first(problem, [flat, long])
+    assert found.designs == [long, flat]
+    assert "No design that was found" in found.remark
+    assert "no link longer than 5 times" in found.remark
+    assert usable_first(problem, [made(40.0, 3.0, None), long]).remark == ""
+
+
+def test_reach_is_the_longest_side_of_a_link_in_sizes_of_the_task() -> None:
+    result = solve(parse_problem({"kind": "quick_return", "time_ratio": 1.3, "stroke": 80.0, "mechanism": "whitworth"}))
+    for design in result.designs:
+        sides = design.mechanism.links
+        assert design.metrics.reach == pytest.approx(max(sides.ground, sides.crank, sides.rocker, sides.coupler) / 80.0)
 
 
 @pytest.mark.campaign

@@ -23,6 +23,7 @@ from synthesis.kinds.cam.design import (
     CamSegment,
     Optimality,
 )
+from synthesis.kinds.cam.excesses import warning_of
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
@@ -89,7 +90,14 @@ def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Op
         value /= arm_length(problem)
         bound = None if bound is None else bound / arm_length(problem)
     gap = value / bound - 1.0 if bound else None
-    return Optimality(criterion=problem.minimize, value=value, bound=bound, gap=gap, scope=scope)
+    return Optimality(
+        criterion=problem.minimize,
+        value=value,
+        bound=bound,
+        gap=gap,
+        scope=scope,
+        warning=warning_of(problem, composed),
+    )
 
 
 def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
@@ -169,6 +177,8 @@ def result_of(
         if design.optimality.bound is not None and design.optimality.gap is not None:
             gap = 100.0 * design.optimality.gap
             summary += f" Its {problem.minimize} {design.optimality.value:.6g} is within {gap:.2g} % of the bound."
+        if design.optimality.warning is not None:
+            summary += f" {design.optimality.warning}"
     else:
         summary = (
             f"The smallest cam found, of {name} radius {length:.6g} {problem.length_unit}, fails: {', '.join(failed)}."

@@ -135,6 +135,7 @@ class Optimality(Answer):
     bound: float | None = optional()
     gap: float | None = optional()
     scope: str
+    warning: str | None = optional("Peaks that are many times those of a plain law, where the criterion costs them.")
 
 
 class CamForces(Answer):

@@ -68,14 +68,8 @@ def warm_up() -> None:
 
 
 def _ranked(rank_by: str, designs: list[ParallelMotionDesign]) -> list[ParallelMotionDesign]:
-    """A crank goes all along the curve, a rocker along a part of it."""
-    return ranked(
-        designs,
-        rank_by,
-        {"accuracy": lambda design: design.metrics.rms_residual},
-        group=lambda design: not design.metrics.full_rotation,
-        ties=lambda design: 0.0,  # what is as good keeps its order: the given fourbar, then its cognates
-    )
+    """What is as good keeps its order: the given fourbar, then its cognates."""
+    return ranked(designs, rank_by, {"accuracy": lambda design: design.metrics.rms_residual}, ties=lambda design: 0.0)
 
 
 def _of_linkage(given: SourceLinkage, *, cognates_too: bool) -> Iterator[_Fourbar]:
@@ -170,8 +164,9 @@ def _summary(problem: ParallelMotionProblem, sifting: Sifting[ParallelMotionDesi
         reasons = sifting.listed() or "no fourbar"
         return f"None of {sifting.candidates} sixbars carries the body along the curve ({reasons})."
     best, passed = _ranked(problem.rank_by, sifting.passed)[0].metrics, len(sifting.passed)
+    goes = "" if best.full_rotation else ", driven to and fro along a part of the curve"
     return (
         f"{passed} of {sifting.candidates} sixbars carry the body along the curve without turning it; the first "
-        f"transmits force at {best.min_transmission_angle:.1f}° at least, from Q at ({best.translation[0]:.6g}, "
+        f"transmits force at {best.min_transmission_angle:.1f}° at least{goes}, from Q at ({best.translation[0]:.6g}, "
         f"{best.translation[1]:.6g}) of P."
     )

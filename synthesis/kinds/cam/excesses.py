@@ -1,0 +1,54 @@
+"""What a criterion costs: derivatives of an optimal motion whose peaks are many times a plain law's.
+
+The motion of least peak acceleration jumps from one acceleration to another, so that its jerk is bounded only by the
+grid on which it was found; of least peak velocity the acceleration is. Each move between rests is compared with the
+cycloidal one of equal lift and angle (Norton, *Cam Design and Manufacturing Handbook*, Table 2-2), which has no jump in
+its acceleration.
+"""
+
+from __future__ import annotations
+
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.segments import law_segment
+from synthesis.kinds.cam.composition import Composition
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Move
+
+PLAIN = "cycloidal"
+
+EXPLODED = 10.0
+"""Times a plain law's peak from which on a peak is warned about: laws in use stay below six."""
+
+RESTING = 1e-9
+"""Velocity at an end, as a share of the peak, up to which a move begins or ends at rest."""
+
+DERIVATIVES = ((1, "velocity"), (2, "acceleration"), (3, "jerk"))
+
+
+def excesses(problem: CamProblem, composed: Composition) -> dict[str, float]:
+    """Greatest peaks of moves whose law was left to the criterion, over a plain law's: those that have exploded."""
+    found: dict[str, float] = {}
+    for stated, segment in zip(problem.segments, composed.program.segments, strict=True):
+        if not isinstance(stated, Move) or not stated.follows_criterion:
+            continue
+        first, last = segment.pieces.motion(0.0), segment.pieces.motion(segment.angle, before=True)
+        moving = max(abs(float(first.v)), abs(float(last.v)))
+        if moving > RESTING * segment.extremes(1).largest:
+            continue
+        plain = law_segment(LAWS[PLAIN], segment.angle, float(first.s), float(last.s))
+        for order, name in DERIVATIVES:
+            times = segment.extremes(order).largest / plain.extremes(order).largest
+            if times >= EXPLODED:
+                found[name] = max(times, found.get(name, 0.0))
+    return found
+
+
+def warning_of(problem: CamProblem, composed: Composition) -> str | None:
+    """What a client has to know of them, as a sentence; None where no peak has exploded."""
+    found = excesses(problem, composed)
+    if not found:
+        return None
+    told = " and ".join(f"the peak {name} is {times:.3g} times" for name, times in found.items())
+    unlimited = [name for name in found if getattr(problem.limits, name) is None]
+    advice = f"; state a limit on {' or '.join(unlimited)}" if unlimited else ""
+    return f"{told.capitalize()} that of a {PLAIN} motion of the same lift and angle{advice}."
