@@ -33,7 +33,7 @@ test: check
 	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis: the real servers, on free ports.
-CONTRACT := $(addprefix tests/service/test_,store.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
+CONTRACT := $(addprefix tests/service/test_,store.py turns.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
     tests/cluster
 
 test-cluster: $(STAMP) engines

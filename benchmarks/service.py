@@ -115,7 +115,7 @@ def processor_s(pid: int) -> float:
     return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
 
 
-def until_settled(server: RunningServer, workers: int = 2) -> None:
+def until_settled(server: RunningServer, workers: int = 3) -> None:
     """Wait until the workers have loaded what they load beside their first jobs, and are idle for some seconds."""
     until(lambda: len(server.workers()) == workers, 60.0)
     used = [sum(map(processor_s, server.workers()))]

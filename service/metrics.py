@@ -76,15 +76,14 @@ class HostMetrics(WorkerMetrics):
         super().__init__()
         self._jobs = self._gauge(
             "host_jobs",
-            "Jobs that the broker has given to this host: a worker computes them, or none is free for them yet.",
+            "Jobs that this host has taken: a worker computes them.",
             "status",
         )
 
-    def watch(self, workers: Callable[[], int], running: Callable[[], int], waiting: Callable[[], int]) -> None:
-        """Ask these whenever the metrics are read: ready workers, and the jobs of the host by their state."""
+    def watch(self, workers: Callable[[], int], running: Callable[[], int]) -> None:
+        """Ask these whenever the metrics are read: ready workers, and running jobs of the host."""
         self._workers.set_function(workers)
         self._jobs.labels("running").set_function(running)
-        self._jobs.labels("waiting").set_function(waiting)
 
 
 class Metrics(WorkerMetrics):

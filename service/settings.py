@@ -43,6 +43,7 @@ class Settings(BaseSettings):
         "mechsynth"
     )
     workers: Annotated[int, Field(ge=1, le=256, description="Worker processes.")] = min(2, os.cpu_count() or 1)
+    reserve: Annotated[int, Field(ge=0, le=256, description="Worker processes beside these, kept for short jobs.")] = 1
     worker_metrics_host: str = Field(
         default="127.0.0.1", min_length=1, description="Address at which a worker host shows its metrics."
     )
@@ -57,7 +58,9 @@ class Settings(BaseSettings):
     job_memory_mb: Annotated[
         int, Field(ge=64, le=1 << 20, description="Memory that a job may take beyond its idle worker's, MiB.")
     ] = 4096
-    max_queued: Annotated[int, Field(ge=1, le=1_000_000, description="Jobs in the queue; more are refused.")] = 1000
+    max_queued: Annotated[int, Field(ge=1, le=1_000_000, description="Queued jobs of a tenant; more are refused.")] = (
+        1000
+    )
     retention_days: (
         Annotated[float, Field(gt=0, le=36_500, description="How long finished jobs are kept; for ever when left out.")]
         | None

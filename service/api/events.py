@@ -29,7 +29,7 @@ KEEP_ALIVE_S = 15.0
 """After so much silence a comment is sent, so that nobody between takes the connection for dead."""
 
 MAX_LISTENERS = 1000
-"""Streams at once; each is a connection and a task of the server."""
+"""Streams of a tenant at once; each is a connection and a task of the server."""
 
 STORE_ANSWERS_S = 10.0
 """How long a client is kept waiting for the first look into the store."""
@@ -77,7 +77,7 @@ router = APIRouter(prefix="/v1/jobs", tags=[TAG["name"]], route_class=GuardedRou
             "content": {"text/event-stream": {"itemSchema": _EVENT}},
         },
         204: {"description": "The client has the event of the final state already; it need not come again."},
-        **errors.responses(e404=NO_JOB, e503="Too many clients listen at once."),
+        **errors.responses(e404=NO_JOB, e503="Too many clients of the tenant listen at once."),
     },
 )
 async def follow_job(
@@ -94,12 +94,12 @@ async def follow_job(
 
     A stream that breaks can be resumed with `Last-Event-ID`: nothing that the client has seen is repeated.
     """
-    if poller.listeners >= MAX_LISTENERS:
+    if poller.listeners_of(tenant) >= MAX_LISTENERS:
         raise Refusal(
-            503, "too-many-listeners", "Too many listeners", "Too many clients listen to jobs at once; ask again.",
+            503, "too-many-listeners", "Too many listeners", "Too many of your clients listen at once; ask again.",
             headers={"Retry-After": "5"},
         )  # fmt: skip
-    job = await _present(poller, job_id) if ULID.fullmatch(job_id) else None
+    job = await _present(poller, job_id, tenant) if ULID.fullmatch(job_id) else None
     if job is None or job.tenant != tenant:
         raise not_found(NO_JOB)
     seen = _seen(last_event_id)
@@ -110,8 +110,8 @@ async def follow_job(
     return EventSourceResponse(_events(poller, job, seen), headers=_HEADERS)
 
 
-async def _present(poller: JobPoller, job_id: str) -> JobSummary | None:
-    with poller.follow(job_id) as follower:
+async def _present(poller: JobPoller, job_id: str, tenant: str) -> JobSummary | None:
+    with poller.follow(job_id, tenant) as follower:
         await follower.changed(STORE_ANSWERS_S)
         if not follower.read:
             raise store_unavailable()
@@ -120,7 +120,7 @@ async def _present(poller: JobPoller, job_id: str) -> JobSummary | None:
 
 async def _events(poller: JobPoller, job: JobSummary, seen: tuple[int, Status] | None) -> AsyncIterator[bytes]:
     """The stream of a job. It ends with the job, or without an event when the service stops."""
-    with poller.follow(job.id) as follower:
+    with poller.follow(job.id, job.tenant) as follower:
         follower.update(job)
         while not poller.closed:
             if not await follower.changed(KEEP_ALIVE_S):

@@ -20,7 +20,7 @@ from service.api.schemas import Job, JobList, JobRequest, list_item, whole_job
 from service.api.state import Desk
 from service.jobs.desk import JobDesk
 from service.jobs.schema import JobRow
-from service.jobs.states import Status
+from service.jobs.states import Cost, Status
 from service.jobs.store import KeyReused, QueueFull
 from service.stated import written
 from synthesis.registry import KINDS, example
@@ -137,6 +137,7 @@ async def create_job(
             kind=body.problem.kind,
             label=body.label,
             problem=written(body.problem),
+            cost=Cost.SHORT if KINDS[body.problem.kind].brief(body.problem) else Cost.LONG,
             wait_s=wait_s,
             repeatable=repeatable(request.headers.getlist("idempotency-key"), body),
         )
@@ -144,7 +145,7 @@ async def create_job(
         raise key_reused() from None
     except QueueFull:
         raise Refusal(
-            503, "queue-full", "Queue full", "As many jobs wait as may; send this one again later.",
+            503, "queue-full", "Queue full", "As many of your jobs wait as may; send this one again later.",
             headers={"Retry-After": str(QUEUE_RETRY_AFTER_S)},
         ) from None  # fmt: skip
     headers = {"Location": f"/v1/jobs/{job.id}"}

@@ -1,9 +1,7 @@
-"""The broker: Celery over RabbitMQ or Redis carries the ids of jobs from the servers to the worker hosts.
+"""The broker: Celery over RabbitMQ or Redis wakes a worker host when a server has stored a job.
 
-A message is an id and nothing else, so that losing one or getting it twice is no harm: the row in the store says what
-is to be done, only one claim of it succeeds, and the message of a queued job that seems to be lost is sent again
-(:mod:`service.jobs.recovery`). Celery does the queueing: one message at a time for each free worker, acknowledged when
-its job is done with, and given to another host when the first one is gone.
+A message is the id of a job and decides nothing, so that losing one, or getting it twice or late, is no harm: a host
+that is woken asks the store for the job whose turn it is (:mod:`service.jobs.turns`), which need not be that one.
 """
 
 from __future__ import annotations
@@ -50,10 +48,7 @@ def celery_app(settings: Settings, *, publisher: bool) -> Celery:
         if publisher:
             options |= {"read_timeout": CONFIRM_TIMEOUT_S, "write_timeout": CONFIRM_TIMEOUT_S}
     else:
-        # A message that is not acknowledged for so long is delivered again. That is never needed, since a job whose
-        # host is gone is sent anew; so it is later than any job ends.
         options = {
-            "visibility_timeout": max(3600.0, 2 * settings.job_timeout_s),
             "socket_connect_timeout": CONNECT_TIMEOUT_S,
             "socket_keepalive": True,
             "health_check_interval": BROKER_HEARTBEAT_S,
@@ -104,7 +99,7 @@ class Publisher:
         """Whether the broker answered when it was last asked."""
 
     def send(self, job_id: str) -> None:
-        """Have a worker host run the job. When this returns, the broker has the message.
+        """Have a worker host look for the job. When this returns, the broker has the message.
 
         Raises
         ------

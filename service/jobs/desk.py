@@ -13,7 +13,7 @@ from service.jobs.executor import Executor
 from service.jobs.finished import FinishedJobs
 from service.jobs.notifier import ChangeNotifier
 from service.jobs.schema import JobRow, JobSummary
-from service.jobs.states import Status
+from service.jobs.states import Cost, Status
 from service.jobs.store import JobStore, Repeatable
 from service.metrics import Metrics
 from service.telemetry import span
@@ -39,6 +39,7 @@ class JobDesk:
         kind: str,
         label: str | None,
         problem: str,
+        cost: Cost,
         wait_s: float,
         repeatable: Repeatable | None,
     ) -> JobRow:
@@ -51,10 +52,10 @@ class JobDesk:
         KeyReused
             When the key came with another request before.
         QueueFull
-            When no more jobs are taken for now.
+            When no more jobs of the tenant are taken for now.
         """
         with span("store"):
-            job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, repeatable)
+            job, new = await run_in_threadpool(self._stored, tenant, kind, label, problem, cost, repeatable)
         if new:
             log.info("job accepted", job=job.id, kind=kind)
             self.metrics.accepted(kind)
@@ -69,10 +70,12 @@ class JobDesk:
                 return await self._ended(job, changed, wait_s)
 
     def _stored(
-        self, tenant: str, kind: str, label: str | None, problem: str, repeatable: Repeatable | None
+        self, tenant: str, kind: str, label: str | None, problem: str, cost: Cost, repeatable: Repeatable | None
     ) -> tuple[JobRow, bool]:
         if repeatable is None:
-            job = self.store.create(tenant=tenant, kind=kind, label=label, problem=problem, max_queued=self.max_queued)
+            job = self.store.create(
+                tenant=tenant, kind=kind, label=label, problem=problem, cost=cost, max_queued=self.max_queued
+            )
             return job, True
         return self.store.create_once(
             tenant=tenant,
@@ -80,6 +83,7 @@ class JobDesk:
             label=label,
             problem=problem,
             repeatable=repeatable,
+            cost=cost,
             max_queued=self.max_queued,
         )
 

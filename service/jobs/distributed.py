@@ -14,7 +14,7 @@ from service.jobs.broker import BrokerUnreachable, Publisher
 from service.jobs.database import connect
 from service.jobs.executor import Changed
 from service.jobs.leases import LeaseStore
-from service.jobs.listener import StoreListener
+from service.jobs.listener import CHANGES, StoreListener
 from service.jobs.recovery import Recovery
 from service.jobs.store import JobStore
 from service.settings import Settings
@@ -59,10 +59,10 @@ class CeleryExecutor:
 
     def subscribe(self, changed: Changed) -> None:
         """Call ``changed`` from now on with each job whose state changes."""
-        self._listener = StoreListener(self._settings.store_url, changed)
+        self._listener = StoreListener(self._settings.store_url, CHANGES, changed)
 
     def submit(self, job_id: str) -> None:
-        """Send the queued job to the worker hosts."""
+        """Have a worker host that is free look for the job."""
         self._queue.put(job_id)
 
     def cancel(self, job_id: str) -> None:
@@ -73,7 +73,7 @@ class CeleryExecutor:
         return self._workers if self._publisher.reachable else 0
 
     def stop(self) -> None:
-        """Stop sending. What is not sent yet is due in the store, and another server sends it."""
+        """Stop sending. Of what is not sent yet the worker hosts hear from the store."""
         self._queue.put(None)
         threads = [self._sender, self._recovery, *([] if self._listener is None else [self._listener])]
         self._recovery.stop()
@@ -93,4 +93,4 @@ class CeleryExecutor:
             try:
                 self._publisher.send(job_id)
             except BrokerUnreachable:
-                log.warning("job not sent", job=job_id, next="it is sent again when the broker answers")
+                log.warning("job not sent", job=job_id, next="worker hosts see it in the store")

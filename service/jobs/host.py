@@ -1,9 +1,10 @@
-"""A worker host: takes jobs from the broker and runs them in workers of its own (``mechsynth worker``).
+"""A worker host: takes jobs from the store and runs them in workers of its own (``mechsynth worker``).
 
-The lanes and workers are those of the local executor (:mod:`service.jobs.lane`), which handle cancelling, timeouts,
-memory and death; Celery only delivers the ids of the jobs. Its task waits until a lane is done with the job, so that a
-host holds no more messages than it has workers. While a job runs the host renews its lease in the store, which tells
-it in return which claims no longer count: their jobs are dropped.
+The lanes and workers are those of the local executor (:mod:`service.jobs.lane`), which handle turns, cancelling,
+timeouts, memory and death. A message of the broker says that there is work and not which: a host that has a free lane
+asks the store whose turn it is. So it does when PostgreSQL notifies it of a queued job, and once a second. While a job
+runs the host renews its lease in the store, which tells it in return which claims no longer count: their jobs are
+dropped.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from service import logs
 from service.jobs.broker import TASK, Publisher, celery_app
 from service.jobs.database import LaterTables, connect, unreachable, upgrade
 from service.jobs.leases import LeaseStore
+from service.jobs.listener import WORK, StoreListener
 from service.jobs.local import LocalExecutor
 from service.jobs.recovery import Recovery
 from service.metrics import HostMetrics
@@ -32,13 +34,6 @@ from service.settings import Settings
 
 BEAT_PERIOD_S = 0.5
 """Period at which a host renews its leases and looks for cancelled jobs, which must stop within two seconds."""
-
-STARVED_S = 5.0
-"""A host that has had nothing to do for so long, while jobs wait for as long, takes them from the store itself: after
-the broker was restarted its consumer may be connected and yet be given no messages any more."""
-
-MAX_TAKEN = 50
-"""Jobs that it then takes at once."""
 
 log = structlog.get_logger(__name__)
 
@@ -48,7 +43,7 @@ class HostError(Exception):
 
 
 class Host:
-    """The lanes of a host, and the tasks that wait for their jobs."""
+    """The lanes of a host, and what tells them of work."""
 
     def __init__(self, settings: Settings, metrics: HostMetrics) -> None:
         self.id = str(ULID())
@@ -58,34 +53,22 @@ class Host:
         self._publisher = Publisher(settings)
         self._recovery = Recovery(self._leases, self._publisher, lambda: None)
         self._beating = threading.Thread(target=self._beat, name="beat", daemon=True)
+        self._listener = StoreListener(settings.store_url, WORK, lambda _: self.lanes.wake())
         self._stopping = threading.Event()
-        self._lock = threading.Lock()
-        self._waiting: dict[str, list[threading.Event]] = {}
-        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()), self.waiting)
+        metrics.watch(self.lanes.ready, lambda: len(self.lanes.claims()))
 
     def start(self) -> None:
         """Make the tables where they are missing, and start the lanes."""
         upgrade(self._engine)
-        self.lanes.subscribe(self._done_with)
         self.lanes.start()
+        self.lanes.open()
         self._beating.start()
         self._recovery.start()
+        self._listener.start()
 
     def work(self, job_id: str) -> None:
-        """Have a lane run the job, and wait until it is done with it."""
-        done = threading.Event()
-        with self._lock:
-            self._waiting.setdefault(job_id, []).append(done)
+        """What Celery calls for a message: there is work, this job or another whose turn comes before it."""
         self.lanes.submit(job_id)
-        while not done.wait(BEAT_PERIOD_S):
-            if self._stopping.is_set():
-                return
-
-    def waiting(self) -> int:
-        """Number of jobs of the host that no lane has started."""
-        with self._lock:
-            taken = set(self._waiting)
-        return len(taken.difference(self.lanes.claims().values()))
 
     def stop(self) -> None:
         """Put the running jobs back into the queue and end the workers. May be called again."""
@@ -93,6 +76,7 @@ class Host:
             return
         self._stopping.set()
         self._recovery.stop()
+        self._listener.stop()
         self.lanes.stop()
         try:
             self._leases.host_is_gone(self.id)
@@ -100,32 +84,12 @@ class Host:
             log.warning("the store does not answer", error=type(error).__name__)
         self._publisher.close()
 
-    def _done_with(self, job_id: str | None) -> None:
-        with self._lock:
-            waiting = self._waiting.pop(job_id or "", [])
-        for done in waiting:
-            done.set()
-
-    def _take_overdue(self) -> None:
-        overdue = self._leases.overdue(STARVED_S, MAX_TAKEN)
-        for job_id in overdue:
-            self.lanes.submit(job_id)
-        if overdue:
-            log.warning("the broker brings no jobs; taken from the store", jobs=len(overdue))
-
     def _beat(self) -> None:
-        busy_at = time.monotonic()
         while not self._stopping.wait(BEAT_PERIOD_S):
             try:
-                claims = self.lanes.claims()
-                for claim in self._leases.renew(claims):
+                for claim in self._leases.renew(self.lanes.claims()):
                     self.lanes.drop(claim)
                 self._leases.host_is_there(self.id, self.lanes.ready())
-                if claims or self.waiting() or not self.lanes.ready():
-                    busy_at = time.monotonic()
-                elif time.monotonic() > busy_at + STARVED_S:
-                    self._take_overdue()
-                    busy_at = time.monotonic()
             except SQLAlchemyError as error:
                 if not unreachable(error):
                     log.exception("the leases could not be renewed")
@@ -158,7 +122,7 @@ def run_host(settings: Settings) -> None:
         app.WorkController(
             hostname=f"{host.id}@{os.uname().nodename}",
             pool_cls=_pool_of(host),
-            concurrency=settings.workers,
+            concurrency=1,
             without_mingle=True,
             without_gossip=True,
             without_heartbeat=True,
@@ -209,10 +173,10 @@ def _announce(host: Host) -> None:
 
 
 def _pool_of(host: Host) -> type[TaskPool]:
-    """A pool of Celery whose tasks wait in threads for the lanes of a host and report to Celery's event loop."""
+    """A pool of Celery's in whose threads its tasks wake the lanes of a host."""
 
     class LanePool(TaskPool):
-        """Ends the lanes first when it is stopped, so that the tasks end."""
+        """Ends the lanes when it is stopped."""
 
         def on_stop(self) -> None:
             host.stop()

@@ -1,25 +1,21 @@
-"""Leases: which attempts and worker hosts are alive, and which queued jobs have to be sent again.
+"""Leases: which attempts and worker hosts are alive.
 
 Several servers and worker hosts may share a store. Words: a *claim* is the mark of one attempt, chosen by whoever has
-it run; as long as the attempt goes on, its *lease* is renewed, and when that has expired the job is abandoned. A queued
-job is *due* when its message may have been lost, and it should be sent again. Leases and dues go by the clock of the
-database, in ``due_at``.
+it run; as long as the attempt goes on, its *lease* is renewed, and when that has expired the job is abandoned. Leases
+go by the clock of the database, in ``due_at``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import Engine, case, delete, func, insert, select, update
+from sqlalchemy import Engine, delete, func, insert, select, update
 
 from service.jobs.schema import StoreClock, hosts, jobs
-from service.jobs.statements import LEASE_S, MAX_IDS, RESEND_S, died
+from service.jobs.statements import LEASE_S, died
 from service.jobs.states import Status
 from service.jobs.store import MAX_KILLS
-
-MAX_RESEND_S = 600.0
-"""Longest time from one sending of a waiting job to the next."""
 
 _HOST_FORGOTTEN_S = 3600.0
 """Rows of hosts that vanished are removed after this: long after their lease, so that the clocks do not matter."""
@@ -69,44 +65,6 @@ class LeaseStore:
                 moves.append((job_id, Status(status)))
         return moves
 
-    def due(self, at_most: int) -> list[str]:
-        """Queued jobs whose messages may be lost, oldest first, to be sent again by the caller and nobody else.
-
-        Whoever asks next does not get them before their next time.
-        """
-        waiting = (
-            select(jobs.c.id)
-            .where(jobs.c.status == Status.QUEUED, jobs.c.due_at <= StoreClock())
-            .order_by(jobs.c.id)
-            .limit(at_most)
-            .with_for_update(skip_locked=True)
-        )
-        waited = StoreClock() - jobs.c.queued_at
-        pause = case((waited < RESEND_S, RESEND_S), (waited > MAX_RESEND_S, MAX_RESEND_S), else_=waited)
-        change = update(jobs).where(jobs.c.id.in_(waiting)).values(due_at=StoreClock() + pause).returning(jobs.c.id)
-        with self._engine.begin() as connection:
-            return sorted(connection.execute(change).scalars())
-
-    def overdue(self, after_s: float, at_most: int) -> list[str]:
-        """Jobs that have been in the queue for so long, oldest first; whoever claims one first has it."""
-        query = (
-            select(jobs.c.id)
-            .where(jobs.c.status == Status.QUEUED, jobs.c.queued_at < StoreClock() - after_s)
-            .order_by(jobs.c.id)
-            .limit(at_most)
-        )
-        with self._engine.connect() as connection:
-            return list(connection.execute(query).scalars())
-
-    def not_sent(self, job_ids: Sequence[str]) -> None:
-        """Make jobs due again at once that :meth:`due` has given out and that could not be sent."""
-        for start in range(0, len(job_ids), MAX_IDS):
-            unsent = jobs.c.id.in_(job_ids[start : start + MAX_IDS])
-            with self._engine.begin() as connection:
-                connection.execute(
-                    update(jobs).where(unsent, jobs.c.status == Status.QUEUED).values(due_at=StoreClock())
-                )
-
     def host_is_there(self, host_id: str, workers: int) -> None:
         """Note a sign of life of a worker host, and how many of its workers are ready."""
         values = {"workers": workers, "seen_at": StoreClock()}
@@ -128,7 +86,7 @@ class LeaseStore:
 
 
 def _useless(row: Any, claim: str) -> bool:
-    # A job that is queued is about to be claimed, and one that has ended by itself is about to be done with.
+    # A job that has ended by itself is about to be done with.
     if row is None:
         return True
-    return bool(row.status == Status.CANCELLED or (row.status == Status.RUNNING and row.claim != claim))
+    return bool(row.status in (Status.CANCELLED, Status.QUEUED) or row.claim != claim)

@@ -1,4 +1,4 @@
-"""Listens to PostgreSQL for changes of jobs (``LISTEN``), whichever server or worker host has made them."""
+"""Listens to PostgreSQL for what becomes of jobs (``LISTEN``), whichever server or worker host has done it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.jobs.database import listening
 from service.jobs.executor import Changed
 
-CHANNEL = "mechsynth_jobs"
-"""The channel that the trigger on the table of jobs notifies."""
+CHANGES, WORK = "mechsynth_jobs", "mechsynth_work"
+"""The channels that triggers on the table of jobs notify: of jobs whose states change, and of jobs in the queue."""
 
 LISTEN_S = 1.0
 """Longest wait for a notification before the thread looks whether it is to stop."""
@@ -26,12 +26,13 @@ log = structlog.get_logger(__name__)
 
 
 class StoreListener(threading.Thread):
-    """Calls ``changed`` with the id of each job whose state changes, and with None when it may have missed some."""
+    """Calls ``told`` with what each notification holds, and with None when it may have missed some."""
 
-    def __init__(self, url: str, changed: Changed) -> None:
+    def __init__(self, url: str, channel: str, told: Changed) -> None:
         super().__init__(name="store-listener", daemon=True)
         self._engine = listening(url)
-        self._changed = changed
+        self._channel = channel
+        self._told = told
         self._stopping = threading.Event()
 
     def stop(self) -> None:
@@ -51,9 +52,9 @@ class StoreListener(threading.Thread):
 
     def _listen(self) -> None:
         with self._engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-            connection.execute(text(f"LISTEN {CHANNEL}"))
+            connection.execute(text(f"LISTEN {self._channel}"))
             driver: Any = connection.connection.driver_connection
-            self._changed(None)
+            self._told(None)
             while not self._stopping.is_set():
                 for notice in driver.notifies(timeout=LISTEN_S):
-                    self._changed(notice.payload)
+                    self._told(notice.payload)

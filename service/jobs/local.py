@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from queue import SimpleQueue
 
 import structlog
 
@@ -11,6 +10,7 @@ from service.jobs.database import connect
 from service.jobs.executor import Changed
 from service.jobs.lane import Lane
 from service.jobs.store import JobStore
+from service.jobs.turns import Turns
 from service.jobs.worker import WorkerSettings
 from service.metrics import WorkerMetrics
 from service.settings import Settings
@@ -23,7 +23,7 @@ log = structlog.get_logger(__name__)
 
 
 class LocalExecutor:
-    """Runs jobs in ``settings.workers`` processes that end with the server, one after the other in each.
+    """Runs jobs in ``settings.workers`` processes, and some in reserve, that end with the server.
 
     Raises
     ------
@@ -40,8 +40,8 @@ class LocalExecutor:
         # Besides, this makes the file of a new SQLite store before several processes come to do it at once.
         self._store.ping()
         self._subscriber: Changed | None = None
-        self._queue: SimpleQueue[str | None] = SimpleQueue()
         self._lanes: list[Lane] = []
+        self._turns = Turns(self._store, self._lanes, settings.workers)
 
     def start(self) -> None:
         """Start the lanes; their workers start while this returns."""
@@ -55,20 +55,19 @@ class LocalExecutor:
             log_format=self._settings.log_format,
         )
         # The first worker has the machine to itself until it is ready, so that the service is ready soon. And when it
-        # is the first ever and compiles the kernels, the others find them compiled.
-        first: Lane | None = None
-        for n in range(self._settings.workers):
+        # is the first ever and compiles the kernels, the others find them compiled. The reserve comes last.
+        workers = self._settings.workers
+        for n in range(workers + self._settings.reserve):
             lane = Lane(
                 f"lane-{n}",
-                self._queue,
+                self._turns,
                 self._store,
                 for_workers,
                 self._settings.job_timeout_s,
                 self._changed,
                 self._metrics,
-                after=first,
+                after=self._lanes[: 0 if n == 0 else 1 if n < workers else workers],
             )
-            first = first or lane
             self._lanes.append(lane)
         for lane in self._lanes:
             lane.start()
@@ -76,21 +75,28 @@ class LocalExecutor:
     def resume(self) -> None:
         """Take up what the server before this one has left; nobody else runs jobs of this store."""
         unfinished = self._store.requeue_unfinished()
-        for job_id in unfinished:
-            self.submit(job_id)
         if unfinished:
-            log.info("unfinished jobs taken up again", jobs=len(unfinished))
+            log.info("unfinished jobs taken up again", jobs=unfinished)
+        self.open()
+
+    def open(self) -> None:
+        """Begin to give jobs to the lanes: the store has its tables, and what runs in it is somebody's."""
+        self._turns.open()
 
     def subscribe(self, changed: Changed) -> None:
         """Tell ``changed`` from now on of each job that a worker is done with."""
         self._subscriber = changed
 
     def submit(self, job_id: str) -> None:
-        """Have the queued job run by the next free lane."""
-        self._queue.put(job_id)
+        """Have the queued job run when its turn comes."""
+        self.wake()
+
+    def wake(self) -> None:
+        """Have a free lane ask for a job, where there is one."""
+        self._turns.wake()
 
     def cancel(self, job_id: str) -> None:
-        """Kill the worker that runs the job; one that no lane has begun cannot be claimed when its turn comes."""
+        """Stop the job where a lane runs it; one that waits cannot be claimed when its turn comes."""
         for lane in self._lanes:
             lane.cancel(job_id)
 
@@ -99,7 +105,7 @@ class LocalExecutor:
         return dict(held for lane in self._lanes if (held := lane.held) is not None)
 
     def drop(self, claim: str) -> None:
-        """Kill the worker that runs a job under a claim that is of no use any more."""
+        """Stop the job that a lane runs under a claim that is of no use any more."""
         for lane in self._lanes:
             lane.drop(claim)
 
@@ -111,8 +117,7 @@ class LocalExecutor:
         """Stop all lanes at once and wait for them."""
         for lane in self._lanes:
             lane.stop()
-        for _ in self._lanes:
-            self._queue.put(None)
+        self._turns.close()
         for lane in self._lanes:
             lane.join(STOP_TIMEOUT_S)
         self._engine.dispose()

@@ -8,6 +8,7 @@ number of streams makes no difference to the store. A job that nobody follows is
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -63,6 +64,7 @@ class JobPoller:
         self._store = store
         self._notifier = notifier
         self._followers: dict[str, set[Follower]] = {}
+        self._listeners: Counter[str] = Counter()
         self._nudged = asyncio.Event()
 
     @property
@@ -70,21 +72,29 @@ class JobPoller:
         """How many follow a job now."""
         return sum(map(len, self._followers.values()))
 
+    def listeners_of(self, tenant: str) -> int:
+        """How many of them are the tenant's."""
+        return self._listeners[tenant]
+
     @property
     def closed(self) -> bool:
         """Whether nobody should listen any longer, because the service stops."""
         return self._notifier.closed
 
     @contextmanager
-    def follow(self, job_id: str) -> Iterator[Follower]:
-        """Follow a job; the first change is the state that it has now."""
+    def follow(self, job_id: str, tenant: str) -> Iterator[Follower]:
+        """Follow a job for a tenant; the first change is the state that it has now."""
         follower = Follower()
+        self._listeners[tenant] += 1
         followers = self._followers.setdefault(job_id, set())
         followers.add(follower)
         self._nudged.set()
         try:
             yield follower
         finally:
+            self._listeners[tenant] -= 1
+            if not self._listeners[tenant]:
+                del self._listeners[tenant]
             followers.discard(follower)
             if not followers:
                 self._followers.pop(job_id, None)

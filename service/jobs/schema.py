@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Column, Float, Index, Integer, MetaData, String, Table, Text
+from sqlalchemy import Column, Float, Index, Integer, MetaData, String, Table, Text, text
 from sqlalchemy.ext.compiler import compiles
 from sqlalchemy.sql.expression import FunctionElement
 
-from service.jobs.states import UNFINISHED, Status
+from service.jobs.states import UNFINISHED, Cost, Status
 
 metadata = MetaData()
 
@@ -18,9 +18,9 @@ TENANT_LENGTH = 100
 """Longest name of a tenant."""
 
 # Times are text of one width ("2026-01-31T12:00:00.000000Z"): the same on every database, sorted as they are, and what
-# the API shows. What decides about a job (queued_at, due_at) goes by the clock of the database instead, since those of
-# several machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON as text, because
-# nothing ever looks inside them here.
+# the API shows. How long a running job is taken for alive (due_at) goes by the clock of the database instead, since
+# those of several machines differ: seconds since 1970, see StoreClock. Problem, result and error are JSON as text,
+# because nothing ever looks inside them here. Nothing reads queued_at; processes of the version before write it.
 jobs = Table(
     "jobs",
     metadata,
@@ -45,6 +45,8 @@ jobs = Table(
     Column("claim", String(26)),
     Column("queued_at", Float, nullable=False, server_default="0"),
     Column("due_at", Float, nullable=False, server_default="0"),
+    Column("cost", String(5), nullable=False, server_default=Cost.LONG.value),
+    Column("turn", Integer, nullable=False, server_default="0"),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_tenant", "tenant", "id"),
     Index("jobs_by_tenant_and_status", "tenant", "status", "id"),
@@ -54,6 +56,13 @@ jobs = Table(
 Index(
     "jobs_by_due_at", jobs.c.due_at, postgresql_where=jobs.c.status.in_([s.value for s in sorted(UNFINISHED)])
 ).ddl_if("postgresql")  # fmt: skip
+
+# What is queued is asked for many times, and is a small part of the table.
+QUEUED = text("status = 'queued'")
+"""As the indexes of queued jobs state it. A database uses them only where a query says the same."""
+
+for _name, _columns in (("turn", ("cost", "turn", "id")), ("tenant", ("tenant", "cost", "turn"))):
+    Index(f"jobs_queued_by_{_name}", *(jobs.c[c] for c in _columns), sqlite_where=QUEUED, postgresql_where=QUEUED)
 
 # Who runs jobs for several servers: a row for each worker host that is there.
 hosts = Table(
@@ -81,6 +90,24 @@ def _sqlite_clock(_element: Any, _compiler: Any, **_: Any) -> str:
 @compiles(StoreClock, "postgresql")
 def _postgresql_clock(_element: Any, _compiler: Any, **_: Any) -> str:
     return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"
+
+
+class Later(FunctionElement[int]):
+    """The greater of two numbers."""
+
+    name = "later"
+    type = Integer()
+    inherit_cache = True
+
+
+@compiles(Later, "sqlite")
+def _sqlite_later(element: Any, compiler: Any, **options: Any) -> str:
+    return f"max({compiler.process(element.clauses, **options)})"
+
+
+@compiles(Later, "postgresql")
+def _postgresql_later(element: Any, compiler: Any, **options: Any) -> str:
+    return f"greatest({compiler.process(element.clauses, **options)})"
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,20 +10,20 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from sqlalchemy import ColumnElement, Integer, and_, bindparam, case, func, insert, or_, select, update
+from sqlalchemy import Integer, bindparam, case, func, insert, select, update
 from sqlalchemy.sql.dml import ReturningUpdate
 from ulid import ULID
 
 from service.jobs.faults import WORKER_DIED
-from service.jobs.schema import JobRow, JobSummary, StoreClock, jobs, now
-from service.jobs.states import MOVES, Status
+from service.jobs.schema import QUEUED, JobRow, JobSummary, Later, StoreClock, jobs, now
+from service.jobs.states import MOVES, Cost, Status
 
 LEASE_S = 10.0
 """An attempt is abandoned this long after its last sign of life. Signs come twice a second, but a machine may be very
 busy, and a database may need some seconds for a restart."""
 
-RESEND_S = 5.0
-"""A job that nobody has taken is sent again after so long at first, and then whenever it has waited twice as long."""
+AT_ONCE = 0
+"""The turn of a job that has had one, and was put back: before all that are new, whose turns begin with 1."""
 
 MAX_IDS = 500
 """Ids in one statement; databases bound the number of its parameters."""
@@ -31,6 +31,7 @@ MAX_IDS = 500
 COLUMNS = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
 SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 WHOLE = [jobs.c[name] for name in COLUMNS]
+TAKEN = [jobs.c[name] for name in ("id", "claim", "attempt", "cost", "kind", "problem")]
 
 
 def moved(name: str, job_id: Any, **values: Any) -> Any:
@@ -48,14 +49,8 @@ BACK_IN_QUEUE: Mapping[str, Any] = {
     "progress_fraction": 0.0,
     "progress_message": "queued",
     "started_at": None,
-    "queued_at": StoreClock(),
-    "due_at": StoreClock(),
+    "turn": AT_ONCE,
 }
-
-
-def held_by(claim: str) -> ColumnElement[bool]:
-    """The job has been claimed by nobody yet, or under this claim."""
-    return or_(jobs.c.status == Status.QUEUED, jobs.c.claim == claim)
 
 
 def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
@@ -74,14 +69,13 @@ def died(job_id: str, retries: int) -> ReturningUpdate[Any]:
             progress_message=case((worn_out, "failed"), else_="queued"),
             crashes=jobs.c.crashes + 1,
             revision=jobs.c.revision + 1,
-            queued_at=StoreClock(),
-            due_at=StoreClock(),
+            turn=AT_ONCE,
         )
         .returning(jobs.c.status)
     )
 
 
-def new_row(tenant: str, kind: str, label: str | None, problem: str) -> dict[str, Any]:
+def new_row(tenant: str, kind: str, label: str | None, problem: str, cost: Cost = Cost.LONG) -> dict[str, Any]:
     """A job that has just been accepted."""
     return {
         "id": str(ULID()),
@@ -100,37 +94,51 @@ def new_row(tenant: str, kind: str, label: str | None, problem: str) -> dict[str
         "attempt": 0,
         "crashes": 0,
         "revision": 1,
+        "cost": cost,
     }
+
+
+def turn_of(tenant: Any, cost: Any) -> Later:
+    """The turn of a further job of a tenant: after the tenant's others, and not before what is next for anybody.
+
+    Jobs are taken in the order of their turns, so that tenants go round: of those who wait, each has one job in each
+    turn. Who comes new joins at the present one, however many jobs of others wait.
+    """
+    others = jobs.alias()
+    own = select(func.max(others.c.turn) + 1).where(QUEUED, others.c.tenant == tenant, others.c.cost == cost)
+    present = select(func.min(others.c.turn)).where(QUEUED, others.c.cost == cost, others.c.turn > AT_ONCE)
+    first = AT_ONCE + 1
+    return Later(func.coalesce(own.scalar_subquery(), first), func.coalesce(present.scalar_subquery(), first))
 
 
 # What every job goes through is stated once. SQLAlchemy takes several times as long to put a statement together, and to
 # recognize it in its cache of compiled ones, as the database to execute it.
 BY_ID = select(*WHOLE).where(jobs.c.id == bindparam("job"))
 _STORED = [*new_row("", "", None, ""), *NO_KEY]
-_TIMES = {"queued_at": StoreClock(), "due_at": StoreClock() + RESEND_S}
-INSERT = insert(jobs).values(_TIMES)
-_QUEUED = select(jobs.c.id).where(jobs.c.status == Status.QUEUED).limit(bindparam("most", type_=Integer)).subquery()
-COUNT_QUEUED = select(func.count()).select_from(_QUEUED)
+_queued = select(jobs.c.id).where(QUEUED, jobs.c.tenant == bindparam("of")).limit(bindparam("most", type_=Integer))
+COUNT_QUEUED = select(func.count()).select_from(_queued.subquery())
 # Counted by the statement that inserts, so that many who come at once cannot all find the last place.
-INSERT_WITH_ROOM = (
+INSERT = (
     insert(jobs)
     .from_select(
-        [*_STORED, *_TIMES],
-        select(*(bindparam(name, type_=jobs.c[name].type) for name in _STORED), *_TIMES.values()).where(
-            COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)
-        ),
+        [*_STORED, "turn"],
+        select(
+            *(bindparam(name, type_=jobs.c[name].type) for name in _STORED), turn_of(bindparam("of"), bindparam("as"))
+        ).where(COUNT_QUEUED.scalar_subquery() < bindparam("most", type_=Integer)),
     )
     .execution_options(preserve_rowcount=True)
 )
+# Those that another host is about to take are passed over; SQLite has one that takes jobs.
+NEXT = (
+    select(jobs.c.id)
+    .where(QUEUED, jobs.c.cost == bindparam("cost"))
+    .order_by(jobs.c.turn, jobs.c.id)
+    .limit(1)
+    .with_for_update(skip_locked=True)
+)
 CLAIM = (
     update(jobs)
-    .where(
-        jobs.c.id == bindparam("job"),
-        or_(
-            jobs.c.status.in_(MOVES["claim"].sources),
-            and_(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark")),
-        ),
-    )
+    .where(jobs.c.id == bindparam("job"), jobs.c.status.in_(MOVES["claim"].sources))
     .values(
         status=MOVES["claim"].target,
         revision=jobs.c.revision + 1,
@@ -140,8 +148,9 @@ CLAIM = (
         claim=bindparam("mark"),
         due_at=StoreClock() + LEASE_S,
     )
-    .returning(jobs.c.attempt, jobs.c.kind, jobs.c.problem)
+    .returning(*TAKEN)
 )
+CLAIMED = select(*TAKEN).where(jobs.c.status == MOVES["claim"].target, jobs.c.claim == bindparam("mark"))
 _OF_THE_ATTEMPT = jobs.c.attempt == bindparam("of")
 SUCCEED = moved(
     "succeed",

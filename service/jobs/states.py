@@ -26,6 +26,13 @@ class Status(StrEnum):
         return self in FINISHED
 
 
+class Cost(StrEnum):
+    """How long a job is taken to compute: ``short`` is a fraction of a second. An estimate, made when it is stated."""
+
+    SHORT = "short"
+    LONG = "long"
+
+
 FINISHED = frozenset({Status.SUCCEEDED, Status.FAILED, Status.CANCELLED})
 UNFINISHED = frozenset({Status.QUEUED, Status.RUNNING})
 
@@ -40,12 +47,11 @@ class Move:
 
 
 MOVES = {
-    "claim": Move(frozenset({Status.QUEUED}), Status.RUNNING, by="worker"),
+    "claim": Move(frozenset({Status.QUEUED}), Status.RUNNING, by="executor"),
     "succeed": Move(frozenset({Status.RUNNING}), Status.SUCCEEDED, by="worker"),
     "fail": Move(frozenset({Status.RUNNING}), Status.FAILED, by="worker"),
-    # A worker can die after it was given a job and before it has claimed it, so these two start from both states.
-    "requeue": Move(UNFINISHED, Status.QUEUED, by="executor"),
-    "give_up": Move(UNFINISHED, Status.FAILED, by="executor"),
+    "requeue": Move(frozenset({Status.RUNNING}), Status.QUEUED, by="executor"),
+    "give_up": Move(frozenset({Status.RUNNING}), Status.FAILED, by="executor"),
     "cancel": Move(UNFINISHED, Status.CANCELLED, by="client"),
 }
 """Every permitted move by name. A finished job never moves; it can only be deleted."""

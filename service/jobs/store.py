@@ -20,27 +20,28 @@ from sqlalchemy.exc import IntegrityError, SQLAlchemyError
 from ulid import ULID
 
 from service.jobs.database import QUEUE_LOCK, unreachable
-from service.jobs.schema import JobRow, JobSummary, as_stored, jobs, now
+from service.jobs.schema import QUEUED, JobRow, JobSummary, as_stored, jobs, now
 from service.jobs.statements import (
     BACK_IN_QUEUE,
     BY_ID,
     CLAIM,
+    CLAIMED,
     COLUMNS,
     COUNT_QUEUED,
     FAIL,
     INSERT,
-    INSERT_WITH_ROOM,
     MAX_IDS,
+    NEXT,
     NO_KEY,
     SUCCEED,
     SUMMARY,
     WHOLE,
     died,
-    held_by,
     moved,
     new_row,
+    turn_of,
 )
-from service.jobs.states import FINISHED, MOVES, UNFINISHED, Status
+from service.jobs.states import FINISHED, MOVES, UNFINISHED, Cost, Status
 
 MAX_CRASHES = 3
 """A job whose worker died by itself is tried again this many times."""
@@ -55,8 +56,14 @@ SETTLE_S = 5.0
 _SETTLE_PERIOD_S = 0.2
 """Pause between two such attempts; a database that restarts needs seconds."""
 
+_FEW = 8
+"""Of a tenant who has more jobs than this in the queue, one is stored after the other, so that each gets a turn of its
+own. Below, jobs that come at once may share one."""
+
 _CROWD = 500
-"""More servers' connections than can insert at once: so far from its limit, the queue needs no exact count."""
+"""More servers' connections than can insert at once: so far from its limit, a queue needs no exact count."""
+
+_NO_END = 1 << 30
 
 _STATUS = COLUMNS.index("status")
 _MESSAGE_LENGTH = 200  # the width of its column
@@ -64,9 +71,12 @@ _MESSAGE_LENGTH = 200  # the width of its column
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """The right to run a job: the number of the attempt, and the problem as JSON text."""
+    """The right to run a job: its mark, the number of the attempt, the cost as estimated, the problem as JSON text."""
 
+    job_id: str
+    mark: str
     attempt: int
+    cost: Cost
     kind: str
     problem: str
 
@@ -80,7 +90,7 @@ class Repeatable:
 
 
 class QueueFull(Exception):
-    """There are as many queued jobs as there may be."""
+    """There are as many queued jobs of the tenant as there may be."""
 
 
 class KeyReused(Exception):
@@ -103,7 +113,14 @@ class JobStore:
             connection.execute(text("SELECT 1"))
 
     def create(
-        self, *, tenant: str, kind: str, label: str | None, problem: str, max_queued: int | None = None
+        self,
+        *,
+        tenant: str,
+        kind: str,
+        label: str | None,
+        problem: str,
+        cost: Cost = Cost.LONG,
+        max_queued: int | None = None,
     ) -> JobRow:
         """Store a new job in the queue. When this returns, the job is on the disk.
 
@@ -113,9 +130,9 @@ class JobStore:
         Raises
         ------
         QueueFull
-            When ``max_queued`` jobs are queued already.
+            When ``max_queued`` jobs of the tenant are queued already.
         """
-        return self._insert({**new_row(tenant, kind, label, problem), **NO_KEY}, max_queued)
+        return self._insert({**new_row(tenant, kind, label, problem, cost), **NO_KEY}, max_queued)
 
     def create_once(
         self,
@@ -125,6 +142,7 @@ class JobStore:
         label: str | None,
         problem: str,
         repeatable: Repeatable,
+        cost: Cost = Cost.LONG,
         max_queued: int | None = None,
     ) -> tuple[JobRow, bool]:
         """Like :meth:`create`, or find the job that the same request has made already.
@@ -139,10 +157,10 @@ class JobStore:
         KeyReused
             When another request of the tenant has made a job under this key.
         QueueFull
-            When the job would be new, and ``max_queued`` jobs are queued already.
+            When the job would be new, and ``max_queued`` jobs of the tenant are queued already.
         """
         row = {
-            **new_row(tenant, kind, label, problem),
+            **new_row(tenant, kind, label, problem, cost),
             "idempotency_key": repeatable.key,
             "request_hash": repeatable.request_hash,
         }
@@ -229,14 +247,25 @@ class JobStore:
         with self._engine.connect() as connection:
             return [JobSummary(*_values(row)) for row in connection.execute(query)]
 
-    def claim(self, job_id: str, claim: str) -> Claim | None:
-        """Take a queued job under the mark ``claim``; None when it is not there to be taken.
+    def take(self, mark: str, costs: Sequence[Cost]) -> Claim | None:
+        """Claim the queued job whose turn it is under a mark; None when there is none.
 
-        Only one of many claimants gets it. Who has got it and does not know may ask again.
+        Jobs of the first of ``costs`` come first, those of the others where there are none. Only one of many who ask
+        gets a job. Who does not know whether it has got one asks :meth:`claimed`.
         """
         with self._engine.begin() as connection:
-            row = connection.execute(CLAIM, {"job": job_id, "mark": claim, "moment": now()}).one_or_none()
-        return None if row is None else Claim(*row)
+            for cost in costs:
+                while (job_id := connection.execute(NEXT, {"cost": cost}).scalar_one_or_none()) is not None:
+                    row = connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
+                    if row is not None:  # it was not cancelled meanwhile
+                        return _claim(row)
+        return None
+
+    def claimed(self, mark: str) -> Claim | None:
+        """What was claimed under a mark and is running; None where nothing is."""
+        with self._engine.connect() as connection:
+            row = connection.execute(CLAIMED, {"mark": mark}).one_or_none()
+        return None if row is None else _claim(row)
 
     def progress(self, job_id: str, attempt: int, fraction: float, message: str) -> bool:
         """Note how far an attempt is; False when the attempt is no longer the one that counts."""
@@ -260,9 +289,9 @@ class JobStore:
         return self._changed(FAIL, {"job": job_id, "of": attempt, "answer": error, "moment": now()})
 
     def give_up(self, job_id: str, claim: str, error: str) -> bool:
-        """Fail the job from outside; for the executor that has it run under this claim, or has been about to."""
+        """Fail the job from outside; for the executor that has it run under this claim."""
         change = moved("give_up", job_id, error=error, progress_message="failed", finished_at=now())
-        return self._changed(change.where(held_by(claim)))
+        return self._changed(change.where(jobs.c.claim == claim))
 
     def cancel(self, job_id: str) -> bool:
         """Cancel an unfinished job; False when there is none. No attempt can write to it afterwards."""
@@ -291,11 +320,16 @@ class JobStore:
             return connection.execute(delete(jobs).where(jobs.c.id.in_(oldest))).rowcount
 
     def requeue(self, job_id: str, claim: str) -> bool:
-        """Put an unfinished job back into the queue because the executor that has it run under this claim stops."""
-        return self._changed(moved("requeue", job_id, **BACK_IN_QUEUE).where(held_by(claim)))
+        """Put a running job back into the queue because the executor that has it run under this claim stops."""
+        return self._changed(moved("requeue", job_id, **BACK_IN_QUEUE).where(jobs.c.claim == claim))
 
-    def requeue_unfinished(self) -> list[str]:
-        """Put all unfinished jobs back into the queue and name them, oldest first.
+    def requeue_as_long(self, job_id: str, claim: str) -> bool:
+        """Put a running job back into the queue because it takes longer than a short one may; it waits its turn."""
+        values: dict[str, Any] = {**BACK_IN_QUEUE, "cost": Cost.LONG, "turn": turn_of(jobs.c.tenant, Cost.LONG)}
+        return self._changed(moved("requeue", job_id, **values).where(jobs.c.claim == claim))
+
+    def requeue_unfinished(self) -> int:
+        """Put all running jobs back into the queue; tells how many jobs are in it then.
 
         For an executor that starts and knows that nobody else runs any of them.
         """
@@ -306,8 +340,7 @@ class JobStore:
                 .where(jobs.c.status == Status.RUNNING)
                 .values(status=move.target, revision=jobs.c.revision + 1, **BACK_IN_QUEUE)
             )
-            rows = connection.execute(select(jobs.c.id).where(jobs.c.status == move.target).order_by(jobs.c.id))
-            return list(rows.scalars())
+            return connection.execute(select(func.count()).select_from(jobs).where(QUEUED)).scalar_one()
 
     def crashed(self, job_id: str, claim: str, *, killed: bool) -> Status | None:
         """Note that the worker of a job died, by itself or ``killed`` from outside.
@@ -321,7 +354,7 @@ class JobStore:
         """
         change = died(job_id, MAX_KILLS if killed else MAX_CRASHES)
         with self._engine.begin() as connection:
-            status = connection.execute(change.where(held_by(claim))).scalar_one_or_none()
+            status = connection.execute(change.where(jobs.c.claim == claim)).scalar_one_or_none()
         return None if status is None else Status(status)
 
     def _changed(self, change: Any, values: Mapping[str, Any] | None = None) -> bool:
@@ -335,16 +368,18 @@ def _there(connection: Connection, job_id: str) -> bool:
 
 
 def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | None) -> bool:
-    """Insert a row unless ``max_queued`` jobs are queued already; tells whether."""
-    if max_queued is None:
-        connection.execute(INSERT, row)
-        return True
-    room = {"most": max_queued}
+    """Insert a row unless ``max_queued`` jobs of its tenant are queued already; tells whether."""
+    most = _NO_END if max_queued is None else max_queued
+    asked = {"of": row["tenant"], "most": most}
     postgresql = connection.dialect.name == "postgresql"
-    if postgresql and connection.execute(COUNT_QUEUED, room).scalar_one() > max_queued - _CROWD:
+    if postgresql and connection.execute(COUNT_QUEUED, asked).scalar_one() > min(_FEW, most - _CROWD):
         # SQLite has one writer at a time. PostgreSQL has many, who do not see each other's rows before the commit.
-        connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK)))
-    return connection.execute(INSERT_WITH_ROOM, {**row, **room}).rowcount > 0
+        connection.execute(select(func.pg_advisory_xact_lock(QUEUE_LOCK, func.hashtext(row["tenant"]))))
+    return connection.execute(INSERT, {**row, **asked, "as": row["cost"]}).rowcount > 0
+
+
+def _claim(row: Any) -> Claim:
+    return Claim(row.id, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem)
 
 
 def _values(row: Sequence[Any]) -> list[Any]:

@@ -1,4 +1,4 @@
-"""What runs in a worker process: claim a job, solve it, store the answer.
+"""What runs in a worker process: solve a job, store the answer.
 
 This module is imported before the worker has set its number of threads, so it must not import numpy, directly or
 through the solvers; :func:`start` does that when everything is in place.
@@ -25,11 +25,12 @@ from service.jobs import faults
 from service.jobs.database import connect, unreachable
 from service.jobs.orphans import die_with
 from service.jobs.progress import ProgressWriter
-from service.jobs.solving import Solving
+from service.jobs.solving import Solving, Stopped
 from service.jobs.store import Claim, JobStore
 
-Outcome = Literal["succeeded", "failed", "out of memory", "not claimed", "superseded"]
-"""What became of a job as its worker knows it; ``superseded``: cancelled or given to another attempt meanwhile."""
+Outcome = Literal["succeeded", "failed", "out of memory", "superseded", "stopped"]
+"""What became of a job as its worker knows it; ``superseded``: it has its answer, and was cancelled or given to another
+attempt meanwhile; ``stopped``: it has none, because the lane has said so."""
 
 RETRY_PERIOD_S = 0.5
 """Pause before a write to a store that is out of reach is tried again."""
@@ -50,7 +51,7 @@ class Ran:
     """An attempt that the worker has ended: what became of it, the kind of its problem, and how long it took."""
 
     outcome: Outcome
-    kind: str | None
+    kind: str
     seconds: float
 
 
@@ -104,38 +105,37 @@ def hello() -> int:
     return os.getpid()
 
 
-def run(job_id: str, mark: str) -> Ran:
-    """Run a queued job to its end, claimed under ``mark``. The store has the answer when this returns.
+def run(job: Claim) -> Ran:
+    """Run a claimed job to its end. The store has the answer when this returns.
 
     While the store is out of reach this waits for it. What else the store raises is raised: the executor then treats
     the worker as dead and the job is tried again.
     """
     assert _post is not None, "start() comes first"
-    claim = _stored(_post.store.claim, job_id, mark)
-    if claim is None:
-        return Ran("not claimed", None, 0.0)
-    bound = log.bind(job=job_id, attempt=claim.attempt)
+    bound = log.bind(job=job.job_id, attempt=job.attempt)
     bound.info("job running")
     began = time.perf_counter()
-    outcome = _attempt(_post, job_id, claim)
+    outcome = _attempt(_post, job)
     seconds = time.perf_counter() - began
     bound.info(f"job {outcome}", seconds=round(seconds, 4))
-    return Ran(outcome, claim.kind, seconds)
+    return Ran(outcome, job.kind, seconds)
 
 
-def _attempt(post: _Post, job_id: str, claim: Claim) -> Outcome:
+def _attempt(post: _Post, job: Claim) -> Outcome:
     try:
         with post.solving.at_work():
-            result = _solve(post.progress, job_id, claim)
+            result = _solve(post, job)
+    except Stopped:
+        return "stopped"
     except MemoryError:
         fault = faults.out_of_memory(post.settings.memory_mb)
-        stored = _stored(post.store.fail, job_id, claim.attempt, fault.as_json(job_id))
+        stored = _stored(post.store.fail, job.job_id, job.attempt, fault.as_json(job.job_id))
         return "out of memory" if stored else "superseded"
     except Exception:  # the boundary of the solvers: whatever defect they have ends this job only
-        log.exception("the solver raised", job=job_id, attempt=claim.attempt)
-        stored = _stored(post.store.fail, job_id, claim.attempt, faults.INTERNAL_ERROR.as_json(job_id))
+        log.exception("the solver raised", job=job.job_id, attempt=job.attempt)
+        stored = _stored(post.store.fail, job.job_id, job.attempt, faults.INTERNAL_ERROR.as_json(job.job_id))
         return "failed" if stored else "superseded"
-    return "succeeded" if _stored(post.store.succeed, job_id, claim.attempt, result) else "superseded"
+    return "succeeded" if _stored(post.store.succeed, job.job_id, job.attempt, result) else "superseded"
 
 
 def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
@@ -153,13 +153,13 @@ def _stored(write: Callable[P, T], *args: P.args, **options: P.kwargs) -> T:
             time.sleep(RETRY_PERIOD_S)  # the answer is kept; a store that is started again needs seconds
 
 
-def _solve(writer: ProgressWriter, job_id: str, claim: Claim) -> str:
+def _solve(post: _Post, job: Claim) -> str:
     from service.stated import read
     from synthesis import dispatch
 
-    problem = read(claim.kind, claim.problem)
-    with writer.attempt(job_id, claim.attempt) as progress:
-        return dispatch.solve(problem, progress).model_dump_json()
+    problem = read(job.kind, job.problem)
+    with post.progress.attempt(job.job_id, job.attempt) as progress:
+        return dispatch.solve(problem, post.solving.stoppable(progress)).model_dump_json()
 
 
 def _limit_memory(beyond_mb: int) -> None:

@@ -23,6 +23,16 @@ P = TypeVar("P", bound=StatedProblem)
 R = TypeVar("R", bound=Result[Any])
 
 
+def never(_problem: StatedProblem) -> bool:
+    """No statement is."""
+    return False
+
+
+def always(_problem: StatedProblem) -> bool:
+    """Every statement is."""
+    return True
+
+
 @dataclass(frozen=True)
 class Kind(Generic[P, R]):
     """One kind of problem.
@@ -39,6 +49,9 @@ class Kind(Generic[P, R]):
     warm_up : callable, optional
         Compiles the kernels that ``solve`` needs, or loads them from their cache. Where it is left out the examples of
         the kind are solved instead.
+    brief : callable, optional
+        Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
+        searches that take long; where it is left out none is brief.
     """
 
     name: str
@@ -46,6 +59,7 @@ class Kind(Generic[P, R]):
     result: type[R]
     solve: Callable[[P, Progress], R]
     warm_up: Callable[[], None] | None = None
+    brief: Callable[[P], bool] = never
 
     @property
     def mechanisms(self) -> list[str]:

@@ -23,7 +23,7 @@ class Process:
 
     def __init__(self, folder: Path, name, act, **settings):
         self.name, self.act, self.folder = name, act, folder
-        self.settings = {**settings, "log_level": "warning"}
+        self.settings = {"reserve": 0, **settings, "log_level": "warning"}
         self.announced = folder / f"announced-{name}"
         self.port = 0
         self.start()

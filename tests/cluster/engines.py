@@ -200,11 +200,6 @@ class RabbitMQ(Engine):
         except (OSError, amqp.AMQPError):
             return False
 
-    def purge(self, queue):
-        """Lose all messages that wait in a queue; tells how many."""
-        with amqp.Connection(f"127.0.0.1:{self.port}", connect_timeout=3) as connection:
-            return connection.channel().queue_purge(queue)
-
     def remove(self):
         self.stop()
         self.epmd.terminate()
@@ -230,9 +225,3 @@ class Redis(Engine):
                 return bool(client.ping())
         except redis.ConnectionError:
             return False
-
-    def purge(self, queue):
-        with redis.Redis(port=self.port) as client:
-            waiting = client.llen(queue)
-            client.delete(queue)
-            return waiting

@@ -95,17 +95,6 @@ def test_events_are_heard_at_another_server(deployed):
     assert text.count("event: state") >= 2
 
 
-def test_lost_messages_are_sent_again(deployed):
-    client = deployed.clients[0]
-    blocking = gated(deployed, len(deployed.hosts))
-    waiting = [post(client, INSTANT) for _ in range(10)]
-    lost = until(lambda: CHOSEN.broker.purge(CHOSEN.mark(deployed.folder)), what="a message in the queue")
-    (deployed.folder / "open").touch()
-    for job in (*blocking, *waiting):
-        reaches(client, job["id"], "succeeded")
-    assert lost >= 1
-
-
 def test_a_host_that_stops_gives_its_job_to_another(deployed):
     client = deployed.clients[0]
     [job] = gated(deployed)
@@ -189,16 +178,16 @@ def test_a_store_that_is_away_is_answered_503_and_found_again(deployed):
     assert post(here, INSTANT, wait=30)["status"] == "succeeded"
 
 
-def test_jobs_are_accepted_while_the_broker_is_away(deployed):
+def test_jobs_are_accepted_and_run_while_the_broker_is_away(deployed):
     here = deployed.clients[0]
     CHOSEN.broker.stop()
     try:
         jobs = [post(here, INSTANT) for _ in range(5)]
+        for job in jobs:
+            reaches(here, job["id"], "succeeded")
         until(lambda: here.get("/readyz").status_code == 503, 30.0, "the news")
     finally:
         CHOSEN.broker.start()
-    for job in jobs:
-        reaches(here, job["id"], "succeeded", 90.0)
     until(lambda: here.get("/readyz").status_code == 200, 30.0, "readiness")
 
 

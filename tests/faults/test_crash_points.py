@@ -14,8 +14,10 @@ from tests.service.running import PROBLEM, REACHED_S, SCRIPTED, RunningServer, u
 from tests.service.scripted_server import BRIEF, BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE, TOLD
 
 RUNS = int(os.environ.get("MECHSYNTH_FAULT_RUNS", "20"))
-WORKER_POINTS = {"claim": BRIEF, "progress": TOLD, "succeed": BRIEF, "fail": BROKEN}
-SERVER_POINTS = ("create", "create_once", "cancel", "delete", "requeue", "requeue_unfinished", "crashed", "give_up")
+WORKER_POINTS = {"progress": TOLD, "succeed": BRIEF, "fail": BROKEN}
+SERVER_POINTS = (
+    "create", "create_once", "take", "cancel", "delete", "requeue", "requeue_unfinished", "crashed", "give_up"
+)  # fmt: skip
 
 pytestmark = [pytest.mark.faults, pytest.mark.timeout(1500)]
 
@@ -107,6 +109,18 @@ def dies_at_create_once(folder, moment, run):
     job = folder.post(BRIEF + run, key=f"key-{run}")
     assert folder.server.reaches(job["id"], "succeeded")["result"]["search"]["seed"] == BRIEF + run
     assert len(folder.jobs()) == before + 1
+
+
+def dies_at_take(folder, moment, run):
+    """A lane claims the job, or is about to ask for one."""
+    folder.arm(moment, "take")
+    job = folder.post(BRIEF + run)
+    until(lambda: not folder.mark.exists(), REACHED_S, "the death of the server")
+    if folder.server.process.poll() is not None or moment == "after":
+        folder.again()
+    ended = folder.server.reaches(job["id"], "succeeded")
+    assert ended["result"]["search"]["seed"] == BRIEF + run
+    assert folder.server.stored(job["id"], "crashes") == 0
 
 
 def dies_at_cancel(folder, moment, run):

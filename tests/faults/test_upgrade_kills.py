@@ -6,7 +6,7 @@ import pytest
 
 from tests.service.upgrades import dies_everywhere, is_whole, killed_at, older
 
-REVISIONS = (None, "0001", "0002", "0003")
+REVISIONS = (None, "0001", "0002", "0003", "0004")
 """What there may be before: nothing at all, or the tables of an older version."""
 
 MANY = 1_000_000

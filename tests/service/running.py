@@ -50,6 +50,7 @@ class RunningServer:
 
     def __init__(self, folder: Path, program=REAL, **settings):
         self.folder = folder
+        settings = {"reserve": 0, **settings} if program is SCRIPTED else settings  # workers that can be counted
         self.log_path = folder / "log"
         announced = folder / "announced"
         env = environment(folder, **settings)

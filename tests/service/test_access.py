@@ -17,6 +17,7 @@ from tests.service.scripted_server import GATED, INSTANT
 
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 ORIGIN = "https://studio.example"
+QUEUE = 20
 
 
 def keys(folder, *arguments, **settings):
@@ -41,7 +42,9 @@ def shared(tmp_path_factory):
     """A service with two tenants and a loose limit, and their keys."""
     folder = tmp_path_factory.mktemp("access")
     held = {name: made(folder, name) for name in ("acme", "globex")}
-    server = RunningServer(folder, SCRIPTED, workers=1, rate_limit="100000/minute", cors_origins=f"{ORIGIN},http://x.y")
+    server = RunningServer(
+        folder, SCRIPTED, workers=1, max_queued=QUEUE, rate_limit="100000/minute", cors_origins=f"{ORIGIN},http://x.y"
+    )
     server.clients = {name: client_with(server, key) for name, key in held.items()}
     server.keys = held
     yield server
@@ -349,3 +352,22 @@ def test_the_keys_are_read_once_a_second(engine):
 
     assert {tenant for tenant, _ in asyncio.run(ask())} == {"acme"}
     assert len(reads) <= 2
+
+
+def test_a_queue_that_one_tenant_has_filled_is_full_for_no_other(shared):
+    acme, globex = shared.clients["acme"], shared.clients["globex"]
+    gate = shared.folder / "open"
+    gate.unlink(missing_ok=True)
+    try:
+        first = post(acme, GATED, wait=0).json()
+        until(lambda: acme.get(f"/v1/jobs/{first['id']}").json()["status"] == "running", what="the job running")
+        flood = [post(acme, wait=0) for _ in range(QUEUE + 3)]
+        assert [answer.status_code for answer in flood] == [202] * QUEUE + [503] * 3
+        guest = post(globex, wait=0)
+        assert guest.status_code == 202
+    finally:
+        gate.touch()
+    until(lambda: globex.get(f"/v1/jobs/{guest.json()['id']}").json()["finished_at"], what="the guest's job")
+    started = [acme.get(f"/v1/jobs/{answer.json()['id']}").json()["started_at"] for answer in flood[1:QUEUE]]
+    mine = globex.get(f"/v1/jobs/{guest.json()['id']}").json()["started_at"]
+    assert all(other is None or other > mine for other in started), "it was the second, after one of the flood's"

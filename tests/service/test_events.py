@@ -8,11 +8,14 @@ from dataclasses import dataclass
 
 import httpx
 import pytest
+from starlette.requests import Request
 
 from service.api import events
+from service.api.errors import Refusal
 from service.jobs.database import connect, upgrade
 from service.jobs.notifier import ChangeNotifier
 from service.jobs.poller import PERIOD_S, JobPoller
+from service.jobs.states import Cost
 from service.jobs.store import JobStore
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
@@ -262,13 +265,36 @@ def test_the_store_is_read_once_for_all_listeners(store):
         began = time.monotonic()
         await asyncio.sleep(1.0)  # the reads of a time are counted
         reads, most = store.reads, 2 + (time.monotonic() - began) / PERIOD_S
-        claim = store.claim(job.id, "claim")
+        claim = store.take("claim", [Cost.LONG])
         store.succeed(job.id, claim.attempt, "{}")
         return reads, most, await asyncio.gather(*streams)
 
     reads, most, seen = with_poller(store, listen)
     assert 1 <= reads <= most
     assert {tuple(states(of_one)) for of_one in seen} == {("queued", "succeeded")}
+
+
+def test_the_listeners_of_a_tenant_leave_room_for_others(store, monkeypatch):
+    monkeypatch.setattr(events, "MAX_LISTENERS", 3)
+    jobs = {
+        tenant: store.create(tenant=tenant, kind="motion", label=None, problem="{}") for tenant in ("flood", "other")
+    }
+    request = Request({"type": "http", "method": "GET", "headers": []})
+
+    async def listen(poller):
+        following = [asyncio.create_task(stream(poller, jobs["flood"])) for _ in range(3)]
+        while poller.listeners < 3:
+            await asyncio.sleep(0)
+        with pytest.raises(Refusal) as refused:
+            await events.follow_job(request, poller, "flood", jobs["flood"].id)
+        heard = await events.follow_job(request, poller, "other", jobs["other"].id)
+        store.cancel(jobs["flood"].id)
+        await asyncio.gather(*following)
+        assert (await events.follow_job(request, poller, "flood", jobs["flood"].id)).status_code == 200
+        return refused.value, heard
+
+    refused, heard = with_poller(store, listen)
+    assert (refused.status, heard.status_code) == (503, 200)
 
 
 def test_the_store_is_not_read_for_nobody(store):

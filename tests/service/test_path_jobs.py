@@ -70,7 +70,9 @@ def test_a_nine_point_search_tells_its_progress_and_is_cancelled(server):
     workers = set(server.workers())
     assert server.client.delete(f"/v1/jobs/{job['id']}").status_code == 202
     server.reaches(job["id"], "cancelled", SOON_S)
-    until(lambda: not workers <= set(server.workers()), SOON_S, "the end of its worker")
+    ended = 'mechsynth_job_attempts_total{outcome="cancelled"} 1.0'
+    until(lambda: ended in server.client.get("/metrics").text, SOON_S, "the end of the search")
+    assert workers <= set(server.workers()), "it has stopped by itself"
     server.reaches(server.post(problem=TIMED[0])["id"], "succeeded")
 
 

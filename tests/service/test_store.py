@@ -11,15 +11,17 @@ from sqlalchemy import delete, insert, select, text, update
 
 from service.access.keys import api_keys
 from service.jobs.database import LaterTables, connect, upgrade
-from service.jobs.leases import MAX_RESEND_S, LeaseStore
-from service.jobs.schema import StoreClock, hosts, jobs, metadata
-from service.jobs.statements import LEASE_S, RESEND_S, new_row
-from service.jobs.states import FINISHED, MOVES, Status
+from service.jobs.leases import LeaseStore
+from service.jobs.schema import StoreClock, hosts, jobs, metadata, now
+from service.jobs.statements import CLAIM, LEASE_S, new_row
+from service.jobs.states import FINISHED, MOVES, Cost, Status
 from service.jobs.store import MAX_CRASHES, MAX_KILLS, JobStore, KeyReused, QueueFull, Repeatable
 from tests.cluster.backend import CHOSEN
 
+ANY = tuple(Cost)
+
 ACTIONS = {
-    "claim": lambda store, job, attempt: store.claim(job, "new") is not None,
+    "claim": lambda store, job, attempt: store.take("new", ANY) is not None,
     "succeed": lambda store, job, attempt: store.succeed(job, attempt, "{}"),
     "fail": lambda store, job, attempt: store.fail(job, attempt, "{}"),
     "requeue": lambda store, job, attempt: store.requeue(job, "old"),
@@ -59,6 +61,12 @@ def job(store):
     return store.create(tenant="", kind="motion", label=None, problem='{"kind":"motion"}')
 
 
+def claim(store, job_id, mark):
+    """Claim this job as :meth:`JobStore.take` does, whosever turn it is; its row, or None."""
+    with store._engine.begin() as connection:
+        return connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
+
+
 def put(engine, job_id, status, attempt=1):
     with engine.begin() as connection:
         connection.execute(update(jobs).where(jobs.c.id == job_id).values(status=status, attempt=attempt, claim="old"))
@@ -86,9 +94,9 @@ def test_a_move_happens_from_its_sources_only(engine, store, job, name, status):
 
 @pytest.mark.parametrize("name", ["succeed", "fail"])
 def test_an_older_attempt_is_refused(store, job, name):
-    first = store.claim(job.id, "first")
+    first = claim(store, job.id, "first")
     store.requeue(job.id, "first")
-    second = store.claim(job.id, "second")
+    second = claim(store, job.id, "second")
     assert (first.attempt, second.attempt) == (1, 2)
     before = store.get(job.id)
     assert not ACTIONS[name](store, job.id, first.attempt)
@@ -97,29 +105,47 @@ def test_an_older_attempt_is_refused(store, job, name):
     assert ACTIONS[name](store, job.id, second.attempt)
 
 
-def test_one_of_many_concurrent_claims_wins(engine, store, job):
+def test_one_of_many_who_ask_at_once_gets_a_job(store, job):
     start = threading.Barrier(8)
-    claims = []
+    taken = []
 
-    def claim(name):
+    def ask(mark):
         start.wait()
-        claims.append(store.claim(job.id, name))
+        taken.append(store.take(mark, ANY))
 
-    threads = [threading.Thread(target=claim, args=(f"claim {n}",)) for n in range(8)]
+    threads = [threading.Thread(target=ask, args=(f"mark {n}",)) for n in range(8)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(claims) == 8
-    assert [c.attempt for c in claims if c is not None] == [1]
+    assert len(taken) == 8
+    assert [(c.job_id, c.attempt) for c in taken if c is not None] == [(job.id, 1)]
+
+
+def test_many_who_ask_at_once_get_a_job_each(store):
+    """As many as there are: nobody is sent away because another one has been quicker."""
+    ids = {store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(24)}
+    start = threading.Barrier(8)
+    taken = []
+
+    def ask(n):
+        start.wait()
+        taken.extend(store.take(f"mark {n} {k}", ANY) for k in range(3))
+
+    threads = [threading.Thread(target=ask, args=(n,)) for n in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(claim.job_id for claim in taken) == sorted(ids)
 
 
 def test_a_job_whose_worker_keeps_dying_is_given_up(store, job):
     for crash in range(MAX_CRASHES):
-        store.claim(job.id, "claim")
+        claim(store, job.id, "claim")
         assert store.crashed(job.id, "claim", killed=False) == Status.QUEUED
         assert store.get(job.id).crashes == crash + 1
-    store.claim(job.id, "claim")
+    claim(store, job.id, "claim")
     assert store.crashed(job.id, "claim", killed=False) == Status.FAILED
     given_up = store.get(job.id)
     assert "/problems/worker-died" in given_up.error
@@ -128,7 +154,7 @@ def test_a_job_whose_worker_keeps_dying_is_given_up(store, job):
 
 
 def test_the_death_of_the_worker_of_a_cancelled_job_changes_nothing(store, job):
-    store.claim(job.id, "claim")
+    claim(store, job.id, "claim")
     store.cancel(job.id)
     before = store.get(job.id)
     assert store.crashed(job.id, "claim", killed=False) is None
@@ -137,35 +163,38 @@ def test_the_death_of_the_worker_of_a_cancelled_job_changes_nothing(store, job):
 
 
 def test_a_late_write_does_not_bring_a_deleted_job_back(store, job):
-    claim = store.claim(job.id, "claim")
+    claimed = claim(store, job.id, "claim")
     assert not store.delete(job.id), "a running job must not be removed"
     store.cancel(job.id)
     assert store.delete(job.id)
-    assert not store.succeed(job.id, claim.attempt, "{}")
+    assert not store.succeed(job.id, claimed.attempt, "{}")
     assert store.get(job.id) is None
 
 
-def test_unfinished_jobs_are_queued_again_oldest_first(store):
+def test_running_jobs_are_queued_again_before_new_ones(store):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
-    store.claim(ids[0], "claim")
-    store.claim(ids[2], "claim")
+    claim(store, ids[0], "claim")
+    claim(store, ids[2], "claim")
     store.succeed(ids[2], 1, "{}")
-    assert store.requeue_unfinished() == [ids[0], ids[1], ids[3]]
+    claim(store, ids[3], "claim")
+    assert store.requeue_unfinished() == 3
+    assert [store.take("mark", ANY).job_id for _ in range(3)] == [ids[0], ids[3], ids[1]]
+    store.requeue(ids[0], "mark")
     assert store.get(ids[0]).status == Status.QUEUED
     assert store.get(ids[0]).started_at is None
     assert store.get(ids[2]).status == Status.SUCCEEDED
 
 
 def test_progress_is_kept_within_bounds(store, job):
-    claim = store.claim(job.id, "claim")
-    assert store.progress(job.id, claim.attempt, 7.0, "x" * 1000)
+    claimed = claim(store, job.id, "claim")
+    assert store.progress(job.id, claimed.attempt, 7.0, "x" * 1000)
     assert store.get(job.id).progress_fraction == 1.0
     assert len(store.get(job.id).progress_message) == 200
 
 
 def test_pages_are_newest_first_and_filtered(store):
     ids = [store.create(tenant="", kind=kind, label=None, problem="{}").id for kind in ("motion", "cam", "motion")]
-    store.claim(ids[0], "claim")
+    claim(store, ids[0], "claim")
     assert [j.id for j in store.page(tenant="", limit=10)] == ids[::-1]
     assert [j.id for j in store.page(tenant="", limit=1, before=ids[2])] == [ids[1]]
     assert [j.id for j in store.page(tenant="", limit=10, kind="motion")] == [ids[2], ids[0]]
@@ -228,7 +257,7 @@ def test_the_queue_has_an_end(engine, store):
     assert store.create_once(**ours, repeatable=Repeatable("k", "a")) == (kept, False), "it has its place already"
     with pytest.raises(KeyReused):
         store.create_once(**ours, repeatable=Repeatable("k", "b"))
-    store.claim(created[0].id, "claim")
+    claim(store, created[0].id, "claim")
     assert store.create(**ours).status == Status.QUEUED, "a running job is not in the queue"
     assert store.unfinished() == {"queued": 3, "running": 1}
 
@@ -257,7 +286,7 @@ def test_old_finished_jobs_are_removed(engine, store):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
     for job_id in ids[:4]:
         store.cancel(job_id)
-    store.claim(ids[5], "claim")
+    claim(store, ids[5], "claim")
     cutoff = datetime.now(UTC)
     time.sleep(0.01)  # ids and times have milliseconds
     late = store.create(tenant="", kind="motion", label=None, problem="{}").id
@@ -293,7 +322,7 @@ def test_jobs_of_an_older_store_are_kept(tmp_path):
     engine = connect(f"sqlite:///{tmp_path / 'jobs.sqlite3'}", durable=False)
     upgrade(engine, "0001")
     row = {**new_row("", "motion", "old", "{}"), "status": "succeeded"}
-    del row["tenant"]  # there were none yet
+    del row["tenant"], row["cost"]  # there were none yet
     with engine.begin() as connection:
         connection.execute(insert(jobs).values(row))
     upgrade(engine)
@@ -324,21 +353,23 @@ def test_tables_of_a_later_version_are_left_alone(tmp_path):
     engine.dispose()
 
 
-def test_who_does_not_know_whether_it_has_claimed_a_job_may_ask_again(store, job):
-    first, again = store.claim(job.id, "mine"), store.claim(job.id, "mine")
-    assert (first.problem, again.problem) == (job.problem, job.problem)
-    assert again.attempt > first.attempt, "what the first one has begun, if anything, is refused"
-    assert store.claim(job.id, "another's") is None
-    assert store.succeed(job.id, again.attempt, "{}")
-    assert store.claim(job.id, "mine") is None
+def test_who_does_not_know_whether_it_has_been_given_a_job_may_ask(store, job):
+    assert store.claimed("mine") is None
+    taken = store.take("mine", ANY)
+    assert store.claimed("mine") == taken
+    assert (taken.job_id, taken.attempt, taken.problem, taken.cost) == (job.id, 1, job.problem, Cost.LONG)
+    assert store.claimed("another's") is None
+    assert store.take("another's", ANY) is None
+    assert store.succeed(job.id, taken.attempt, "{}")
+    assert store.claimed("mine") is None
 
 
 @pytest.mark.parametrize("name", ["requeue", "give_up", "crashed"])
 def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases, job, name):
-    store.claim(job.id, "first")
+    claim(store, job.id, "first")
     overdue(engine, job.id)
     assert leases.abandoned() == [(job.id, Status.QUEUED)]
-    store.claim(job.id, "second")
+    claim(store, job.id, "second")
     before = store.get(job.id)
     late = {
         "requeue": lambda: store.requeue(job.id, "first"),
@@ -352,7 +383,7 @@ def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases
 def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     for job_id in ids[:3]:
-        store.claim(job_id, f"claim of {job_id[-4:]}")
+        claim(store, job_id, f"claim of {job_id[-4:]}")
     assert leases.abandoned() == []
     overdue(engine, *ids)
     store.succeed(ids[0], 1, "{}")
@@ -364,10 +395,10 @@ def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
 
 def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store, leases, job):
     for kill in range(MAX_KILLS):
-        store.claim(job.id, f"claim {kill}")
+        claim(store, job.id, f"claim {kill}")
         overdue(engine, job.id)
         assert leases.abandoned() == [(job.id, Status.QUEUED)]
-    store.claim(job.id, "last")
+    claim(store, job.id, "last")
     overdue(engine, job.id)
     assert leases.abandoned() == [(job.id, Status.FAILED)]
     assert "/problems/worker-died" in store.get(job.id).error
@@ -375,52 +406,25 @@ def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store
 
 def test_kills_are_forgiven_more_often_than_deaths(store, job):
     for n in range(MAX_CRASHES + 3):
-        store.claim(job.id, f"claim {n}")
+        claim(store, job.id, f"claim {n}")
         assert store.crashed(job.id, f"claim {n}", killed=True) == Status.QUEUED
-    store.claim(job.id, "one more")
+    claim(store, job.id, "one more")
     assert store.crashed(job.id, "one more", killed=False) == Status.FAILED
 
 
 def test_claims_that_are_of_no_use_are_named(store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(6)]
-    _, _, cancelled, removed, done, taken = ids
+    waiting, _, cancelled, removed, done, taken = ids
     for job_id in ids[1:]:
-        store.claim(job_id, job_id)
+        claim(store, job_id, job_id)
     for job_id in (cancelled, removed):
         store.cancel(job_id)
     store.delete(removed)
     store.succeed(done, 1, "{}")
     store.requeue(taken, taken)
-    store.claim(taken, "another")
-    assert leases.renew({job_id: job_id for job_id in ids}) == {cancelled, removed, taken}
+    claim(store, taken, "another")
+    assert leases.renew({job_id: job_id for job_id in ids}) == {waiting, cancelled, removed, taken}
     assert leases.renew({}) == set()
-
-
-def test_jobs_whose_messages_may_be_lost_are_due_once_and_later_again(engine, store, leases):
-    ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
-    assert leases.due(10) == [], "new jobs are on their way"
-    overdue(engine, *ids)
-    store.claim(ids[3], "claim")
-    assert leases.due(2) == ids[:2]
-    assert leases.due(10) == [ids[2]]
-    assert leases.due(10) == []
-    for _ in range(50):
-        leases.not_sent(ids[1:])
-        assert leases.due(10) == ids[1:3], "due at once, in the same tick of the clock too"
-    store.claim(ids[0], "claim")
-    store.requeue(ids[0], "claim")
-    assert leases.due(10) == [ids[0]], "nobody has a message for a job that has come back"
-
-
-def test_the_longer_a_job_waits_the_rarer_it_is_sent(engine, leases, job):
-    pauses = []
-    for waited in (1.0, 60.0, 86_400.0):
-        with engine.begin() as connection:
-            connection.execute(update(jobs).values(queued_at=StoreClock() - waited, due_at=StoreClock() - 1.0))
-        assert leases.due(1) == [job.id]
-        with engine.connect() as connection:
-            pauses.append(connection.execute(select(jobs.c.due_at - StoreClock())).scalar())
-    assert pauses == pytest.approx([RESEND_S, 60.0, MAX_RESEND_S], abs=2.0)
 
 
 def test_the_clock_of_the_store_is_the_time(engine):
@@ -439,3 +443,93 @@ def test_hosts_are_there_as_long_as_they_say_so(engine, leases):
     assert leases.workers() == 1
     leases.host_is_gone("one")
     assert leases.workers() == 0
+
+
+def made(store, tenant, cost=Cost.SHORT, count=1):
+    ids = [
+        store.create(tenant=tenant, kind="motion", label=None, problem="{}", cost=cost, max_queued=1000).id
+        for _ in range(count)
+    ]
+    return ids[0] if count == 1 else ids
+
+
+def given(store, costs=ANY, count=1):
+    return [store.take("mark", costs).job_id for _ in range(count)]
+
+
+def test_tenants_go_round(store):
+    flood = made(store, "flood", count=6)
+    two = made(store, "two", count=2)
+    assert given(store, count=2) == [flood[0], two[0]]
+    one = made(store, "one")  # joins in the present turn, and need not wait for what was there before
+    assert given(store, count=6) == [flood[1], two[1], one, *flood[2:5]]
+    again = made(store, "one", count=2)
+    assert given(store, count=3) == [flood[5], *again]
+    assert store.take("mark", ANY) is None
+
+
+def test_who_comes_late_has_no_turns_in_hand(store):
+    """A tenant that was away while others were served is not served alone until it has caught up."""
+    busy = made(store, "busy", count=40)
+    given(store, count=20)
+    late = made(store, "late", count=5)
+    assert given(store, count=6) == [busy[20], late[0], busy[21], late[1], busy[22], late[2]]
+
+
+def test_a_job_that_comes_back_has_its_turn_at_once(store):
+    first, *others = made(store, "a", count=3)
+    assert given(store) == [first]
+    store.requeue(first, "mark")
+    newcomer = made(store, "b")
+    assert given(store, count=4) == [first, others[0], newcomer, others[1]]
+
+
+def test_each_cost_has_turns_of_its_own(store):
+    long = made(store, "a", Cost.LONG, 3)
+    short = made(store, "a", Cost.SHORT, 2)
+    other = made(store, "b", Cost.SHORT)
+    assert given(store, [Cost.SHORT], 2) == [short[0], other]
+    assert given(store, [Cost.LONG, Cost.SHORT]) == [long[0]]
+    assert given(store, [Cost.SHORT, Cost.LONG], 2) == [short[1], long[1]]
+    assert store.take("mark", [Cost.SHORT]) is None
+
+
+def test_a_job_that_is_longer_than_expected_waits_its_turn_among_the_long_ones(store):
+    mistaken = made(store, "a", count=2)
+    long = made(store, "b", Cost.LONG, 2)
+    assert given(store, [Cost.SHORT], 2) == mistaken
+    assert all(store.requeue_as_long(job_id, "mark") for job_id in mistaken)
+    assert not store.requeue_as_long(mistaken[0], "mark")
+    assert store.take("mark", [Cost.SHORT]) is None
+    assert given(store, count=4) == [mistaken[0], long[0], mistaken[1], long[1]]
+
+
+def test_the_queue_of_a_tenant_is_full_for_nobody_else(store):
+    ours = {"kind": "motion", "label": None, "problem": "{}", "max_queued": 3}
+    for _ in range(3):
+        store.create(tenant="flood", **ours)
+    with pytest.raises(QueueFull):
+        store.create(tenant="flood", **ours)
+    assert store.create(tenant="other", **ours).status == Status.QUEUED
+
+
+def test_a_flood_over_many_connections_has_a_job_a_turn(engine, store):
+    """Jobs that are stored at once do not share turns, or a tenant with many connections would have more of them."""
+    start = threading.Barrier(8)
+
+    def post():
+        start.wait()
+        made(store, "flood", count=10)
+
+    threads = [threading.Thread(target=post) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    other = made(store, "other", count=30)
+    first = given(store, count=60)
+    assert [job_id for job_id in first if job_id in other] == other
+    with engine.connect() as connection:
+        turns = connection.execute(select(jobs.c.turn).where(jobs.c.tenant == "flood")).scalars().all()
+    assert len(turns) == 80
+    assert len(set(turns)) >= 65, "but for the first few, which were there at once"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.cam.design import CamResult
 from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Move
 from synthesis.model.kind import Kind, Progress
 
 __all__ = ["KIND"]
@@ -15,4 +16,9 @@ def _solve(problem: CamProblem, progress: Progress) -> CamResult:
     return solve_cam(problem, progress)
 
 
-KIND = Kind("cam", CamProblem, CamResult, _solve)
+def _brief(problem: CamProblem) -> bool:
+    """A motion whose laws are stated is drawn and measured; others are sought."""
+    return not any(isinstance(segment, Move) and segment.law in ("auto", "optimal") for segment in problem.segments)
+
+
+KIND = Kind("cam", CamProblem, CamResult, _solve, brief=_brief)

@@ -21,4 +21,9 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up)
+def _brief(problem: FunctionProblem) -> bool:
+    """Precision points are met exactly; errors over the whole range are made small by search."""
+    return problem.aim == "precision"
+
+
+KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief)

@@ -15,4 +15,9 @@ def _solve(problem: GearTrainProblem, progress: Progress) -> GearTrainResult:
     return solve_gear_train(problem, progress)
 
 
-KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve)
+def _brief(problem: GearTrainProblem) -> bool:
+    """One or two stages are all tried in no time; more of them, or a stock, may be many."""
+    return problem.max_stages <= 2 and problem.stock is None
+
+
+KIND = Kind("gear_train", GearTrainProblem, GearTrainResult, _solve, brief=_brief)

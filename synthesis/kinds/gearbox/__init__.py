@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.gearbox.design import GearboxResult
 from synthesis.kinds.gearbox.problem import GearboxProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, always
 
 __all__ = ["KIND"]
 
@@ -15,4 +15,4 @@ def _solve(problem: GearboxProblem, progress: Progress) -> GearboxResult:
     return solve_gearbox(problem, progress)
 
 
-KIND = Kind("gearbox", GearboxProblem, GearboxResult, _solve)
+KIND = Kind("gearbox", GearboxProblem, GearboxResult, _solve, brief=always)

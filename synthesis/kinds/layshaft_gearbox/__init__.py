@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.layshaft_gearbox.design import LayshaftResult
 from synthesis.kinds.layshaft_gearbox.problem import LayshaftProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, always
 
 __all__ = ["KIND"]
 
@@ -15,4 +15,4 @@ def _solve(problem: LayshaftProblem, progress: Progress) -> LayshaftResult:
     return solve_layshaft_gearbox(problem, progress)
 
 
-KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve)
+KIND = Kind("layshaft_gearbox", LayshaftProblem, LayshaftResult, _solve, brief=always)

@@ -15,4 +15,9 @@ def _solve(problem: MotionProblem, progress: Progress) -> MotionResult:
     return solve_motion(problem, progress)
 
 
-KIND = Kind("motion", MotionProblem, MotionResult, _solve)
+def _brief(problem: MotionProblem) -> bool:
+    """Positions that are met exactly, by fourbars and without a driver, are not searched for by fits."""
+    return not problem.approximate and problem.driver is None and problem.slider is None
+
+
+KIND = Kind("motion", MotionProblem, MotionResult, _solve, brief=_brief)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.parallel_motion.design import ParallelMotionResult
 from synthesis.kinds.parallel_motion.problem import ParallelMotionProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, always
 
 __all__ = ["KIND"]
 
@@ -21,4 +21,4 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up)
+KIND = Kind("parallel_motion", ParallelMotionProblem, ParallelMotionResult, _solve, _warm_up, brief=always)

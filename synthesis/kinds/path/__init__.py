@@ -21,4 +21,9 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up)
+def _brief(problem: PathProblem) -> bool:
+    """Points with crank angles are positions, and a harmonic fit beyond five; free ones are searched for."""
+    return problem.prescribed
+
+
+KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief)

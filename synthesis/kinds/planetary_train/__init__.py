@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.planetary_train.design import PlanetaryResult
 from synthesis.kinds.planetary_train.problem import PlanetaryProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, always
 
 __all__ = ["KIND"]
 
@@ -15,4 +15,4 @@ def _solve(problem: PlanetaryProblem, progress: Progress) -> PlanetaryResult:
     return solve_planetary_train(problem, progress)
 
 
-KIND = Kind("planetary_train", PlanetaryProblem, PlanetaryResult, _solve)
+KIND = Kind("planetary_train", PlanetaryProblem, PlanetaryResult, _solve, brief=always)

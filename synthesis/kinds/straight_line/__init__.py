@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synthesis.kinds.straight_line.design import StraightLineResult
 from synthesis.kinds.straight_line.problem import StraightLineProblem
-from synthesis.model.kind import Kind, Progress
+from synthesis.model.kind import Kind, Progress, always
 
 __all__ = ["KIND"]
 
@@ -21,4 +21,4 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up)
+KIND = Kind("straight_line", StraightLineProblem, StraightLineResult, _solve, _warm_up, brief=always)

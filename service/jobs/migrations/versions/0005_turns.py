@@ -1,0 +1,44 @@
+"""Whose turn it is: what a queued job is taken to cost, and its place among the jobs of all tenants."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0005"
+down_revision = "0004"
+branch_labels = None
+depends_on = None
+
+QUEUED = sa.text("status = 'queued'")
+
+# Whatever process puts a job into the queue: worker hosts that have nothing to do are told when it is there.
+TELL = """
+CREATE FUNCTION tell_of_work() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+    PERFORM pg_notify('mechsynth_work', '');
+    RETURN NULL;
+END $$
+"""
+TELL_OF_WORK = """
+CREATE TRIGGER jobs_tell_of_work AFTER INSERT OR UPDATE OF status ON jobs FOR EACH ROW
+WHEN (NEW.status = 'queued') EXECUTE FUNCTION tell_of_work()
+"""
+
+
+def upgrade() -> None:
+    op.add_column("jobs", sa.Column("cost", sa.String(5), nullable=False, server_default="long"))
+    op.add_column("jobs", sa.Column("turn", sa.Integer, nullable=False, server_default="0"))
+    for name, columns in (("turn", ["cost", "turn", "id"]), ("tenant", ["tenant", "cost", "turn"])):
+        op.create_index(f"jobs_queued_by_{name}", "jobs", columns, sqlite_where=QUEUED, postgresql_where=QUEUED)
+    if op.get_bind().dialect.name == "postgresql":
+        op.execute(TELL)
+        op.execute(TELL_OF_WORK)
+
+
+def downgrade() -> None:
+    if op.get_bind().dialect.name == "postgresql":
+        op.execute("DROP TRIGGER jobs_tell_of_work ON jobs")
+        op.execute("DROP FUNCTION tell_of_work")
+    for name in ("tenant", "turn"):
+        op.drop_index(f"jobs_queued_by_{name}", "jobs")
+    for name in ("turn", "cost"):
+        op.drop_column("jobs", name)
