@@ -5,7 +5,7 @@ import { symbolOf } from "./units.js";
 
 /** What a card shows first of a design's metrics, where the design has it. */
 const FIRST = ["quality", "min_transmission_angle", "rms_residual", "structural_error", "max_error", "ratio_error", "error",
-  "link_ratio", "size", "total_teeth", "efficiency", "prime_radius", "max_pressure_angle"];
+  "link_ratio", "size", "input_travel", "body_travel_ratio", "body_turn_ratio", "total_teeth", "efficiency", "prime_radius", "max_pressure_angle"];
 
 /** The metrics that are plain numbers or words, the telling ones first. @param {any} design @returns {[string, any][]} */
 export function figures(design) {

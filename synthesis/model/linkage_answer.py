@@ -276,7 +276,18 @@ class LinkageMetrics(MotionMetrics):
     input_rotation: Angle | None = optional(
         "Rotation of the input from the first target to the last, degrees; left out where it slides."
     )
-    input_travel: Length | None = optional("The same of an input that slides, length units; left out where it turns.")
+    input_stroke: Length | None = optional("The same of an input that slides, length units; left out where it turns.")
+    input_travel: Angle | None = optional(
+        "What the input turns over the used range, either way, degrees; of linkages that carry a body, where it turns."
+    )
+    body_travel_ratio: float | None = optional(
+        "Length of P's path over the used range over that of the straight ways between its positions; of linkages that "
+        "carry a body, where P moves."
+    )
+    body_turn_ratio: float | None = optional(
+        "All that the body turns over the used range, to and fro, over the sum of the turns that are needed; of "
+        "linkages that carry a body, where it is to turn."
+    )
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
         "angle is demanded, its difference in radians, added in squares."

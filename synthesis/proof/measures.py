@@ -113,6 +113,7 @@ def measured(
     same_branch: bool,
     visits_in_order: bool,
     full_rotation: bool,
+    eased: float = 1.0,
 ) -> Measures:
     """The measures of a driven linkage.
 
@@ -130,6 +131,8 @@ def measured(
         Where the joints stand.
     barker, same_branch, visits_in_order, full_rotation
         As in :class:`Measures`.
+    eased : float
+        Factor of the quality, for a linkage that carries a body: see :func:`synthesis.proof.carried.ease`.
     """
     least = min(transmission.values(), default=0.0)
     ratio = max(lengths) / min(lengths)
@@ -144,7 +147,7 @@ def measured(
         link_ratio=ratio,
         reach=reach / task if math.isfinite(task) else None,
         size=diagonal(places),
-        quality=quality(math.sin(least), reach / task, ratio),
+        quality=eased * quality(math.sin(least), reach / task, ratio),
         lengths=lengths,
     )
 

@@ -7,6 +7,7 @@ from synthesis.registry import KINDS, example, examples, parse_problem
 
 # Numbers without a unit: ratios, shares, residuals by the task's size, relative errors, values of a function. A number
 # that is in none of these models, or has another name, says what it measures.
+CARRIED = {"body_travel_ratio", "body_turn_ratio"}
 PURE = {
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
@@ -21,7 +22,7 @@ PURE = {
     "ErrorExtreme": {"input"},
     "FollowerDynamics": {"damping_ratio"},
     "FunctionConstraints": {"max_link_ratio"},
-    "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality"},
+    "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "FunctionProblem": {"scale_limits"},  # of input and output alike
     "FunctionStatement": {"x", "exponent", "base"},
     "FunctionTarget": {"input", "output", "residual"},
@@ -39,17 +40,17 @@ PURE = {
     "InputDial": {"at"},
     "LayshaftMetrics": {"max_error", "errors", "contact_ratios"},
     "LayshaftProblem": {"ratios", "reverse", "tolerance"},
-    "LinkageMetrics": {"link_ratio", "reach", "rms_residual", "quality"},
+    "LinkageMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "MeshContact": {"contact_ratio"},
     "MeshGeometry": {"contact_ratio"},
     "Optimality": {"value", "bound", "gap"},  # of its criterion
     "OutputDial": {"at"},
-    "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality"},
+    "ParallelMotionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "ParetoLayshaft": {"max_error"},
     "ParetoPlanetaryTrain": {"error"},
     "ParetoTrain": {"relative_error"},
     "PathConstraints": {"max_link_ratio"},
-    "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality"},
+    "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "PathProblem": {"gear_ratio"},
     "PlanetaryMechanism": {"addendum"},  # in modules
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's

@@ -11,7 +11,7 @@ import pytest
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.driver_dyad import _stages
+from synthesis.kinds.motion.driver_dyad import USABLE, _stages
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
@@ -158,13 +158,13 @@ def test_the_coupler_can_be_driven(positions: list[dict[str, float]]) -> None:
 
 
 def test_the_coupler_is_driven_where_no_link_of_the_ground_can_be() -> None:
-    """All fourbars found for this task turn their links by more than a rocker's driver can."""
+    """All fourbars found for this task turn their links by more than a rocker's driver can, or can well."""
     problem, result = solved(WIDE, driver_dyad={"link": "any"})
     assert {design.mechanism.type for design in result.designs} == {"stephenson_3"}
     for link in ("input", "output"):
-        _, none = solved(WIDE, driver_dyad={"link": link})
-        assert none.designs == []
-        assert not none.search.complete
+        _, alone = solved(WIDE, driver_dyad={"link": link})
+        assert all(design.metrics.min_transmission_angle < USABLE for design in alone.designs)
+        assert not alone.search.complete
     for design in result.designs:
         assert_drives_through(design, problem)
 

@@ -178,9 +178,9 @@ def test_an_input_stands_at_an_angle_or_at_a_place(side: str, slides: bool) -> N
     for target in design.targets:
         assert target.at == getattr(target, stated)
         assert absent not in target.model_dump(mode="json")
-    gone = design.metrics.input_travel if slides else design.metrics.input_rotation
+    gone = design.metrics.input_stroke if slides else design.metrics.input_rotation
     assert gone == pytest.approx(design.targets[-1].at - design.targets[0].at)
-    assert (design.metrics.input_rotation if slides else design.metrics.input_travel) is None
+    assert (design.metrics.input_rotation if slides else design.metrics.input_stroke) is None
     assert_drives_through(design, problem)
 
 

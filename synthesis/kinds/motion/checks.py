@@ -13,6 +13,7 @@ from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism, LinkageMetrics, Target
+from synthesis.proof.carried import Carried
 from synthesis.proof.checks import CHOICE_KEPT, at_most, reaches_targets, tolerated
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import Measures
@@ -75,6 +76,7 @@ def linkage_design(
     inputs: Real,
     *,
     on_circuit: bool,
+    carried: Carried,
     slides: bool = False,
     own: Sequence[Check] = (),
 ) -> LinkageDesign:
@@ -92,6 +94,8 @@ def linkage_design(
         At the targets, in one run: degrees, or length units where the input slides.
     on_circuit, slides : bool
         Whether all targets are met on one circuit, and whether the input slides.
+    carried : Carried
+        How the body is carried from the first target to the last.
     own : sequence of Check
         Checks of the linkage's type.
     """
@@ -109,7 +113,10 @@ def linkage_design(
         ),
         metrics=LinkageMetrics(
             input_rotation=None if slides else travelled,
-            input_travel=travelled if slides else None,
+            input_stroke=travelled if slides else None,
+            input_travel=None if slides else math.degrees(carried.input_turn),
+            body_travel_ratio=carried.travel_ratio,
+            body_turn_ratio=carried.turn_ratio,
             rms_residual=target.rms(driven.offsets),
             **measures.within(LinkageMetrics),
         ),

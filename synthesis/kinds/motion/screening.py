@@ -12,8 +12,9 @@ What has to be decided for a pair is whether one motion of the input meets the t
   cos γ = (b² + c² − f²) / 2bc stays within ±1 there, and its largest magnitude is the cosine of the least
   transmission angle.
 
-The score of a sound pair is :func:`synthesis.proof.measures.quality`. The verdicts are for choosing among candidates
-only; what is returned to a client is verified by the analysis core from the dimensions.
+The score of a sound pair is :func:`synthesis.proof.measures.quality`, eased by what the input turns
+(:func:`synthesis.proof.carried.ease`; the body's way is measured of designs only). The verdicts are for choosing among
+candidates only; what is returned to a client is verified by the analysis core from the dimensions.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.linkage_statement import Constraints
+from synthesis.proof.carried import ease
 from synthesis.proof.measures import quality
 
 REASONS = (
@@ -292,6 +294,7 @@ def _judge(
                 continue
 
         best = 2.0  # largest |cos γ| on the way that is taken; above 1 none is free of toggles
+        swept = 0.0  # what the input turns on that way
         if one_assembly:
             first, last = (a_images[i, 0] - o2) * ground.conjugate(), (a_images[i, n - 1] - o2) * ground.conjugate()
             near, far = min(first.real, last.real) / (a * d), max(first.real, last.real) / (a * d)
@@ -301,14 +304,14 @@ def _judge(
                     folded, stretched = _ground_line_passed(first, last, turned[way, n - 1])
                     worst = _larger_cosine(a, b, c, d, -1.0 if folded else near, 1.0 if stretched else far)
                     if worst < FOLDED:
-                        best = worst
+                        best, swept = worst, abs(turned[way, n - 1])
             if best >= FOLDED:
-                out_of_order = _out_of_order(a, b, c, d, math.atan2(first.imag, first.real), around)
+                out_of_order, around_all = _out_of_order(a, b, c, d, math.atan2(first.imag, first.real), around)
                 if out_of_order < FOLDED:
                     if wanted.in_order:
                         verdict[i, j] = ORDER_DEFECT
                         continue
-                    best = out_of_order
+                    best, swept = out_of_order, around_all
         if best >= FOLDED:
             if wanted.same_branch:
                 verdict[i, j] = BRANCH_DEFECT
@@ -325,7 +328,7 @@ def _judge(
             score[i, j] = 1.0 / _size(a_images, i, o2, b_images, j, o4, points)
         else:
             reach = max(longest, _size_of(a_images[i, 0]), _size_of(b_images[j, 0]))
-            score[i, j] = quality(sine, reach, longest / shortest)
+            score[i, j] = quality(sine, reach, longest / shortest) * ease(swept, 0.0)
 
 
 @njit(cache=True, nogil=True)
@@ -349,8 +352,10 @@ def _size(
 
 
 @njit(cache=True, nogil=True)
-def _out_of_order(a: float, b: float, c: float, d: float, delta: float, around: NDArray[np.float64]) -> float:
-    """Largest |cos γ| over the shortest toggle-free range that covers all targets; 2 when there is none.
+def _out_of_order(
+    a: float, b: float, c: float, d: float, delta: float, around: NDArray[np.float64]
+) -> tuple[float, float]:
+    """Largest |cos γ| over the shortest toggle-free range that covers all targets, and that range; 2 if there is none.
 
     Such a range leaves out one of the gaps between neighbouring targets, which are given in their order.
     """
@@ -361,7 +366,7 @@ def _out_of_order(a: float, b: float, c: float, d: float, delta: float, around: 
         worst = _worst_cosine(a, b, c, d, delta + after, delta + around[k] + 2.0 * math.pi)
         if worst < FOLDED and gap > longest:
             best, longest = worst, gap
-    return best
+    return best, 2.0 * math.pi - longest
 
 
 @njit(cache=True, nogil=True)

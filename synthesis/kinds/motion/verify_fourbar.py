@@ -23,6 +23,7 @@ from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
 from synthesis.model.linkages import DrivenFourbar, body_shift, driven_fourbar
+from synthesis.proof.carried import Carried, carried, ease
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured, reach_of_fourbar
 
 OWN = 1.5
@@ -63,6 +64,14 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         Side(complex(o2[0]), pin_a),
         Side(complex(o4[0]), pin_b),
     )
+    way_of_body = Carried(abs(way.end - way.start))
+    if way.same_branch:
+
+        def pose(inputs: Real) -> tuple[Complex, Real]:
+            at = positions(linkage, inputs, int(met.assemblies[0]))
+            return np.where(at.valid, at.p, np.nan), at.coupler_angle
+
+        way_of_body = carried(pose, (way.start, way.end), p, met.turns, target.size, slides=False)
     measures = measured(
         link_lengths(mechanism),
         reach_of_fourbar(linkage),
@@ -73,10 +82,13 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         same_branch=way.same_branch,
         visits_in_order=way.in_order,
         full_rotation=barker.motion in TURNS_THROUGH,
+        eased=ease(way_of_body.input_turn, way_of_body.excess),
     )
     inputs = np.degrees(way.angles)
     inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
-    return linkage_design(problem, mechanism, target, driven, measures, inputs, on_circuit=way.same_circuit)
+    return linkage_design(
+        problem, mechanism, target, driven, measures, inputs, on_circuit=way.same_circuit, carried=way_of_body
+    )
 
 
 def _held(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | None:

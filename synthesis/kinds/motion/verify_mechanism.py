@@ -32,6 +32,7 @@ from synthesis.model.linkage_answer import (
     SliderCrankMechanism,
 )
 from synthesis.model.linkages import body_shift
+from synthesis.proof.carried import Carried, carried, ease
 from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles
 from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
@@ -90,6 +91,11 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
     driven = _driven(design, mechanism, joints, turns, target)
     whole = isinstance(design, SixbarMechanism)
     used = (here.low, here.high) if whole else (float(way.inputs.min()), float(way.inputs.max()))
+    slides = mechanism.driven_by_slide
+    way_of_body = Carried()
+    if same_branch:
+        span = float(way.inputs.min()), float(way.inputs.max())
+        way_of_body = carried(bodies[own].pose, span, joints["P"], turns, target.size, slides=slides)
     measures = measured(
         link_lengths(design),
         reach_of(mechanism),
@@ -100,8 +106,8 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,
+        eased=ease(way_of_body.input_turn, way_of_body.excess),
     )
-    slides = mechanism.driven_by_slide
     return linkage_design(
         problem,
         design,
@@ -110,6 +116,7 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         measures,
         way.inputs if slides else np.degrees(way.inputs),
         on_circuit=bool(all(listed[row].circuit == here.circuit for row in met.rows)),
+        carried=way_of_body,
         slides=slides,
         own=_driver_checks(problem, design, mechanism, here, way) if isinstance(design, SixbarMechanism) else (),
     )
@@ -144,6 +151,11 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     best[0] = 0
     columns = np.arange(missed.shape[1])
     at = np.stack(inputs)[best, columns]
+    # Where the body comes to rest an input is known to half of its digits; the reference is known to all.
+    home = float(bodies[own].mechanism.reference_input)
+    points, turns = (np.repeat(value, len(columns)) for value in bodies[own].pose(np.array([home])))
+    if np.linalg.norm(target.offsets(points, turns)[0] / target.units[0]) <= missed[0, 0] + SAME_MISS:
+        at[0] = home
     return _Met(at, np.array(rows)[best]) if np.all(np.isfinite(at)) else None
 
 
