@@ -153,7 +153,7 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     at = np.stack(inputs)[best, columns]
     # Where the body comes to rest an input is known to half of its digits; the reference is known to all.
     home = float(bodies[own].mechanism.reference_input)
-    points, turns = (np.repeat(value, len(columns)) for value in bodies[own].pose(np.array([home])))
+    points, turns = bodies[own].pose(np.full(len(columns), home))
     if np.linalg.norm(target.offsets(points, turns)[0] / target.units[0]) <= missed[0, 0] + SAME_MISS:
         at[0] = home
     return _Met(at, np.array(rows)[best]) if np.all(np.isfinite(at)) else None
