@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
+from pydantic import BaseModel
 
-from synthesis.model.linkage_statement import Constraints, Region
+from synthesis.model.linkage_statement import ON_EDGE, Constraints, Region
 from synthesis.numerics.placing import Boxes, Placing, placed
+
+Mechanism = TypeVar("Mechanism", bound=BaseModel)
 
 
 def placement(
@@ -55,3 +60,77 @@ def boxes(regions: Sequence[Region | None]) -> Boxes:
         [(-math.inf, math.inf) * 2 if region is None else (*region.x, *region.y) for region in regions]
     ).reshape(-1, 4)
     return Boxes(*table.T)
+
+
+def put(
+    constraints: Constraints, mechanism: Mechanism, lengths: Sequence[float], *, sized: bool, turned: bool
+) -> Mechanism:
+    """A finished mechanism where its pivots lie in their regions and its links within their limits.
+
+    Parameters
+    ----------
+    constraints : Constraints
+        Whose regions and limits of length are to be kept.
+    mechanism : a mechanism of an answer
+        With a skeleton; it stays where it is if it fits there.
+    lengths : sequence of float
+        Of its links.
+    sized, turned : bool
+        Whether its size, and its direction, may be others.
+    """
+    skeleton = mechanism.skeleton  # type: ignore[attr-defined]  # which every mechanism of a linkage has
+    still = next(link.joints for link in skeleton.links if link.name == "ground")
+    places = {name: complex(*place) for name, place in skeleton.joints.items() if name != "P"}
+    fixed = [place for name, place in places.items() if name in still]
+    moving = [place for name, place in places.items() if name not in still]
+    if _fits(constraints, fixed, moving, lengths):
+        return mechanism
+    found = placement(constraints, fixed, moving, lengths if sized else None, 1.0 + 0j, turned=turned)
+    return moved(mechanism, found.origin, found.along)
+
+
+def _fits(
+    constraints: Constraints, fixed: Collection[complex], moving: Collection[complex], lengths: Sequence[float]
+) -> bool:
+    """Whether nothing has to be moved."""
+    limits = constraints.link_length
+    if limits is not None and min(lengths) < limits.min * (1.0 - ON_EDGE):
+        return False
+    if limits is not None and limits.max is not None and max(lengths) > limits.max * (1.0 + ON_EDGE):
+        return False
+    regions = (constraints.fixed_pivot_region, fixed), (constraints.moving_pivot_region, moving)
+    return all(region is None or all(map(region.contains, places)) for region, places in regions)
+
+
+def moved(mechanism: Mechanism, origin: complex, along: complex) -> Mechanism:
+    """A mechanism under the similarity z → origin + along · z: its places, lengths and directions."""
+    size, turn = abs(along), math.degrees(cmath.phase(along))
+
+    def place(point: Sequence[float]) -> tuple[float, float]:
+        there = origin + along * complex(*point)
+        return there.real, there.imag
+
+    def line(of: dict[str, Any]) -> dict[str, Any]:
+        # A slide of an inverted linkage is told in its link's own frame, without a point.
+        return {**of, "point": place(of["point"]), "angle": of["angle"] + turn} if "point" in of else of
+
+    changed: dict[str, Callable[[Any], Any]] = {
+        "fixed_pivot": place,
+        "fixed_pivots": lambda pivots: {name: place(point) for name, point in pivots.items()},
+        "links": lambda links: {name: size * length for name, length in links.items()},
+        "coupler_point": lambda point: {**point, "distance": size * point["distance"]},
+        "offset": lambda offset: size * offset,
+        "slide": line,
+        "reference_input_angle": lambda angle: angle + turn,
+        "reference_body_angle": lambda angle: angle + turn,
+        "skeleton": lambda skeleton: {
+            **skeleton,
+            "joints": {name: place(point) for name, point in skeleton["joints"].items()},
+            "slides": [line(slide) for slide in skeleton["slides"]],
+        },
+    }
+    stated = {
+        name: changed[name](value) if name in changed and value is not None else value
+        for name, value in mechanism.model_dump().items()
+    }
+    return type(mechanism).model_validate(stated)

@@ -102,7 +102,11 @@ class DwellProblem(LinkageProblem):
     crank: PositiveLength | None = Field(
         default=None, description="Length of the crank of a linkage with a rocker, in length units; 10 by default."
     )
-    pivot: Point = Field(default=(0.0, 0.0), description="Where the crank's fixed pivot lies.")
+    pivot: Point | None = Field(
+        default=None,
+        description="Where the crank's fixed pivot lies. Left out it is (0, 0); where regions or limits of length want "
+        "it, the linkage is put elsewhere, turned and, with a rocker and no `crank`, made larger or smaller.",
+    )
 
     @property
     def way(self) -> float:
@@ -139,7 +143,7 @@ class DwellProblem(LinkageProblem):
         size, field = (
             (self.way, "/output/stroke") if self.output.type == "slider" else (self.crank or DEFAULT_CRANK, "/crank")
         )
-        if size < ROUNDED_OFF * max(map(abs, self.pivot)):
+        if self.pivot is not None and size < ROUNDED_OFF * max(map(abs, self.pivot)):
             found.append(Contradiction(field, "too short beside the coordinates of the pivot; move the origin nearer"))
         if self.tolerance is not None and self.tolerance >= self.way:
             found.append(Contradiction("/tolerance", "as far as the output goes; nothing would have to rest"))

@@ -20,8 +20,10 @@ from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import CouplerPoint, Slide
 from synthesis.model.linkages import skeleton, slide, to_point
 from synthesis.numerics.narrowing import narrowest
+from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import Sifting, reported
+from synthesis.proof.measures import link_lengths
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -114,7 +116,13 @@ def _ranked(problem: DwellProblem, designs: list[DwellDesign]) -> list[DwellDesi
 def _driven(problem: DwellProblem, kind: Kind, start: Start) -> DwellDesign | str | None:
     """The verified design that a start leads to."""
     sixbar = _refined(problem, kind, start)
-    return "not_at_rest" if sixbar is None else verify_dwell(problem, _mechanism(problem, sixbar))
+    if sixbar is None:
+        return "not_at_rest"
+    mechanism = _mechanism(problem, sixbar)
+    if problem.pivot is None:
+        sized = not problem.slides and problem.crank is None
+        mechanism = put(problem.constraints, mechanism, link_lengths(mechanism), sized=sized, turned=True)
+    return verify_dwell(problem, mechanism)
 
 
 def _refined(problem: DwellProblem, kind: Kind, start: Start) -> _Sixbar | None:
@@ -214,7 +222,7 @@ def _mechanism(problem: DwellProblem, sixbar: _Sixbar) -> DwellMechanism:
     else:
         scale = DEFAULT_CRANK if problem.crank is None else problem.crank
     own = _joints(sixbar)
-    pivot = complex(*problem.pivot)
+    pivot = complex(*(problem.pivot or (0.0, 0.0)))
     joints = {name: pivot + scale * z for name, z in own.items()}
     links = [("ground", ["O2", "O4"]), ("input", ["O2", "A"]), ("coupler", ["A", "B", "P"]), ("rocker", ["O4", "B"])]
     slides: list[Slide] = []

@@ -189,7 +189,7 @@ def _mechanism(problem: QuickReturnProblem, family: Family, rho: float) -> Fourb
     extended = family.phi >= math.pi
     at_b, at_a = (b1, 1.0 + 0j) if extended else (b2, overlap)
     scale = problem.scaled(1.0, max(b, c, d), c)
-    angle = math.radians(problem.ground_angle)
+    angle = math.radians(problem.direction)
     place = scale * complex(math.cos(angle), math.sin(angle)) * o4.conjugate() / abs(o4)
     ground = scale * d * complex(math.cos(angle), math.sin(angle))
     pole = problem.pole

@@ -106,7 +106,7 @@ def drag_link_sliders(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
     for drag in _drag_links(problem):
         scale = 0.5 * problem.stroke / drag.output
         link = drag.output / math.cos(max(SLIDER_DYAD, demanded)) * (1.0 + 1e-12)
-        turn = cmath.exp(1j * (math.radians(problem.ground_angle) - drag.start))
+        turn = cmath.exp(1j * (math.radians(problem.direction) - drag.start))
         end = cmath.exp(1j * drag.start) * (drag.output + link)
         mechanisms.append(_mechanism(problem, drag, scale, turn, link, 1.0 + end, None))
     return mechanisms
@@ -130,7 +130,7 @@ def drag_link_rockers(problem: QuickReturnProblem) -> list[DragLinkMechanism]:
         c_pin = 1.0 + along * c * (rho + 1.0)
         lengths = [1.0, drag.input, drag.coupler, c, rho * c, c / sine, abs(o6 - 1.0)]
         scale = problem.scaled(min(lengths), max(lengths), c / sine)
-        turn = cmath.exp(1j * math.radians(problem.ground_angle))
+        turn = cmath.exp(1j * math.radians(problem.direction))
         mechanisms.append(_mechanism(problem, drag, scale, turn, rho * c, c_pin, o6))
     return mechanisms
 

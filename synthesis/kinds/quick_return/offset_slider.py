@@ -84,8 +84,8 @@ def _mechanism(problem: QuickReturnProblem, x: float, n: float) -> SliderCrankMe
     b = 0.5 * problem.stroke / math.sqrt(w)
     a = x * b
     e = b * (1.0 - x) * (1.0 + x) * math.sqrt(n * (1.0 - n) / w)
-    along = cmath.exp(1j * math.radians(problem.ground_angle))
+    along = cmath.exp(1j * math.radians(problem.direction))
     o2 = problem.o2
     far = complex(math.sqrt((a + b - e) * (a + b + e)), e) * along
     pin_a = o2 + a * far / abs(far)
-    return without_coupler_point(slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.ground_angle), pin_a))
+    return without_coupler_point(slider_crank_mechanism(o2, pin_a, o2 + far, math.radians(problem.direction), pin_a))

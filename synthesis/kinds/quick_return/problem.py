@@ -115,13 +115,17 @@ class QuickReturnProblem(LinkageProblem):
     rocker_length: PositiveLength | None = Field(
         default=None,
         description="Distance from the output's fixed pivot to its pin, for an output that swings; left out it is 1, "
-        "or what puts the links within the limits of `link_length`, or the body's distance from the rotopole.",
+        "or what puts links and pivots within `link_length` and regions, or the body's distance from the rotopole.",
     )
     crank_pivot: Point | None = Field(
-        default=None, description="Where the crank's fixed pivot O2 shall be; (0, 0) if left out, without a rotopole."
+        default=None,
+        description="Where the crank's fixed pivot O2 shall be; left out, without a rotopole, it is at (0, 0) or where "
+        "regions want it.",
     )
-    ground_angle: Degrees = Field(
-        default=0.0, description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees."
+    ground_angle: Degrees | None = Field(
+        default=None,
+        description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees. Left out it is 0; "
+        "where O2 is left out too, what regions want.",
     )
     rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "transmission_angle"
 
@@ -143,6 +147,16 @@ class QuickReturnProblem(LinkageProblem):
     def o2(self) -> complex:
         """The crank's fixed pivot, where no rotopole decides."""
         return complex(*(self.crank_pivot or (0.0, 0.0)))
+
+    @property
+    def direction(self) -> float:
+        """The stated angle of the ground line or of the slide, degrees; 0 where it is left out."""
+        return 0.0 if self.ground_angle is None else self.ground_angle
+
+    @property
+    def placed(self) -> bool:
+        """Whether the statement says where the mechanism stands."""
+        return self.crank_pivot is not None or self.rotopole is not None or self.positions is not None
 
     @property
     def rotation(self) -> float:

@@ -99,7 +99,7 @@ def _mechanism(
     crank_angle: float,
 ) -> QuickReturnMechanism:
     """The mechanism with its ram at a height over O4 along the stated direction, O2 over O4; crank angle from there."""
-    turn = math.radians(problem.ground_angle)
+    turn = math.radians(problem.direction)
     o2 = problem.o2
     up = 1j * cmath.exp(1j * turn)
     o4 = o2 - ground * up
@@ -110,9 +110,9 @@ def _mechanism(
             "type": kind,
             "fixed_pivots": FixedPivots(input=to_point(o2), output=to_point(o4)),
             "links": QuickReturnLinks(ground=ground, crank=crank, rocker=rocker, coupler=coupler),
-            "slide": Line(point=to_point(line), angle=problem.ground_angle),
+            "slide": Line(point=to_point(line), angle=problem.direction),
             "assembly": "open",
-            "reference_input_angle": math.degrees(crank_angle) + problem.ground_angle,
+            "reference_input_angle": math.degrees(crank_angle) + problem.direction,
             "skeleton": skeleton(
                 {name: complex(z) for name, z in mechanism.joints.items()},
                 mechanism.links,

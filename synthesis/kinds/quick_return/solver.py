@@ -16,8 +16,10 @@ from synthesis.kinds.quick_return.design import QuickReturnDesign, QuickReturnMe
 from synthesis.kinds.quick_return.problem import QuickReturnProblem
 from synthesis.kinds.quick_return.verification import verify_quick_return
 from synthesis.model.kind import Progress
+from synthesis.outcome.placement import put
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import LENGTHS, Sifting
+from synthesis.proof.measures import link_lengths
 
 
 class _Type(NamedTuple):
@@ -55,7 +57,7 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
         candidates = of_type.candidates(problem)
         if not candidates:
             short.append(name)
-        sifting.sift(candidates, partial(verify_quick_return, problem))
+        sifting.sift((_put(problem, one) for one in candidates), partial(verify_quick_return, problem))
     progress(1.0, "verified")
     complete = all(not reach.reaches or TYPES[reach.type].proven for reach in ranges) and _as_derived(sifting.rejected)
     return QuickReturnResult(
@@ -64,6 +66,15 @@ def solve_quick_return(problem: QuickReturnProblem, progress: Progress) -> Quick
         summary=_summary(problem, ranges, sifting, short, complete=complete),
         reachable=ranges,
     )
+
+
+def _put(problem: QuickReturnProblem, mechanism: QuickReturnMechanisms) -> QuickReturnMechanisms:
+    """A mechanism where regions and limits of length want it, as far as the statement leaves that open."""
+    if problem.placed:
+        return mechanism
+    sized = not problem.slides and problem.rocker_length is None
+    turned = problem.ground_angle is None
+    return put(problem.constraints, mechanism, link_lengths(mechanism), sized=sized, turned=turned)
 
 
 def _as_derived(rejected: Counter[str]) -> bool:
