@@ -75,10 +75,10 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
     first = [design for design in near if even(design)]
     if not first:
         return Ordered(list(designs), f" {missing} has {practice}.")
-    return Ordered(
-        _before(first, designs),
-        f" {missing} has {practice} and {compact}; first stand those with such an angle and ratio.",
-    )
+    told = f" {missing} has {practice} and {compact}"
+    if even(passed[0]):
+        return Ordered(list(designs), f"{told}.")
+    return Ordered(_before(first, designs), f"{told}; first stand those with such an angle and ratio.")
 
 
 def _before(first: Sequence[Any], designs: Sequence[Any]) -> list[Any]:

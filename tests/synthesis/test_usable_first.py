@@ -65,6 +65,10 @@ def test_a_link_far_longer_than_the_task_gives_way_or_is_told() -> None:
     assert found.designs == [long, flat]
     assert "No design that was found" in found.remark
     assert "no link longer than 5 times" in found.remark
+    # Where the first is only too long the order stays.
+    found = usable_first(problem, [long, flat, made(40.0, 3.0, 6.0)])
+    assert found.designs[1] is flat
+    assert "no link longer than 5 times" in found.remark
     assert usable_first(problem, [made(40.0, 3.0, None), long]).remark == ""
 
 
