@@ -281,7 +281,7 @@ DWELL_ROWS: dict[str, Any] = {
         for axis in "xy"
     },
     "max_designs": 2,
-    "include_failed": Row(True, {"constraints.link_length": {"max": 20.0}}),
+    "include_failed": Row(True, {**SLIDER, "constraints.link_length": {"max": 20.0}}),
     "rank_by": "size",
     "dwell_angle": 50.0,
     "output": SLIDER["output"],
