@@ -168,11 +168,27 @@ def test_an_empty_answer_is_a_proof():
     """No fourbar on these pivots meets these points in order with a rotating input and 60° everywhere."""
     points = np.array([0.0, 3.0 + 1.0j, -2.0 + 0.5j, 5.0 - 2.0j, 1.0 + 4.0j])
     limits = {"grashof": "double_crank", "min_transmission_angle": 60}
-    result = answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, constraints=limits))
+    result = answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, method="exact", constraints=limits))
     assert result.designs == []
     assert result.search.complete
     assert "no design exists" in result.summary
     assert sum(result.search.rejected.values()) == result.search.candidates
+
+
+def test_points_that_cannot_be_met_exactly_are_fitted_and_that_is_said():
+    points = np.array([0.0, 3.0 + 1.0j, -2.0 + 0.5j, 5.0 - 2.0j, 1.0 + 4.0j])
+    asked = {"constraints": {"grashof": "crank_rocker", "min_transmission_angle": 60}}
+    assert answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, method="exact", **asked)).designs == []
+    result = answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, **asked))
+    fitted = answer(statement(points, -7.0 + 2.0j, 4.0 + 9.0j, method="least_squares", **asked))
+    assert result.designs == fitted.designs
+    assert result.designs[0].metrics.max_distance > 1e-3
+    assert not result.search.complete
+    assert result.search.method == "least_squares"
+    assert result.given_pivots.computed == 36
+    assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
+    assert result.search.candidates > fitted.search.candidates
+    assert "fitted instead" in result.summary
 
 
 @pytest.mark.parametrize(

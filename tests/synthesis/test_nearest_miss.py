@@ -21,7 +21,7 @@ def motion(**constraints):
 
 
 OUT_OF_REACH = {
-    "path": limited(examples("path")[1], min_transmission_angle=88.5),
+    "path": limited({**examples("path")[1], "method": "exact"}, min_transmission_angle=88.5),
     "function": limited(
         {**examples("function")[1], "zeros": {"input": 0.0, "output": 0.0}}, min_transmission_angle=88.5
     ),

@@ -46,6 +46,32 @@ def geared(ratio, count=60, turns=1):
     return motion.joints["P"][0]
 
 
+ELEVEN = [2.2, 2.96, 3.38, 3.8, 4.11, 4.46, 5.16, 6.01, 6.46, 6.93, 7.28]
+
+
+def test_eleven_points_of_a_geared_fivebar_are_met():
+    """As many points as it has numbers: first descents miss them, and perturbed copies of the best reach them."""
+    linkage = geared_fivebar(0.0, 2.219, 1.078, 2.409, 3.151, 0.873, -2.0, 0.481, 0.0, 1, -1.426 + 3.824j)
+    motion = drive(linkage, np.array(ELEVEN), order=0)
+    assert motion.valid.all()
+    points = 20.0 * motion.joints["P"][0]
+    result = answer(points, "geared_fivebar", gear_ratio=-2.0)
+    assert result.search.method == "family_search"
+    assert result.designs
+    size = np.abs(points[:, None] - points).max()
+    for design in result.designs:
+        assert design.verification.passed
+        assert design.metrics.max_distance < 1e-8 * size
+
+
+def test_what_no_slider_crank_meets_is_fitted():
+    points = np.array([0.0, 3.0, 1.0 + 2.0j, 4.0 + 1.0j, 1.0 - 1.0j, 5.0j, 3.0 + 4.0j, 6.0 - 1.0j])
+    result = answer(points, "slider_crank", max_designs=3)
+    assert result.designs
+    assert result.designs == answer(points, "slider_crank", max_designs=3, method="least_squares").designs
+    assert "fitted instead" in result.summary
+
+
 def slider_mechanism(theta):
     at = sliders.positions(SLIDER, theta, 1)
     joints = (complex(z) for z in (SLIDER.pivot, at.a, at.b))

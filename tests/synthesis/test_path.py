@@ -92,7 +92,8 @@ def test_published_counts_of_usable_linkages(case):
     """Circuits and order of the real triples, counted independently once for the cases."""
     points = [complex(*point) for point in case["inputs"]["points"]]
     expected = case["expected"]
-    result = solve(statement(points, constraints={"in_order": True, "full_rotation": True}), silent)
+    demands = {"in_order": True, "full_rotation": True}
+    result = solve(statement(points, method="exact", constraints=demands), silent)
     assert result.search.complete
     assert result.triples.computed == expected["cognate_triples_complex"]
     assert result.triples.real == expected["cognate_triples_real"]

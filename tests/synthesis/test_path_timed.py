@@ -27,7 +27,7 @@ EVERYTHING = {"constraints": {"same_branch": False, "in_order": False}, "max_des
 
 
 def timed(points, angles, **changes):
-    stated = {"kind": "path", "timing": "prescribed", "points": listed(points, angles), **changes}
+    stated = {"kind": "path", "timing": "prescribed", "method": "exact", "points": listed(points, angles), **changes}
     return solve(parse_problem(stated), silent)
 
 

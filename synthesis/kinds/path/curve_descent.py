@@ -21,7 +21,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, GEARED_FIVEBAR, MAX_LOG, MIN_LOG, OPTIONS, natural
-from synthesis.fit.coupler_curve import place, place_with_slopes
+from synthesis.fit.coupler_curve import place, place_with_slopes, second_angle, unit
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.portions import in_portions
 
@@ -60,8 +60,9 @@ UNLIMITED_LENGTH = 1e300
 PORTION = 5
 """Number of starts that a thread takes at a time: some milliseconds of work."""
 
-CYCLE_CHECKS = 48
-"""Crank positions a cycle at which a geared fivebar must not jam."""
+CYCLE_CHECKS, MIN_SINE = 48, 0.05
+"""Crank positions a cycle at which a geared fivebar must not jam, and the least sine of its transmission angle there:
+it is not to jam between them either."""
 
 
 class Descent(NamedTuple):
@@ -87,6 +88,18 @@ def _excess(lengths: Real, m: int, x: Real, longest: float) -> float:
 
 
 @njit(**OPTIONS)
+def _transmission_sine(x: Real, lengths: Real, sign: float, ratio: float, theta: float) -> float:
+    """Sine of the angle between the couplers of a geared fivebar, at least 0; 0 where it does not close."""
+    closes, _, along = place(GEARED_FIVEBAR, x, lengths, sign, ratio, theta)
+    if not closes:
+        return 0.0
+    pin = complex(x[0], x[1]) + lengths[0] * unit(theta) + lengths[1] * along
+    other = complex(x[2], x[3]) + lengths[3] * unit(second_angle(GEARED_FIVEBAR, x, ratio, theta))
+    sine: float = abs((along.conjugate() * (pin - other)).imag) / lengths[2]
+    return sine
+
+
+@njit(**OPTIONS)
 def _cost(
     family: int,
     x: Real,
@@ -101,8 +114,7 @@ def _cost(
     total = 0.0
     if family == GEARED_FIVEBAR and cycle > 0.0:
         for k in range(CYCLE_CHECKS):
-            closes, _, _ = place(family, x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS)
-            if not closes:
+            if _transmission_sine(x, lengths, sign, ratio, cycle * k / CYCLE_CHECKS) < MIN_SINE:
                 return math.inf
     for i in range(len(points)):
         closes, z, _ = place(family, x, lengths, sign, ratio, theta[i])

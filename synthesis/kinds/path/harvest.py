@@ -65,7 +65,10 @@ class Harvest(Sifting[PathDesign]):
         """What an empty answer means, as a sentence of the summary; empty where there are designs."""
         if self.passed:
             return ""
-        return " These are all fourbars, so no design exists." if complete else " Others may exist."
+        if not complete:
+            return " Others may exist."
+        none = "none of them does both" if self.problem.method == "auto" else "no design exists"
+        return f" These are all fourbars, so {none}."
 
     def result(self, method: str, *, complete: bool, summary: str) -> PathResult:
         """The answer."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 import cmath
 import math
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.nearness import FAR, ranked_by_nearness, steady
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.kinds.path.verify_traced import verify_traced
-from synthesis.model.kind import Progress
+from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_answer import (
     CouplerPoint,
     FivebarLinks,
@@ -56,8 +56,18 @@ CLOSED_DRAWN, OPEN_DRAWN = 49152, 8192
 MAX_FOLLOWED, MAX_REFINED, MAX_DRIVEN = 150, 24, 16
 """The most alike that are brought to the points; the best of them that are refined; and those that are driven."""
 
-MAX_STEPS = 250
-"""Steps of least squares at most."""
+KICKS, KICKED, COPIES, KICK, SPREAD = 4, 24, 8, 0.3, 0.8
+"""Perturbation of the best for exact points: number of rounds, of linkages, of copies of each; standard deviation of
+their numbers' change, and of its logarithm: some are small and some are great."""
+
+ELSEWHERE = 0.4
+"""That of what is no logarithm of a length, as a share."""
+
+MANY_FOLLOWED = 600
+"""The most alike that are brought to points that none of the first few meets."""
+
+ROUGH_STEPS, KICKED_STEPS, MAX_STEPS = 40, 150, 250
+"""Steps of least squares at most: of all that are followed, of perturbed copies, and of the best."""
 
 COST_TOLERANCE = 1e-22
 """Sum of squared distances, in squares of the task's size, at which exact points count as met."""
@@ -75,37 +85,72 @@ MIN_LINK = 1e-6
 """Links shorter than this share of the task's size are no links."""
 
 
+class _Search(NamedTuple):
+    """What is searched for.
+
+    Attributes
+    ----------
+    problem : PathProblem
+    tasks : list of tuple
+        Family and gear ratio.
+    centre, size : complex, float
+        The points' middle, and the unit of what is fitted.
+    """
+
+    problem: PathProblem
+    tasks: list[tuple[int, float]]
+    centre: complex
+    size: float
+
+
 def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of path generation by a slider-crank or geared fivebar."""
     given = np.array([point.point for point in problem.points])
-    centre, size = complex(given.mean()), problem.task_size
-    points = (given - centre) / size
-    target, places = smooth_steps(points, problem.closed)
     turns = problem.closed or problem.constraints.full_rotation
     tasks: list[tuple[int, float]]
     if problem.mechanism == "slider_crank":
         tasks = [(SLIDER_CRANK, 0.0)] if turns else [(SLIDER_CRANK, 0.0), (SLIDER_ROCKER, 0.0)]
     else:
         tasks = [(GEARED_FIVEBAR, ratio) for ratio in (RATIOS if problem.gear_ratio is None else (problem.gear_ratio,))]
+    search = _Search(problem, tasks, complex(given.mean()), problem.task_size)
+    drawn = CLOSED_DRAWN if problem.closed else OPEN_DRAWN
+    few = drawn // (1 if len(tasks) < 3 else 2)
+    fits = _fits(search, few, MAX_FOLLOWED, 0, part_of(progress, 0.0, 0.7 if problem.fitted else 0.35))
+    if not (fits or problem.fitted) and problem.gear_ratio is not None:
+        fits = _fits(search, CLOSED_DRAWN, MANY_FOLLOWED, 1, part_of(progress, 0.35, 0.7))
+    fits.sort(key=lambda fit: fit[0])
+    mechanisms = _different([mechanism for _, mechanism in fits], search.size)
+    if problem.matched and (GEARED_FIVEBAR, 1.0) in tasks:
+        mechanisms += _from_fourbars(problem, progress)
+    return _answer(problem, mechanisms, progress)
+
+
+def _fits(search: _Search, drawn: int, followed: int, again: int, progress: Progress) -> list[tuple[float, Mechanism]]:
+    """Linkages brought to the points, with their sums of squares: of exact points those that meet them.
+
+    So many are ``drawn`` of each family, and the most alike ``followed``; ``again`` counts the draws.
+    """
+    problem, tasks, centre, size = search
+    points = (np.array([point.point for point in problem.points]) - centre) / size
+    target, places = smooth_steps(points, problem.closed)
     within = pivot_limits(problem, centre, size)
     longest = problem.longest_link / size
     fits: list[tuple[float, Mechanism]] = []
     for n, (family, ratio) in enumerate(tasks):
 
         def compared(share: float, n: int = n) -> None:
-            progress(0.7 * (n + 0.8 * share) / len(tasks), "shapes of linkages compared")
+            progress((n + 0.8 * share) / len(tasks), "shapes of linkages compared")
 
-        drawn = (CLOSED_DRAWN if problem.closed else OPEN_DRAWN) // (1 if len(tasks) < 3 else 2)
-        seed = int(np.random.default_rng([problem.seed, n]).integers(2**31))
+        rng = np.random.default_rng([problem.seed, n + len(tasks) * again])
         starts = alike(
             family,
             target,
             problem.closed,
             drawn,
-            MAX_FOLLOWED,
+            followed,
             ratio=ratio,
             longest=longest,
-            seed=seed,
+            seed=int(rng.integers(2**31)),
             progress=compared,
         )
         if not len(starts.x):
@@ -114,27 +159,60 @@ def solve_other(problem: PathProblem, progress: Progress) -> PathResult:
         span = cycle or 2.0 * math.pi
         theta = np.array([angles_at(places, angles, problem.closed, span) for angles in starts.theta])
         settings: dict[str, Any] = {"ratio": ratio, "longest": longest, "cycle": cycle, "within": within}
-        rough = descend(family, starts.x, starts.sign, theta, points, iterations=40, **settings)
-        best = np.argsort(rough.cost, kind="stable")[: MAX_REFINED if problem.fitted else None]
-        best = best[np.isfinite(rough.cost[best])]
+        rough = descend(family, starts.x, starts.sign, theta, points, iterations=ROUGH_STEPS, **settings)
+        begun = _Begun(rough.x, starts.sign, rough.theta, rough.cost)
+        if family == GEARED_FIVEBAR and not problem.fitted:
+            begun = _kicked(begun, points, settings, rng)
+        best = np.argsort(begun.cost, kind="stable")[: MAX_REFINED if problem.fitted else None]
+        best = best[np.isfinite(begun.cost[best])]
         if not len(best):
             continue
         fine = descend(
-            family, rough.x[best], starts.sign[best], rough.theta[best], points, iterations=MAX_STEPS, **settings
+            family, begun.x[best], begun.sign[best], begun.theta[best], points, iterations=MAX_STEPS, **settings
         )
         for k in np.argsort(fine.cost, kind="stable"):
             if math.isfinite(fine.cost[k]) and (problem.fitted or fine.cost[k] <= COST_TOLERANCE):
                 mechanism = _mechanism(
-                    family, fine.x[k], float(starts.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
+                    family, fine.x[k], float(begun.sign[best[k]]), ratio, float(fine.theta[k, 0]), centre, size
                 )
                 if mechanism is not None:
                     fits.append((float(fine.cost[k]), mechanism))
-        progress(0.7 * (n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
-    fits.sort(key=lambda fit: fit[0])
-    mechanisms = _different([mechanism for _, mechanism in fits], size)
-    if problem.matched and (GEARED_FIVEBAR, 1.0) in tasks:
-        mechanisms += _from_fourbars(problem, progress)
-    return _answer(problem, mechanisms, progress)
+        progress((n + 1.0) / len(tasks), f"{len(fits)} linkages fitted")
+    return fits
+
+
+class _Begun(NamedTuple):
+    """Linkages on their way: unknowns (n, m), assembly signs (n,), crank angles (n, points), sums of squares (n,)."""
+
+    x: Real
+    sign: Real
+    theta: Real
+    cost: Real
+
+
+def _kicked(ends: _Begun, points: Complex, settings: dict[str, Any], rng: np.random.Generator) -> _Begun:
+    """Ends of descents of geared fivebars, and of those from perturbed copies of the best, until enough meet points.
+
+    Places and angles are in the points' unit and in radians; logarithms of lengths are changed the most.
+    """
+    found = ends
+    logs = slice(4, 8)
+    for _ in range(KICKS):
+        if np.count_nonzero(found.cost <= COST_TOLERANCE) >= MAX_DRIVEN:
+            break
+        best = np.argsort(found.cost, kind="stable")[:KICKED]
+        chosen = np.repeat(best[np.isfinite(found.cost[best])], COPIES)
+        if not len(chosen):
+            break
+        reach = KICK * np.exp(SPREAD * rng.normal(size=(len(chosen), 1)))
+        change = reach * rng.normal(size=(len(chosen), found.x.shape[1]))
+        change[:, : logs.start] *= ELSEWHERE
+        change[:, logs.stop :] *= ELSEWHERE
+        x, sign = found.x[chosen] + change, found.sign[chosen]
+        near = descend(GEARED_FIVEBAR, x, sign, found.theta[chosen], points, iterations=KICKED_STEPS, **settings)
+        more = _Begun(near.x, sign, near.theta, near.cost)
+        found = _Begun(*(np.concatenate(both) for both in zip(found, more, strict=True)))
+    return found
 
 
 def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:

@@ -203,7 +203,8 @@ class PathProblem(LinkageProblem):
     method: Literal["auto", "exact", "least_squares", "curve_match"] = Field(
         default="auto",
         description="How the points are met: exactly, with the least sum of the squares of the distances, or, by "
-        "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be.",
+        "curve_match, as a whole curve (closed) or stroke that is drawn. auto: exactly where so many points can be, "
+        "and by least_squares otherwise, or where nothing meets them exactly.",
     )
     placement_free: list[Literal["position", "rotation", "size"]] = Field(
         default=[],

@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from synthesis.kinds.path import curve_match
 from synthesis.kinds.path.design import CognateTriples, PathResult
+from synthesis.kinds.path.fallback import exact_or_fitted
 from synthesis.kinds.path.family_search import solve_family
 from synthesis.kinds.path.fits import fit_points
 from synthesis.kinds.path.given_pivots import all_are_found, solve_given_pivots
@@ -60,13 +61,20 @@ def solve_path(problem: PathProblem, progress: Progress) -> PathResult:
 
 def _solved(problem: PathProblem, progress: Progress) -> PathResult:
     if problem.mechanism != "fourbar":
-        return solve_other(problem, progress)
+        if problem.fitted:
+            return solve_other(problem, progress)
+        return exact_or_fitted(problem, progress, solve_other, solve_other)
     if problem.matched:
         return curve_match.solve_curve_match(problem, progress)
-    if all_are_found(problem):
-        return solve_given_pivots(problem, progress)
     if problem.fitted:
         return fit_points(problem, progress)
+    return exact_or_fitted(problem, progress, _solve_exactly, fit_points)
+
+
+def _solve_exactly(problem: PathProblem, progress: Progress) -> PathResult:
+    """Fourbars that meet the points exactly."""
+    if all_are_found(problem):
+        return solve_given_pivots(problem, progress)
     if problem.prescribed:
         return solve_timed(problem, progress)
     if len(problem.points) < NINE:

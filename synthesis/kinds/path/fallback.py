@@ -1,0 +1,61 @@
+"""What method ``auto`` does where no design meets the points exactly and keeps all demands: the points are fitted.
+
+Few points may still be too many: nine on a conic, or points in an order that no linkage of the family visits them in.
+The answer is then that of least squares, and the account and the summary are those of both searches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.model.kind import Progress, part_of
+
+FIRST_PART = 0.8
+"""Share of the progress that the exact search counts for."""
+
+Solve = Callable[[PathProblem, Progress], PathResult]
+
+
+def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitted: Solve) -> PathResult:
+    """The answer of an exact search, or, where it has no design that passes, that of least squares.
+
+    Parameters
+    ----------
+    problem : PathProblem
+        One of method ``auto`` or ``exact`` that is to be met exactly; only ``auto`` falls back.
+    progress : callable
+        Told how far the work is.
+    exact, fitted : callable
+        The searches. The second is given the problem with the method ``least_squares``.
+    """
+    if problem.method != "auto":
+        return exact(problem, progress)
+    first = exact(problem, part_of(progress, 0.0, FIRST_PART))
+    if first.search.accepted:
+        return first
+    nearly = problem.model_copy(update={"method": "least_squares"})
+    second = fitted(nearly, part_of(progress, FIRST_PART, 1.0))
+    account = second.search.model_copy(
+        update={
+            "complete": False,
+            "candidates": first.search.candidates + second.search.candidates,
+            "rejected": _sum(first.search.rejected, second.search.rejected),
+        }
+    )
+    counted = {name: getattr(first, name) for name in ("triples", "given_pivots", "family", "timed")}
+    shown = [*second.designs, *first.designs] if problem.include_failed else second.designs
+    begun = "No linkage meets the points exactly and keeps all demands; they are fitted instead."
+    return second.model_copy(
+        update={
+            **counted,
+            "designs": shown[: problem.max_designs],
+            "search": account,
+            "summary": f"{begun} {second.summary} Exactly: {first.summary}",
+        }
+    )
+
+
+def _sum(one: dict[str, int], other: dict[str, int]) -> dict[str, int]:
+    return {name: one.get(name, 0) + other.get(name, 0) for name in (*one, *other)}
