@@ -313,6 +313,7 @@ def test_each_constraint_has_a_check_that_fails_by_itself() -> None:
         visits_in_order=True,
         full_rotation=True,
         link_ratio=3.0,
+        reach=2.0,
         size=5.0,
         quality=0.5,
         lengths=[1.0, 3.0],
