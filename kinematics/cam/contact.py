@@ -1,7 +1,8 @@
 """What a finished profile does: the follower is laid against it, from its points alone.
 
 Nothing here knows the program or how the profile was made. A curve of the fifth degree runs through each six
-neighbouring points, over the length of the chords. At each cam angle every point of the curve that the follower could
+neighbouring points (:mod:`local_curves`), over the cam's angle where it is given with the points, else over the length
+of the chords. At each cam angle every point of the curve that the follower could
 touch asks for a displacement; the follower stands at the greatest of them, because at any smaller one the cam would
 be inside it. So a point elsewhere on the cam that is in the way is found, and so is a hollow too narrow for the roller.
 With P the point in the ground's frame, C the pivot's distance, D = |P − C| and β the angle of P at the pivot:
@@ -29,17 +30,26 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
+from kinematics.cam.local_curves import (
+    STENCIL,
+    chord_lengths,
+    curve_derivatives,
+    curve_value,
+    halved,
+    local_curves,
+    stencils,
+    straightened,
+)
 from kinematics.cam.profile import Rotation
+from kinematics.cam.program import TURN
 from kinematics.errors import DimensionError, ShapeError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Indices = NDArray[np.int64]
 
 FEWEST = 16
 """Points of the smallest profile that can be called a curve."""
-
-STENCIL = 6
-"""Points that a local curve runs through: its own two and two on each side."""
 
 NARROW = 4.0
 """Chords that a roller's radius must span, so that points of the profile lie on both sides of its contact."""
@@ -79,6 +89,14 @@ class ContactMotion(NamedTuple):
         return np.isfinite(self.s)
 
 
+class CurvePoint(NamedTuple):
+    """Points of a profile, the outward unit normals there, and the curvature, positive where convex."""
+
+    point: Complex
+    normal: Complex
+    curvature: Real
+
+
 @dataclass(frozen=True, eq=False)
 class Contour:
     """A closed profile through points in the cam's frame.
@@ -87,20 +105,33 @@ class Contour:
     ----------
     points : complex, shape (n,)
         In order around the cam, either way, the first not repeated at the end.
+    at : float, shape (n,), optional
+        A parameter in which the curve is smooth between breaks, ascending within a turn: the cam angles at which the
+        follower stands at the points. The length of the chords if left out.
+    breaks : int, shape (b,), optional
+        Points at which a derivative of the curve may jump, ascending. They only say where the local curves end: where
+        they are wrong the curve runs through all points nevertheless.
 
     Raises
     ------
     ShapeError
-        Fewer than 16 points.
+        Fewer than 16 points, or another number of angles.
     DimensionError
-        A point that is not finite, or two neighbours at one place.
+        A point that is not finite, or two neighbours at one place; angles that do not ascend within a turn.
     """
 
     points: Complex
+    at: Real | None = None
+    breaks: Indices | None = None
 
     def __post_init__(self) -> None:
         if self.points.ndim != 1 or len(self.points) < FEWEST:
             raise ShapeError(points=self.points.shape)
+        if self.at is not None:
+            if self.at.shape != self.points.shape:
+                raise ShapeError(points=self.points.shape, at=self.at.shape)
+            if not (np.diff(np.append(self.at, self.at[0] + TURN)) > 0.0).all():
+                raise DimensionError("angles of the points", "ascending within a turn", self.at)
         if not np.isfinite(self.points).all() or not (self.chords > 0.0).all():
             raise DimensionError("profile points", "finite and different from their neighbours", self.points)
 
@@ -119,10 +150,25 @@ class Contour:
     def _curves(self) -> Complex:
         """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
         n = len(self.points)
-        index = (np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)) % n
-        return local_curves(self.points[index])
+        first = stencils(n, self._breaks)
+        index = first[:, None] + np.arange(STENCIL)
+        points = self.points[index % n]
+        if self.at is None:
+            return local_curves(points, chord_lengths(points), np.arange(n) - first)
+        curves = local_curves(points, self.at[index % n] + TURN * (index // n), np.arange(n) - first)
+        return straightened(curves, self.at, self._breaks)
 
-    @property
+    @cached_property
+    def _breaks(self) -> Indices:
+        return np.empty(0, dtype=np.int64) if self.breaks is None else self.breaks
+
+    @cached_property
+    def coarser(self) -> Contour:
+        """The curve through every second point of each stretch between breaks."""
+        kept, breaks = halved(len(self.points), self._breaks)
+        return Contour(self.points[kept], None if self.at is None else self.at[kept], breaks)
+
+    @cached_property
     def turns_ccw(self) -> bool:
         """Whether the points run counter-clockwise."""
         following = np.roll(self.points, -1)
@@ -131,9 +177,17 @@ class Contour:
     def curvature(self, per_chord: int = 4) -> Real:
         """Curvature of the profile at equal shares of every chord, positive where convex; shape (n · per_chord,)."""
         share = np.arange(per_chord) / per_chord
-        first, second = curve_derivatives(self._curves[:, None, :], share)
+        return self.along(np.arange(len(self.points))[:, None], share).curvature.reshape(-1)
+
+    def along(self, chord: ArrayLike, share: ArrayLike) -> CurvePoint:
+        """Points of the profile at shares of its chords, 0 to 1; both of any shape that go together."""
+        curves = self._curves[np.asarray(chord, dtype=np.int64)]
+        tau = np.asarray(share, dtype=np.float64)
+        first, second = curve_derivatives(curves, tau)
         sign = 1.0 if self.turns_ccw else -1.0
-        return np.asarray(sign * (np.conj(first) * second).imag / np.abs(first) ** 3).reshape(-1)
+        length = np.abs(first)
+        bend = sign * (np.conj(first) * second).imag / length**3
+        return CurvePoint(curve_value(curves, tau), np.asarray(-1j * sign * first / length), np.asarray(bend))
 
     @cached_property
     def sharpest_turn(self) -> float:
@@ -171,7 +225,7 @@ class Contour:
             A roller so small that it fits between the points, other than a knife edge.
         """
         theta = np.asarray(angle, dtype=np.float64)
-        kind, sizes, zero = _dimensions(follower)
+        kind, sizes, zero = dimensions(follower)
         mirrored = rotation == "ccw"
         curves = np.conj(self._curves) if mirrored else self._curves
         flipped = getattr(follower, "sense", 1) == -1
@@ -195,8 +249,8 @@ class Contour:
             normal = np.where(valid, -1j * orientation * first / np.abs(first), np.nan)
             point = np.where(valid, point, np.nan)
             turn = np.exp(-1j * theta)
-            v, a = _rates(follower, values - zero, turn * point, turn * normal, radius)
-            direction = _direction(follower, values, turn * point)
+            v, a = rates(follower, values - zero, turn * point, turn * normal, radius)
+            direction = motion_direction(follower, values, turn * point)
             pressure = np.abs(np.angle(turn * normal * np.conj(direction)))
         own = np.conj if mirrored else np.asarray
         return ContactMotion(values - zero, v, a, own(point), own(normal), pressure, radius)
@@ -217,7 +271,7 @@ class Contour:
             A follower without a roller, or one whose roller fits between the points.
         """
         theta = np.asarray(angle, dtype=np.float64)
-        kind, sizes, zero = _dimensions(follower)
+        kind, sizes, zero = dimensions(follower)
         kinds = {TRANSLATING_ROLLER: TRANSLATING_WITHIN, OSCILLATING_ROLLER: OSCILLATING_WITHIN}
         if kind not in kinds or not sizes[2] >= NARROW * self.chords.max():
             raise DimensionError("roller radius", f"at least {NARROW * self.chords.max()}", sizes[2])
@@ -231,44 +285,7 @@ class Contour:
         return -values.reshape(theta.shape) - zero
 
 
-def local_curves(points: Complex) -> Complex:
-    """Coefficients of curves of the fifth degree through six points each, from the third (τ = 0) to the fourth (τ = 1).
-
-    Parameters
-    ----------
-    points : complex, shape (n, 6)
-        In order along the curve; the parameter is the length of the chords, in units of the middle one.
-
-    Returns
-    -------
-    complex, shape (n, 6)
-        Constant first.
-    """
-    chords = np.abs(np.diff(points, axis=1))
-    along = np.concatenate([np.zeros((len(points), 1)), np.cumsum(chords, axis=1)], axis=1)
-    along = (along - along[:, 2:3]) / chords[:, 2:3]
-    powers = along[:, :, None] ** np.arange(STENCIL)
-    solved = np.linalg.solve(powers, np.stack([points.real, points.imag], axis=-1))
-    return np.asarray(solved[..., 0] + 1j * solved[..., 1])
-
-
-def curve_value(curves: Complex, share: Real) -> Complex:
-    """Points of local curves at τ."""
-    result = curves[..., STENCIL - 1]
-    for k in range(STENCIL - 2, -1, -1):
-        result = result * share + curves[..., k]
-    return result
-
-
-def curve_derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
-    """First and second derivative of the local curves by τ."""
-    powers = np.arange(STENCIL)
-    first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    return curve_value(first, share), curve_value(second, share)
-
-
-def _rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius: Real) -> tuple[Real, Real]:
+def rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radius: Real) -> tuple[Real, Real]:
     """v and a from the contact, the profile's normal and its radius of curvature there, in the ground's frame."""
     if isinstance(follower, TranslatingRoller):
         height, tangent = follower.height + s, 1j * normal
@@ -295,7 +312,7 @@ def _rates(follower: Follower, s: Real, contact: Complex, normal: Complex, radiu
     return np.asarray(v), np.asarray(((radius - y + follower.face_offset) * rate**2 + y * v**2) * rate / x)
 
 
-def _dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], float]:
+def dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], float]:
     """The kind, its three lengths for the kernels, and its coordinate at zero displacement."""
     if isinstance(follower, TranslatingRoller):
         return TRANSLATING_ROLLER, (follower.offset, 0.0, follower.roller_radius), follower.height
@@ -307,7 +324,7 @@ def _dimensions(follower: Follower) -> tuple[int, tuple[float, float, float], fl
     return OSCILLATING_FACE, (0.0, follower.pivot_distance, follower.face_offset), follower.start_angle
 
 
-def _direction(follower: Follower, value: Real, contact: Complex) -> Complex:
+def motion_direction(follower: Follower, value: Real, contact: Complex) -> Complex:
     """Unit vector, in the ground's frame, of the motion of the roller's centre or of the face's point in contact."""
     if isinstance(follower, TranslatingRoller | TranslatingFlat):
         return np.ones_like(contact)

@@ -30,6 +30,13 @@ CONTINUOUS = 1e-6
 """Jump, relative to the derivative's largest value, up to which it counts as continuous: statements carry about seven
 digits, and a cam no more."""
 
+BENDING = 1e-6
+"""Jump of a derivative, relative to its largest value at the breaks, from which a profile is said to bend there."""
+
+SHARP = 0.03
+"""Such a jump from which no curve may be fitted over the bend. Optimal motions have hundreds of smaller ones, steps of
+a control that changes little by little."""
+
 
 @dataclass(frozen=True)
 class Joint:
@@ -92,6 +99,34 @@ class Program:
     def breaks(self) -> Real:
         """Angles between which s and all its derivatives are smooth, from 0 to 2π; shape (n + 1,)."""
         return self.pieces.start
+
+    @property
+    def bends(self) -> Real:
+        """Angles at which a derivative up to the fifth jumps, ascending from 0 and less than 2π."""
+        return np.asarray(self.breaks[:-1][self._jumps > BENDING])
+
+    @property
+    def sharp_bends(self) -> Real:
+        """Those of the bends that no curve runs over unnoticed."""
+        return np.asarray(self.breaks[:-1][self._jumps > SHARP])
+
+    @cached_property
+    def velocity_jumps(self) -> Real:
+        """Angles at which the velocity jumps, ascending from 0 and less than 2π."""
+        before = self.pieces.motion(np.append(TURN, self.breaks[1:-1]), before=True).v
+        after = self.pieces.motion(self.breaks[:-1]).v
+        return np.asarray(self.breaks[:-1][np.abs(after - before) > CONTINUOUS * self.peaks[1].largest])
+
+    @cached_property
+    def _jumps(self) -> Real:
+        """At each break but the last the greatest jump of a derivative, relative to its largest value at the breaks."""
+        fourth = self.pieces.derivative().derivative()
+        before, after = (
+            np.array([*self.pieces.motion(at, before=side), *fourth.motion(at, before=side)[2:]])
+            for at, side in ((np.append(TURN, self.breaks[1:-1]), True), (self.breaks[:-1], False))
+        )
+        size = np.maximum(np.abs(before), np.abs(after)).max(axis=1, keepdims=True)
+        return np.asarray((np.abs(after - before) / np.where(size > 0.0, size, 1.0)).max(axis=0))
 
     @cached_property
     def joints(self) -> Real:

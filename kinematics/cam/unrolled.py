@@ -20,11 +20,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.cam.contact import CUSP, FEWEST, NARROW, NARROWINGS, STENCIL, curve_derivatives, local_curves
+from kinematics.cam.contact import CUSP, FEWEST, NARROW, NARROWINGS
+from kinematics.cam.local_curves import (
+    STENCIL,
+    chord_lengths,
+    curve_derivatives,
+    halved,
+    local_curves,
+    stencils,
+)
+from kinematics.cam.program import TURN
 from kinematics.errors import DimensionError, ShapeError
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Indices = NDArray[np.int64]
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -50,6 +60,9 @@ class UnrolledWall:
         In the order of the turn; the first is not repeated at the end.
     period : float
         Circumference of the cylinder.
+    at, breaks : float, shape (n,), and int, shape (b,), optional
+        Cam angles of the points and points where a derivative may jump, as of a
+        :class:`~kinematics.cam.contact.Contour`.
 
     Raises
     ------
@@ -59,6 +72,8 @@ class UnrolledWall:
 
     points: Complex
     period: float
+    at: Real | None = None
+    breaks: Indices | None = None
 
     def __post_init__(self) -> None:
         if self.points.ndim != 1 or len(self.points) < FEWEST:
@@ -76,8 +91,21 @@ class UnrolledWall:
     @cached_property
     def _curves(self) -> Complex:
         n = len(self.points)
-        index = np.arange(n)[:, None] + np.arange(-2, STENCIL - 2)
-        return local_curves(self.points[index % n] + self.period * (index // n))
+        first = stencils(n, self._breaks)
+        index = first[:, None] + np.arange(STENCIL)
+        points = self.points[index % n] + self.period * (index // n)
+        at = chord_lengths(points) if self.at is None else self.at[index % n] + TURN * (index // n)
+        return local_curves(points, at, np.arange(n) - first)
+
+    @cached_property
+    def _breaks(self) -> Indices:
+        return np.empty(0, dtype=np.int64) if self.breaks is None else self.breaks
+
+    @cached_property
+    def coarser(self) -> UnrolledWall:
+        """The curve through every second point of each stretch between breaks."""
+        kept, breaks = halved(len(self.points), self._breaks)
+        return UnrolledWall(self.points[kept], self.period, None if self.at is None else self.at[kept], breaks)
 
     @cached_property
     def tangents(self) -> Complex:
@@ -91,12 +119,13 @@ class UnrolledWall:
         turn = np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
         return bool(np.abs(turn).max() > CUSP)
 
-    @cached_property
-    def curvature(self) -> Real:
-        """Of the circle through each three neighbouring points, positive where the wall bends toward +y; shape (n,)."""
-        ahead, behind = self.chords, np.roll(self.chords, 1)
-        sides = np.abs(ahead) * np.abs(behind) * np.abs(ahead + behind)
-        return np.asarray(2.0 * (np.conj(behind) * ahead).imag / sides)
+    def along(self, chord: ArrayLike, share: ArrayLike) -> tuple[Complex, Real]:
+        """Unit tangents, and curvatures positive where the wall bends toward +y, at shares of its chords."""
+        first, second = curve_derivatives(
+            self._curves[np.asarray(chord, dtype=np.int64)], np.asarray(share, dtype=np.float64)
+        )
+        length = np.abs(first)
+        return np.asarray(first / length), np.asarray((np.conj(first) * second).imag / length**3)
 
     def follow(self, x: ArrayLike, roller_radius: float, side: Literal[1, -1]) -> Touch:
         """Lay a roller on a lower wall (side 1) or under an upper one (side −1).

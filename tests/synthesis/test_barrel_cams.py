@@ -86,8 +86,9 @@ def test_tampering_is_found():
         return curve.model_copy(update={"y": y})
 
     assert broken() == set()
-    assert broken(lower_wall=bumped(mechanism.lower_wall)) == {"lower_wall_reproduces_program"}
-    assert broken(upper_wall=bumped(mechanism.upper_wall)) == {"upper_wall_reproduces_program"}
+    # Two micrometres off are seen in the displacement, and on one of the walls in the curvature too.
+    assert broken(lower_wall=bumped(mechanism.lower_wall)) - {"curvature_ratio"} == {"lower_wall_reproduces_program"}
+    assert broken(upper_wall=bumped(mechanism.upper_wall)) - {"curvature_ratio"} == {"upper_wall_reproduces_program"}
     assert "lower_wall_reproduces_program" in broken(cylinder_radius=mechanism.cylinder_radius * 1.0001)
     verdict, _ = verify_barrel(stated(limits={"pressure_angle": 30.0}), mechanism)
     assert {"pressure_angle", "pressure_angle_fall"} <= {c.name for c in verdict.checks if not c.passed}

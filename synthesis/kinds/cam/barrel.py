@@ -67,9 +67,11 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
 
 def _closer(angle: Real, measured: MeasuredBarrel, failed: set[str]) -> Real | None:
     """Angles that stand closer where the walls' points are too few; None where more do not help."""
-    if "no_cusp" in failed or not any("reproduces" in name for name in failed):
+    if "no_cusp" in failed:
         return None
-    return refined(angle, measured.off, REPRODUCED)
+    if any("reproduces" in name for name in failed):
+        return refined(angle, measured.off, REPRODUCED)
+    return refined(angle, measured.unsettled, 1.0) if (measured.unsettled > 0.0).any() else None
 
 
 def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -> Size | None:

@@ -12,15 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.cam.finished import WorstOfWall, worst_of_wall
 from kinematics.cam.program import TURN
 from kinematics.cam.unrolled import UnrolledWall
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.kinds.cam.design import BarrelCamMechanism
 from synthesis.kinds.cam.measured_rates import Measure, rate_checks
-from synthesis.kinds.cam.mechanism import points_of
+from synthesis.kinds.cam.mechanism import points_of, stretches_of
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import Reproduction
-from synthesis.kinds.cam.verification import roller_checks, size_checks
+from synthesis.kinds.cam.verification import curvature_slack, roller_checks, size_checks
 from synthesis.model.answer import Check, Verification
 
 Real = NDArray[np.float64]
@@ -31,13 +32,15 @@ class MeasuredBarrel:
     """What the finished groove does: greatest pressure angles (degrees), least radius of its pitch curve.
 
     ``off`` is the greatest deviation of either wall from the program, from each angle of the table to the next, as a
-    share of the lift; NaN where the roller touches nothing.
+    share of the lift; NaN where the roller touches nothing. ``unsettled`` says, by how many times what is allowed, how
+    far the curvature from each angle to the next depends on how close points stand, where it may be the greatest.
     """
 
     rising: float
     falling: float
     least_radius: float
     off: Real
+    unsettled: Real
 
 
 def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[Verification, MeasuredBarrel | None]:
@@ -45,8 +48,10 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
     radius, roller = mechanism.cylinder_radius, mechanism.follower.roller_radius
     demanded = Reproduction.of(problem, mechanism.program)
     try:
+        at, stretches = np.radians(mechanism.program.angle), stretches_of(mechanism.program)
         lower, upper = (
-            UnrolledWall(points_of(curve), TURN * radius) for curve in (mechanism.lower_wall, mechanism.upper_wall)
+            UnrolledWall(points_of(curve), TURN * radius, at, stretches.breaks)
+            for curve in (mechanism.lower_wall, mechanism.upper_wall)
         )
         touches = lower.follow(radius * demanded.angle, roller, 1), upper.follow(radius * demanded.angle, roller, -1)
     except (DimensionError, ShapeError):
@@ -59,12 +64,14 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         demanded.check("upper_wall_reproduces_program", off[1], touched[1]),
         Check(name="no_cusp", passed=not (lower.cusped or upper.cusped)),
     ]
-    pressure_angle = np.abs(np.angle([touch.tangent for touch in touches])).max(axis=0)
-    rising, falling = demanded.steepest(pressure_angle)
-    measured = MeasuredBarrel(rising, falling, _pitch_radius(lower, upper, roller), np.maximum(*off))
+    walls = worst_of_wall(lower, stretches), worst_of_wall(upper, stretches)
+    rising, falling = (math.degrees(max(getattr(wall, name) for wall in walls)) for name in ("rising", "falling"))
+    unsettled = np.maximum(walls[0].unsettled, walls[1].unsettled)
+    measured = MeasuredBarrel(rising, falling, _pitch_radius(*walls, roller), np.maximum(*off), unsettled)
     if all(touched):
         checks += rate_checks(problem, _measure(lower, radius, roller), demanded.lift, demanded.tolerance)
-        checks += roller_checks(problem.limits, rising, falling, measured.least_radius / roller)
+        slack = curvature_slack(unsettled)
+        checks += roller_checks(problem.limits, rising, falling, measured.least_radius / roller, slack)
         checks += size_checks(problem.limits, radius, radius)
     return Verification.of(checks), measured
 
@@ -79,12 +86,7 @@ def _measure(wall: UnrolledWall, radius: float, roller: float) -> Measure:
     return measure
 
 
-def _pitch_radius(lower: UnrolledWall, upper: UnrolledWall, roller: float) -> float:
+def _pitch_radius(lower: WorstOfWall, upper: WorstOfWall, roller: float) -> float:
     """Least radius of curvature of the pitch curve, which lies a roller's radius inside each wall."""
-    radii = [math.inf]
-    for wall, side in ((lower, 1.0), (upper, -1.0)):
-        for sign in (1.0, -1.0):
-            bend = float((sign * wall.curvature).max())
-            if bend > 0.0:
-                radii.append(1.0 / bend - side * sign * roller)
-    return min(radii)
+    bends = (lower.up, -roller), (lower.down, roller), (upper.up, roller), (upper.down, -roller)
+    return min((1.0 / bend + inside for bend, inside in bends if bend > 0.0), default=math.inf)

@@ -53,6 +53,7 @@ class ProgramTable(Answer):
     v: list[Velocity]
     a: list[Acceleration]
     j: list[Jerk]
+    breaks: list[Angle] = Field(description="Cam angles of the table between which the motion is smooth.")
 
 
 class CamMechanism(Answer):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 
 from kinematics.cam import follower as core
 from kinematics.cam.barrel import BarrelCam
-from kinematics.cam.pieces import Motion
+from kinematics.cam.finished import Stretches
+from kinematics.cam.local_curves import FEWEST_STEPS
 from kinematics.cam.profile import Cam, even_angles
 from kinematics.cam.program import TURN, Program
 from synthesis.kinds.cam.design import (
@@ -37,30 +39,63 @@ MIN_CHORDS_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
 
 
+CLOSER = 1.1
+"""By which the number of equal steps is at least multiplied where the roller's radius spans too few chords."""
+
 MAX_PARTS = 8
 """Parts that a step is divided in at once, at most."""
 
-MIN_STEPS_OF_MOVE = 12
-"""Steps of the profile within a segment that moves, at least."""
+BESIDE = 1e-7
+"""Radians before a jump of the velocity at which the profile has a point of the side that ends there."""
+
+SHORTEST = 1e-4
+"""Radians of a stretch between breaks that is not divided: some micrometres, on which rounding of the points leaves no
+curvature to be measured."""
+
+MIN_STEPS = 2 * FEWEST_STEPS
+"""Steps of the profile between two sharp bends of the motion, at least; every second point is enough for a curve."""
+
+SHORT = 2e-3
+"""Radians of a stretch that half as many steps show, because more would leave the curvature fewer digits."""
 
 
 def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
-    """Cam angles of a profile: equal steps and the joints of the segments, as close as short segments ask for.
+    """Cam angles of a profile: equal steps and the motion's bends, as close as short stretches between them ask for.
 
     A small roller asks for close points too: its radius spans five chords of the curve that it touches.
     """
-    short = [
-        np.linspace(start, end, MIN_STEPS_OF_MOVE + 1)[:-1]
-        for start, end, segment in zip(program.joints[:-1], program.joints[1:], program.segments, strict=True)
-        if segment.pieces.polynomial.shape[1] > 1 and end - start < MIN_STEPS_OF_MOVE * TURN / count
+    breaks = np.union1d(np.union1d(program.joints[:-1], program.bends), _just_before(program))
+    stretches = pairwise(np.append(np.union1d(program.joints[:-1], program.sharp_bends), TURN))
+    closer = [
+        np.linspace(start, end, (MIN_STEPS if end - start > SHORT else FEWEST_STEPS) + 1)[1:-1]
+        for start, end in stretches
+        if SHORTEST < end - start < MIN_STEPS * TURN / count
     ]
     while True:
-        angle: Real = np.unique(np.concatenate([even_angles(count), program.joints[:-1], *short]))
-        angle = angle[np.append(True, np.diff(angle) > SAME_ANGLE_TOLERANCE)]
+        even = even_angles(count)
+        between = [_apart(steps, even) for steps in closer]
+        others = np.unique(np.concatenate([even, *between]))
+        # A step beside a break would be a chord of no length.
+        before = others - breaks[np.searchsorted(breaks, others, side="right") - 1]
+        after = np.append(breaks, TURN)[np.searchsorted(breaks, others)] - others
+        angle: Real = np.union1d(others[np.minimum(before, after) > SAME_ANGLE_TOLERANCE], breaks)
         chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
         if chord * MIN_CHORDS_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MAX_EQUAL_STEPS:
             return angle
-        count *= 2
+        count = min(math.ceil(count * max(chord * MIN_CHORDS_OF_ROLLER / roller_radius, CLOSER)), MAX_EQUAL_STEPS)
+
+
+def _apart(steps: Real, even: Real) -> Real:
+    """Those of some steps that are not almost at one of the equal ones, which stands for them."""
+    nearest = np.abs(
+        steps[:, None] - even[np.clip(np.searchsorted(even, steps)[:, None] - [1, 0], 0, None) % len(even)]
+    )
+    return np.asarray(steps[nearest.min(axis=1) > 0.4 * (steps[1] - steps[0])])
+
+
+def _just_before(program: Program) -> Real:
+    """Cam angles beside jumps of the velocity, where the profile has a corner or an edge, with a point at both ends."""
+    return np.sort(np.mod(program.velocity_jumps - BESIDE, TURN))
 
 
 def refined(angle: Real, off: Real, allowed: float) -> Real:
@@ -73,6 +108,7 @@ def refined(angle: Real, off: Real, allowed: float) -> Real:
     parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, MAX_PARTS).astype(np.int64)
     parts = np.maximum(parts, np.minimum(np.roll(parts, -1), 2))
     parts = np.maximum(parts, np.minimum(np.roll(parts, 1), 2))
+    parts[np.diff(closed) < 2.0 * BESIDE] = 1
     low, step = np.repeat(closed[:-1], parts), np.repeat(np.diff(closed) / parts, parts)
     within = np.arange(len(low)) - np.repeat(np.cumsum(parts) - parts, parts)
     return np.unique(np.mod(low + step * within, TURN))
@@ -95,7 +131,7 @@ def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
         profile=_curve(degrees, cam.profile(angle)),
         outer_wall=_curve(degrees, cam.outer_wall(angle)) if groove else None,
         pitch_curve=_curve(degrees, cam.pitch_curve(angle)),
-        program=_table(degrees, cam.program.motion(angle), unit),
+        program=_table(cam.program, angle, unit),
     )
 
 
@@ -109,18 +145,21 @@ def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: R
         lower_wall=_curve(degrees, barrel.wall(angle, -1)),
         upper_wall=_curve(degrees, barrel.wall(angle, 1)),
         pitch_curve=_curve(degrees, barrel.pitch_curve(angle)),
-        program=_table(degrees, barrel.program.motion(angle), 1.0),
+        program=_table(barrel.program, angle, 1.0),
     )
 
 
-def _table(degrees: list[float], motion: Motion, unit: float) -> ProgramTable:
+def _table(program: Program, angle: Real, unit: float) -> ProgramTable:
     """The program at cam angles; ``unit`` turns the displacement of the core into the answer's."""
+    motion, bends = program.motion(angle), np.union1d(program.bends, _just_before(program))
+    breaks = np.searchsorted(angle, bends - SAME_ANGLE_TOLERANCE)
     return ProgramTable(
-        angle=degrees,
+        angle=np.degrees(angle).tolist(),
         s=(motion.s * unit).tolist(),
         v=motion.v.tolist(),
         a=motion.a.tolist(),
         j=motion.j.tolist(),
+        breaks=np.unique(np.degrees(angle[breaks])).tolist(),
     )
 
 
@@ -144,6 +183,21 @@ def core_follower(mechanism: CamMechanism) -> core.Follower:
 def points_of(curve: CamCurve) -> Complex:
     """A curve as complex numbers."""
     return np.array(curve.x) + 1j * np.array(curve.y)
+
+
+def stretches_of(program: ProgramTable) -> Stretches:
+    """How the breaks of the motion divide a profile, which has the table's cam angles."""
+    count = len(program.angle)
+    breaks = np.flatnonzero(np.isin(program.angle, program.breaks))
+    if not len(breaks):
+        none = np.zeros(count, np.bool_)
+        return Stretches(breaks, none, none)
+    steps = np.append(breaks[1:], breaks[:1] + count) - breaks
+    at = np.radians(program.angle)
+    span = np.append(at[breaks[1:]], at[breaks[:1]] + TURN) - at[breaks]
+    crossed = steps < FEWEST_STEPS
+    blurred, narrow = (np.roll(np.repeat(some, steps), breaks[0]) for some in (crossed, crossed & (span < SHORTEST)))
+    return Stretches(breaks[~crossed | ~np.roll(crossed, 1)], blurred, narrow)
 
 
 def table_angles(program: ProgramTable) -> Real:

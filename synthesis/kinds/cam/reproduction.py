@@ -62,8 +62,6 @@ class Reproduction:
         Cam angles, radians; n is the length of the program's table.
     displacement : float64, shape (4 n,)
         The program there, in radians for an arm.
-    rising : bool, shape (4 n,)
-        Whether the follower rises there or rests.
     lift : float
         The program's travel, by which deviations are divided.
     tolerance : float
@@ -74,7 +72,6 @@ class Reproduction:
 
     angle: Real
     displacement: Real
-    rising: NDArray[np.bool_]
     lift: float
     tolerance: float
     checks: list[Check]
@@ -87,7 +84,6 @@ class Reproduction:
         return cls(
             _finer(angle),
             _between(angle, displacement, program),
-            np.repeat(np.array(program.v), FINER) >= 0.0,
             lift,
             REPRODUCED_WITH_JUMPS if problem.accept_discontinuity else REPRODUCED,
             program_checks(problem, program, lift),
@@ -104,13 +100,6 @@ class Reproduction:
         """Whether the program comes back; it does not where the follower touches nothing."""
         worst = float(deviation.max()) if touches else math.inf
         return tolerated(name, reported(worst), self.tolerance)
-
-    def steepest(self, pressure_angle: Real) -> tuple[float, float]:
-        """Greatest pressure angle in degrees while rising and while falling, of angles in radians; 0 without a move."""
-        rise, fall = (
-            math.degrees(float(np.nanmax(pressure_angle[part], initial=0.0))) for part in (self.rising, ~self.rising)
-        )
-        return rise, fall
 
 
 def _finer(angle: Real) -> Real:

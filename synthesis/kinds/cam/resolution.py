@@ -13,7 +13,7 @@ from synthesis.model.kind import Progress
 
 Real = NDArray[np.float64]
 
-MAX_POINTS = 12_000
+MAX_POINTS = 14_000
 """Points of a curve at most. Where a motion changes its acceleration within less than a step, points are put closer
 until the profile reproduces it; beyond this number the design fails its verification."""
 

@@ -55,18 +55,21 @@ from synthesis.kinds.cam.sizing import (
     translating_flat,
     translating_roller,
 )
-from synthesis.kinds.cam.verification import MEASURED_SLACK, Measured, verify
+from synthesis.kinds.cam.verification import Measured, verify
 from synthesis.model.answer import Verification
 from synthesis.model.kind import Progress
 from synthesis.model.statement import Contradiction, ContradictionError
 
 Real = NDArray[np.float64]
 
-SHAPE = {"curvature_ratio", "min_radius", "convex"}
-"""Checks of curvature, which a profile of too few points can fail although its cam does not."""
-
 UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
 """Checks that more points do not mend."""
+
+PEAKS = {"peak_velocity", "peak_acceleration", "peak_jerk"}
+"""Checks of differences of what is measured, which too few points fail although the program keeps the limit."""
+
+HALVED = 7.0
+"""What :func:`refined` takes as a deviation, in those allowed, that divides a step in two."""
 
 PEAK_ACCELERATIONS = (6.0, 8.0, 11.0, 16.0)
 """Peak accelerations, by lift and angle squared, between which size by pressure angle and by curvature are traded."""
@@ -76,9 +79,6 @@ JERK_SHARE = 25.0
 
 BOUND_TOLERANCE = 0.01
 """A cam within this share of the bound is small enough."""
-
-QUARTERED = 127.0
-"""What :func:`refined` takes as a deviation, in those allowed, that divides a step in four."""
 
 NOT_ZERO = 1e-300
 """Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
@@ -118,7 +118,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         angle,
         partial(cam_mechanism, cam, groove=problem.closure == "form"),
         partial(verify, problem),
-        partial(_closer, problem, cam),
+        _closer,
         progress,
     )
     if measured is None:
@@ -185,26 +185,17 @@ def _radius(problem: CamProblem, composed: Composition) -> float:
     return math.inf if sized is None else sized[0].size
 
 
-def _closer(problem: CamProblem, cam: Cam, angle: Real, measured: Measured, failed: set[str]) -> Real | None:
+def _closer(angle: Real, measured: Measured, failed: set[str]) -> Real | None:
     """Angles that stand closer where the profile's points are too few; None where more do not help."""
     if failed & UNSOUND:
         return None
     if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
         return refined(angle, measured.off, REPRODUCED)
-    if failed & SHAPE and not _shape_fails(problem, cam):
-        return refined(angle, np.ones_like(angle), REPRODUCED)
     if measured.unsettled.any():
-        return refined(angle, np.where(measured.unsettled, QUARTERED, 0.0), 1.0)
+        return refined(angle, measured.unsettled, 1.0)
+    if failed & PEAKS and not failed & {f"table_{peak[5:]}" for peak in PEAKS}:
+        return refined(angle, np.full_like(angle, HALVED), 1.0)
     return None
-
-
-def _shape_fails(problem: CamProblem, cam: Cam) -> bool:
-    """Whether the exact curves break a limit on curvature: then more points of the profile would not help."""
-    limits = problem.limits
-    if cam.roller_radius > 0.0:
-        rho = least_pitch_radius(limits, cam.roller_radius)
-        return cam.pitch_curvature_extremes.largest * rho > 1.0 + MEASURED_SLACK
-    return cam.radius_extremes.least < least_face_radius(problem) * (1.0 - MEASURED_SLACK)
 
 
 def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:

@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
+from kinematics.cam.finished import worst
 from kinematics.cam.follower import Follower
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.kinds.cam.design import CamMechanism
 from synthesis.kinds.cam.followers import OscillatingRoller, TranslatingRoller
 from synthesis.kinds.cam.limits import CamLimits
 from synthesis.kinds.cam.measured_rates import rate_checks
-from synthesis.kinds.cam.mechanism import core_follower, points_of
+from synthesis.kinds.cam.mechanism import core_follower, points_of, stretches_of
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import FINER, TABLE_SLACK, Reproduction, reported
 from synthesis.model.answer import Check, Verification
@@ -31,21 +32,12 @@ from synthesis.proof.checks import at_least, at_most
 
 Real = NDArray[np.float64]
 
-MEASURED_SLACK = 2e-3
-"""Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points: where
-the acceleration bends, its local fifth degree is off by that much."""
+MEASURED_SLACK = 1e-5
+"""Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points and
+made worse by as much as that curve may be off."""
 
-
-AGREE = 1e-3
-"""Relative difference of the curvatures of two circles, one twice as wide, that nearly agree: the narrow one is off by
-a third of this, and what both point to by far less."""
-
-CLOSEST = 1e-9
-"""Sagitta of two neighbouring points, as a share of their distance from the centre, below which they are put no closer:
-four times as close, rounding is a ten-thousandth of the curvature."""
-
-GREAT = 0.7
-"""Share of the greatest measured curvature from which a place may have the greatest one."""
+UNSETTLED_SLACK = 2e-3
+"""The same of limits on curvature where a profile of very many short moves can have no more points."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +59,9 @@ class Measured:
     off : float64, shape (n,)
         Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
         a share of the lift; NaN where the follower touches nothing.
-    unsettled : bool, shape (n,)
-        From which angles to the next the curvature, where it is among the greatest, depends on how close points stand.
+    unsettled : float64, shape (n,)
+        By how many times what is allowed the curvature from each angle to the next depends on how close points stand,
+        where it may be the greatest; 0 elsewhere.
     """
 
     rising: float
@@ -79,7 +72,7 @@ class Measured:
     sweep: float
     radius: float
     off: Real
-    unsettled: NDArray[np.bool_]
+    unsettled: Real
 
 
 def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
@@ -99,7 +92,8 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     """
     demanded = Reproduction.of(problem, mechanism.program)
     try:
-        contour = Contour(points_of(mechanism.profile))
+        stretches = stretches_of(mechanism.program)
+        contour = Contour(points_of(mechanism.profile), np.radians(mechanism.program.angle), stretches.breaks)
         follower = core_follower(mechanism)
         contact = contour.follow(follower, demanded.angle, mechanism.rotation)
     except (DimensionError, ShapeError):
@@ -114,25 +108,24 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         Check(name="does_not_cross_itself", passed=len(contour.crossings) == 0),
     ]
     if problem.closure == "form":
-        wall_checks, wall_off = _groove_checks(mechanism, follower, demanded)
+        wall_checks, wall_off = _groove_checks(mechanism, contour, follower, demanded)
         checks += wall_checks
         off = np.maximum(off, wall_off)
-    curvature, unsettled = _curvature(contour)
-    rising, falling = demanded.steepest(contact.pressure_angle)
-    convex = float(1.0 / curvature.max()) if curvature.max() > 0.0 else math.inf
-    concave = float(-1.0 / curvature.min()) if curvature.min() < 0.0 else math.inf
+    found = worst(contour, follower, mechanism.rotation, stretches)
+    convex = 1.0 / found.convex if found.convex > 0.0 else math.inf
+    concave = 1.0 / found.concave if found.concave > 0.0 else math.inf
     roller = mechanism.follower.roller_radius or 0.0
     measured = Measured(
-        rising,
-        falling,
+        math.degrees(found.rising),
+        math.degrees(found.falling),
         convex,
         concave,
         # The pitch curve lies a roller's radius outside the profile.
         min(convex + roller, concave - roller) / roller if roller else math.inf,
-        float(np.ptp(_reach(mechanism, contact.point, demanded.angle))),
-        float(np.abs(contour.points).max()),
+        found.sweep,
+        found.radius,
         off,
-        unsettled,
+        found.unsettled,
     )
     if touches:
 
@@ -145,13 +138,15 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     return Verification.of(checks), measured
 
 
-def _groove_checks(mechanism: CamMechanism, follower: Follower, demanded: Reproduction) -> tuple[list[Check], Real]:
+def _groove_checks(
+    mechanism: CamMechanism, contour: Contour, follower: Follower, demanded: Reproduction
+) -> tuple[list[Check], Real]:
     """The roller against the outer wall, from within: the same program comes back. Also how far it is off."""
     name, unmeasured = "outer_wall_reproduces_program", np.zeros(len(demanded.angle) // FINER)
     if mechanism.outer_wall is None:
         return [Check(name=name, passed=False)], unmeasured
     try:
-        wall = Contour(points_of(mechanism.outer_wall))
+        wall = Contour(points_of(mechanism.outer_wall), contour.at, contour.breaks)
         displacement = wall.within(follower, demanded.angle, mechanism.rotation)
     except (DimensionError, ShapeError):
         return [Check(name=name, passed=False)], unmeasured
@@ -163,55 +158,15 @@ def _groove_checks(mechanism: CamMechanism, follower: Follower, demanded: Reprod
     ], off
 
 
-def _curvature(contour: Contour) -> tuple[Real, NDArray[np.bool_]]:
-    """Curvature at each point of the profile, positive where convex, and from which points to the next it is unsettled.
-
-    A circle through a point and its neighbours averages the curvature over them, so that the greatest is found too
-    small: unsafe. The circle of twice the width is wrong by four times as much. Where both nearly agree the curvature
-    is what they point to; elsewhere the points have to stand closer, if the curvature there is among the greatest and
-    rounding leaves room. Where it jumps no circle over the jump is right at any width, but those beside it are.
-    """
-    near, wide = _circles(contour, 1), _circles(contour, 2)
-    great = near >= GREAT * near.max()
-    if near.min() < 0.0:
-        great |= near <= GREAT * near.min()
-    agree = np.abs(near - wide) <= AGREE * np.abs(near)
-    chord = np.abs(np.diff(contour.points, append=contour.points[:1]))
-    room = np.abs(near) * np.minimum(chord, np.roll(chord, 1)) ** 2 >= CLOSEST * np.abs(contour.points)
-    unsettled = great & ~agree & room
-    return np.where(agree, near + (near - wide) / 3.0, near), np.asarray(unsettled | np.roll(unsettled, -1), np.bool_)
-
-
-def _circles(contour: Contour, stride: int) -> Real:
-    """Curvature of the circle through each point of the profile and those ``stride`` before and after it."""
-    points = contour.points
-    before, after = np.roll(points, stride), np.roll(points, -stride)
-    sides = np.abs(points - before) * np.abs(after - points) * np.abs(after - before)
-    sign = 1.0 if contour.turns_ccw else -1.0
-    return np.asarray(2.0 * sign * (np.conj(points - before) * (after - points)).imag / sides)
-
-
-def _reach(mechanism: CamMechanism, contact: NDArray[np.complex128], angle: Real) -> Real:
-    """Where on a face the contact is, along the face; zero for a roller."""
-    if mechanism.base_radius is None:
-        return np.zeros_like(angle)
-    sign = 1.0 if mechanism.rotation == "ccw" else -1.0
-    ground = contact * np.exp(1j * sign * angle)
-    if mechanism.follower.type == "translating_flat":
-        return np.asarray(ground.imag)
-    pivot, face = mechanism.follower.pivot_distance or 0.0, mechanism.follower.face_offset or 0.0
-    return np.asarray(np.sqrt(np.maximum(np.abs(ground - pivot) ** 2 - face**2, 0.0)))
-
-
 def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured) -> list[Check]:
     """The client's limits; which of them count is for the stated follower to say, not for the answer."""
-    limits = problem.limits
+    limits, slack = problem.limits, curvature_slack(measured.unsettled)
     if isinstance(problem.follower, TranslatingRoller | OscillatingRoller):
-        checks = roller_checks(limits, measured.rising, measured.falling, measured.curvature_ratio)
+        checks = roller_checks(limits, measured.rising, measured.falling, measured.curvature_ratio, slack)
         size = mechanism.prime_radius or 0.0
     else:
         checks = [
-            at_least("min_radius", reported(measured.convex_radius), limits.min_radius, LENGTH, MEASURED_SLACK),
+            at_least("min_radius", reported(measured.convex_radius), limits.min_radius, LENGTH, slack),
             Check(name="convex", passed=math.isinf(measured.concave_radius)),
         ]
         if limits.face_width is not None:
@@ -225,12 +180,19 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
     return [*checks, *size_checks(limits, size - (mechanism.follower.roller_radius or 0.0), size)]
 
 
-def roller_checks(limits: CamLimits, rising: float, falling: float, curvature_ratio: float) -> list[Check]:
+def curvature_slack(unsettled: Real) -> float:
+    """Relative slack of limits on curvature, by whether it depends on how close points stand."""
+    return UNSETTLED_SLACK if unsettled.any() else MEASURED_SLACK
+
+
+def roller_checks(
+    limits: CamLimits, rising: float, falling: float, curvature_ratio: float, slack: float
+) -> list[Check]:
     """Limits of every roller: pressure angles (degrees), least radius of the pitch curve over the roller's."""
     return [
         at_most("pressure_angle", rising, limits.pressure_angle, ANGLE, MEASURED_SLACK),
         at_most("pressure_angle_fall", falling, limits.falling_pressure_angle, ANGLE, MEASURED_SLACK),
-        at_least("curvature_ratio", reported(curvature_ratio), limits.curvature_ratio, slack=MEASURED_SLACK),
+        at_least("curvature_ratio", reported(curvature_ratio), limits.curvature_ratio, slack=slack),
     ]
 
 

@@ -1,0 +1,193 @@
+"""The worst values of finished cams against the exact curves of their programs: right to 1e-6, none flattering."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kinematics.cam.contact import Contour
+from kinematics.cam.finished import Stretches, worst
+from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
+from kinematics.cam.local_curves import halved, stencils
+from kinematics.cam.motion_laws import LAWS
+from kinematics.cam.profile import Cam
+from kinematics.cam.program import TURN, Program
+from kinematics.cam.segments import dwell, law_segment
+from synthesis.dispatch import solve
+from synthesis.kinds.cam.mechanism import cam_mechanism, points_of, profile_angles, stretches_of
+from synthesis.registry import parse_problem
+from tests.oracles.cam_formulas import pressure_angle_extremes
+from tests.synthesis.cam_sampling import dense_motion, oscillating, translating
+
+LAW_NAMES = ("modified_sine", "cycloidal", "modified_trapezoid", "polynomial_345")
+
+FOLLOWERS = {
+    "translating_roller": {"type": "translating_roller", "roller_radius": 8.0, "offset": 5.0},
+    "oscillating_roller": {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 90.0, "pivot_distance": 120.0},
+    "translating_flat": {"type": "translating_flat"},
+    "oscillating_flat": {"type": "oscillating_flat", "pivot_distance": 140.0, "face_offset": 4.0},
+}
+
+
+def statement(law: str, follower: str, **fields: object) -> dict[str, object]:
+    """A double dwell with an uneven rise and fall."""
+    lift = 20.0 if follower.startswith("translating") else 12.0
+    segments = [
+        {"motion": "dwell", "angle": 65.0},
+        {"motion": "rise", "angle": 70.0, "lift": lift, "law": law},
+        {"motion": "dwell", "angle": 95.0},
+        {"motion": "return", "angle": 130.0, "law": law},
+    ]
+    return {"kind": "cam", "segments": segments, "follower": FOLLOWERS[follower], **fields}
+
+
+def stated_program(law: str, lift: float) -> Program:
+    """The same, from the laws."""
+    rise, fall = math.radians(70.0), math.radians(130.0)
+    return Program(
+        [
+            dwell(math.radians(65.0), 0.0),
+            law_segment(LAWS[law], rise, 0.0, lift),
+            dwell(math.radians(95.0), lift),
+            law_segment(LAWS[law], fall, lift, 0.0),
+        ]
+    )
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("follower", ["translating_roller", "oscillating_roller"])
+def test_a_roller_has_the_extremes_of_the_laws(law: str, follower: str) -> None:
+    """From circles through three points the radii of slides were right to 3e-4, sampled pressure angles to 8e-6."""
+    (design,) = solve(parse_problem(statement(law, follower))).designs
+    mechanism, found = design.mechanism, design.metrics
+    stated, roller = mechanism.follower, mechanism.follower.roller_radius
+    if follower == "translating_roller":
+        motion = dense_motion(stated_program(law, 20.0), 200_001)
+        angle, bend = translating(motion, mechanism.prime_radius, stated.offset)
+    else:
+        motion = dense_motion(stated_program(law, math.radians(12.0)), 200_001)
+        angle, bend = oscillating(motion, mechanism.prime_radius, stated.arm, stated.pivot_distance, stated.sense)
+    convex, hollow = 1.0 / bend.max(), math.inf if bend.min() >= 0.0 else -1.0 / bend.min()
+    exact = {
+        "max_pressure_angle_rise": math.degrees(angle[motion.v >= 0.0].max()),
+        "max_pressure_angle_fall": math.degrees(angle[motion.v < 0.0].max()),
+        "min_convex_radius": convex - roller,
+        "curvature_ratio": min(convex, hollow) / roller,
+    }
+    for name, value in exact.items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
+    if math.isfinite(hollow):
+        assert found.min_concave_radius == pytest.approx(hollow + roller, rel=1e-6)
+    assert found.min_convex_radius <= exact["min_convex_radius"] * (1.0 + 1e-8)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("follower", ["translating_flat", "oscillating_flat"])
+def test_a_face_has_the_extremes_of_the_laws(law: str, follower: str) -> None:
+    """ρ = R + s + a of a slide, C sin ψ − f + (C cos ψ a/μ − C sin ψ v²)/μ² of an arm, μ = 1 − v."""
+    (design,) = solve(parse_problem(statement(law, follower, limits={"min_radius": 3.0}))).designs
+    mechanism, found = design.mechanism, design.metrics
+    if follower == "translating_flat":
+        m = dense_motion(stated_program(law, 20.0), 200_001)
+        radius, reach = mechanism.base_radius + m.s + m.a, m.v
+    else:
+        pivot, offset = mechanism.follower.pivot_distance, mechanism.follower.face_offset
+        m = dense_motion(stated_program(law, math.radians(12.0)), 200_001)
+        psi = math.asin((mechanism.base_radius + offset) / pivot) + m.s
+        rate, x, y = 1.0 - m.v, pivot * np.cos(psi), pivot * np.sin(psi)
+        radius, reach = y - offset + (x * m.a / rate - y * m.v**2) / rate**2, x / rate
+    assert found.min_convex_radius == pytest.approx(radius.min(), rel=1e-6)
+    assert found.min_convex_radius <= radius.min() * (1.0 + 1e-8)
+    assert found.face_width == pytest.approx(np.ptp(reach), rel=1e-6)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_a_barrel_has_the_extremes_of_the_laws(law: str) -> None:
+    """tan φ = v/R and κ = a R/(R² + v²)^{3/2}."""
+    problem = parse_problem(
+        statement(law, "translating_roller") | {"follower": {"type": "barrel_roller", "roller_radius": 6.0}}
+    )
+    (design,) = solve(problem).designs
+    radius, m = design.mechanism.cylinder_radius, dense_motion(stated_program(law, 20.0), 200_001)
+    least = ((radius**2 + m.v**2) ** 1.5 / np.maximum(np.abs(m.a) * radius, 1e-9)).min()
+    found = design.metrics
+    assert found.max_pressure_angle_rise == pytest.approx(math.degrees(math.atan(m.v.max() / radius)), rel=1e-6)
+    assert found.max_pressure_angle_fall == pytest.approx(math.degrees(math.atan(-m.v.min() / radius)), rel=1e-6)
+    assert found.min_radius == pytest.approx(least, rel=1e-6)
+    assert found.min_radius <= least * (1.0 + 1e-8)
+
+
+def test_a_profile_without_its_breaks_is_measured_worse_never_better() -> None:
+    """Breaks only say where curves end; where they are left out, what two densities differ by is added."""
+    program = stated_program("cycloidal", 20.0)
+    cam = Cam(program, TranslatingFlat(90.0), "cw")
+    angle = np.linspace(0.0, TURN, 721)[:-1]
+    none = np.zeros(720, np.bool_)
+    blind = Stretches(np.empty(0, np.int64), none, none)
+    found = worst(Contour(cam.profile(angle), angle), cam.follower, "cw", blind)
+    assert 1.0 / found.convex <= cam.radius_extremes.least * (1.0 + 1e-9)
+
+
+def test_stencils_stay_between_breaks() -> None:
+    first = stencils(40, np.array([3, 20]))
+    assert first[3] == 3
+    assert first[19] == 15
+    assert first[20] == 20
+    assert first[2] == 38 - 40 + 0
+    assert (stencils(40, np.empty(0, np.int64)) == np.arange(40) - 2).all()
+    kept, breaks = halved(40, np.array([3, 20]))
+    assert {3, 20} <= set(kept[breaks].tolist())
+    assert np.diff(kept).max() == 2
+
+
+@pytest.mark.parametrize("points", [360, 720])
+@pytest.mark.parametrize("follower", ["translating_roller", "oscillating_roller"])
+def test_a_limit_on_jerk_is_measured_within_a_ten_thousandth(points: int, follower: str) -> None:
+    """With 360 points the arm's cam was refused: its program had the jerk 6, its own check measured 6.0128."""
+    jerk, lift = (20.0, 20.0 * math.radians(60.0) ** 3 / 40.0) if follower.startswith("trans") else (6.0, 9.87)
+    roller = {"translating_roller": {"roller_radius": 0.4 * lift}, "oscillating_roller": {"roller_radius": 10.0}}
+    arm = {"arm": 60.0, "pivot_distance": 90.0} if follower == "oscillating_roller" else {}
+    problem = {
+        "kind": "cam",
+        "segments": [
+            {"motion": "dwell", "angle": 90.0},
+            {"motion": "rise", "angle": 60.0, "lift": lift, "law": "optimal"},
+            {"motion": "dwell", "angle": 90.0},
+            {"motion": "fall", "angle": 120.0, "lift": lift, "law": "modified_sine"},
+        ],
+        "follower": {"type": follower, **roller[follower], **arm},
+        "minimize": "peak_acceleration",
+        "limits": {"jerk": jerk, "pressure_angle": 40.0},
+        "profile_points": points,
+    }
+    (design,) = solve(parse_problem(problem)).designs
+    (check,) = (check for check in design.verification.checks if check.name == "peak_jerk")
+    assert check.value == pytest.approx(jerk, rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_extremes_of_exact_formulas_agree(seed: int) -> None:
+    """What the profile's points give against what the program gives at once, for cams that turn either way."""
+    rng = np.random.default_rng(seed)
+    program = stated_program(str(rng.choice(LAW_NAMES)), 0.1)
+    sense = 1 if seed % 2 else -1
+    followers = (
+        TranslatingRoller(1.5, 0.3, float(rng.uniform(-0.4, 0.4))),
+        OscillatingRoller(1.5, 0.3, 1.6, 2.2, sense),
+        OscillatingFlat(3.0, 5.0, 0.1, sense),
+    )
+    for follower in followers:
+        cam = Cam(program, follower, "ccw" if seed % 3 else "cw")
+        angle = profile_angles(program, cam.profile, cam.roller_radius, 1440)
+        mechanism = cam_mechanism(cam, angle)
+        stretches = stretches_of(mechanism.program)
+        contour = Contour(points_of(mechanism.profile), np.radians(mechanism.program.angle), stretches.breaks)
+        found = worst(contour, follower, cam.rotation, stretches)
+        if isinstance(follower, OscillatingFlat):
+            reach = follower.reach(dense_motion(program, 100_001))
+            assert found.sweep == pytest.approx(np.ptp(reach), rel=1e-6)
+        else:
+            steepest = max(found.rising, found.falling)
+            assert steepest == pytest.approx(pressure_angle_extremes(cam).largest, rel=1e-6)
