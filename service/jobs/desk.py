@@ -62,10 +62,10 @@ class JobDesk:
         with self.notifier.watch(job.id) as changed:
             if new:
                 self.executor.submit(job.id)
-            elif wait_s > 0:
-                job = await self.get(job.tenant, job.id) or job  # it may have ended before it was watched
             if wait_s <= 0:
                 return job
+            # It may have ended before it was watched: whoever is free finds it in the store without being told.
+            job = await self.get(job.tenant, job.id) or job
             with span("job"):
                 return await self._ended(job, changed, wait_s)
 
