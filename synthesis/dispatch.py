@@ -45,7 +45,8 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     result: Result[Any] = kind.solve(problem, part_of(told, 0.0, SEARCH_SHARE))
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
-        result = _relaxed(problem, result, relaxation(problem, kind.solve, part_of(told, SEARCH_SHARE, 1.0)))
+        rest = part_of(told, SEARCH_SHARE, 1.0)
+        result = _relaxed(problem, result, relaxation(problem, kind.solve, rest, kind.verify))
     if isinstance(problem, LinkageProblem):
         designs, remark = usable_first(problem, result.designs)
         update = {"designs": designs, "summary": result.summary + remark, "front": front_of(designs)}

@@ -22,6 +22,7 @@ from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import Measures, link_lengths
 
 Solve = Callable[[Any, Progress], Result[Any]]
+Verify = Callable[[Any, Any], Any]
 
 MAX_DESIGNS = 20
 """Designs of each relaxed task that are looked at."""
@@ -85,7 +86,7 @@ class Relaxation(NamedTuple):
     nearest_miss: NearestMiss[Any] | None
 
 
-def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Relaxation:
+def relaxation(problem: StatedProblem, solve: Solve, progress: Progress, verify: Verify | None = None) -> Relaxation:
     """What there is of a problem that no design was found for.
 
     Parameters
@@ -96,6 +97,8 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Rela
         The solver of its kind, which found no design.
     progress : callable
         Told how far the work is.
+    verify : callable, optional
+        Measures a finished mechanism against a statement of the kind, where the kind has one.
 
     Returns
     -------
@@ -109,7 +112,7 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress) -> Rela
         return Relaxation(sound, None)
     misses = misses or _without_tolerance(problem, solve, part_of(progress, 0.0, 0.8), reachable)
     if not misses:
-        sound, misses = _with_shorter_dwells(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+        sound, misses = _with_shorter_dwells(problem, solve, verify, part_of(progress, 0.0, 0.8), reachable)
         if sound:
             return Relaxation(sound, None)
     misses = misses or _failed(problem, solve, part_of(progress, 0.8, 1.0))
@@ -188,16 +191,14 @@ def _without_tolerance(problem: Any, solve: Solve, progress: Progress, reachable
 
 
 def _with_shorter_dwells(
-    problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]
+    problem: Any, solve: Solve, verify: Verify | None, progress: Progress, reachable: dict[str, float]
 ) -> tuple[list[Any], list[_Miss]]:
     """What rests for longest where nothing rests for as long as is demanded, approached by bisection.
 
     Returns designs that satisfy all demands all the same, and those that do not. ``reachable`` is filled.
     """
-    if problem.kind != "dwell":
+    if problem.kind != "dwell" or verify is None:
         return [], []
-    from synthesis.kinds.dwell.verification import verify_dwell  # nobody else waits for it
-
     reached, unreached = 0.0, problem.dwell_angle
     misses: list[_Miss] = []
     for n in range(APPROACHES):
@@ -209,7 +210,7 @@ def _with_shorter_dwells(
             unreached = tried
             continue
         reached = reachable["dwell_angle"] = tried
-        verified = [design for one in found if (design := verify_dwell(problem, one.mechanism)) is not None]
+        verified = [design for one in found if (design := verify(problem, one.mechanism)) is not None]
         sound = [design for design in verified if design.verification.passed]
         if sound:
             return sound, []

@@ -49,6 +49,9 @@ class Kind(Generic[P, R]):
     warm_up : callable, optional
         Compiles the kernels that ``solve`` needs, or loads them from their cache. Where it is left out the examples of
         the kind are solved instead.
+    verify : callable, optional
+        Measures a finished mechanism against a statement: the design, or None where it cannot be driven. It tells how
+        far the answers to a statement that asks for less are from the one that was asked.
     brief : callable, optional
         Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
         searches that take long; where it is left out none is brief.
@@ -59,6 +62,7 @@ class Kind(Generic[P, R]):
     result: type[R]
     solve: Callable[[P, Progress], R]
     warm_up: Callable[[], None] | None = None
+    verify: Callable[[P, Any], Any] | None = None
     brief: Callable[[P], bool] = never
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synthesis.kinds.dwell.design import DwellResult
+from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellResult
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.kind import Kind, Progress
 
@@ -21,4 +21,10 @@ def _warm_up() -> None:
     warm_up()
 
 
-KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up)
+def _verify(problem: DwellProblem, mechanism: DwellMechanism) -> DwellDesign | None:
+    from synthesis.kinds.dwell.verification import verify_dwell
+
+    return verify_dwell(problem, mechanism)
+
+
+KIND = Kind("dwell", DwellProblem, DwellResult, _solve, _warm_up, verify=_verify)
