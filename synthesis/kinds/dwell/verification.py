@@ -21,7 +21,7 @@ from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
-from synthesis.proof.closer import extremes_of, least_angles
+from synthesis.proof.closer import extremes_of, least_angles, least_near
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import Measures, barker_of, diagonal, fixed_pivots, measured, moving_pivots, reach_of
 from synthesis.proof.rebuilt import rebuilt
@@ -94,7 +94,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     rests = _rests(values[:-1], problem, low, high)
     if not rests:
         return None
-    _, rate, second = motion.slides["D"] if slides else motion.angles["output"]
+    rates = [_peak(mechanism, inputs, motion, order, slides=slides) for order in (1, 2)]
     lengths = _lengths(mechanism)
     measures = measured(
         lengths,
@@ -110,8 +110,8 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     metrics = DwellMetrics(
         way=way,
         jitter=max(rest.jitter for rest in rests),
-        peak_velocity=float(np.abs(rate).max()),
-        peak_acceleration=float(np.abs(second).max()),
+        peak_velocity=rates[0],
+        peak_acceleration=rates[1],
         **measures.within(DwellMetrics),
     )
     targets = [
@@ -150,6 +150,16 @@ def _checks(
         checks.append(Check(name="dwells_apart", passed=abs(apart) >= problem.dwell_angle * (1.0 - WAY_MET)))
     pivots = fixed_pivots(mechanism), moving_pivots(mechanism)
     return [*checks, *constraint_checks(problem.constraints, measures, *pivots)]
+
+
+def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: int, *, slides: bool) -> float:
+    """The greatest magnitude of the output's derivative of an order, between the inputs of a grid as at them."""
+
+    def magnitude(motion: MechanismMotion) -> Real:
+        return np.asarray(np.abs((motion.slides["D"] if slides else motion.angles["output"])[order]))
+
+    known = -magnitude(motion)
+    return -least_near(lambda closer: -magnitude(drive(mechanism, closer, order=order)), inputs, known)[1]
 
 
 def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import simpson
 
 from kinematics.errors import DimensionError
 from kinematics.linkage import SliderCrank, slider_crank
@@ -345,13 +346,18 @@ def _structural_error(
         return None
     part = _Curve(*(values[known] for values in whole))
     extremes = curve_at(_extremes(lambda x: curve_at(x).errors, part))
-    # The mean over the range: the ends count half.
-    rms = math.sqrt(
-        float(np.trapezoid(part.errors**2, part.values) / np.ptp(part.values) if len(part.values) > 1 else 0)
-    )
+    rms = math.sqrt(_mean(part.errors**2, part.values))
     shown = _Curve(*(values[:: (DRIVEN - 1) // (SHOWN - 1)] for values in whole))
     shown = _Curve(*(values[np.isfinite(shown.errors)] for values in shown))
     return _stated(problem, extremes, shown, rms), bool(known.all())
+
+
+def _mean(values: Real, places: Real) -> float:
+    """The mean over a range, by Simpson's rule; where places of an even grid are left out, by trapezoids."""
+    if len(places) < 2:
+        return 0.0
+    rule = simpson if len(places) == DRIVEN else np.trapezoid
+    return float(rule(values, x=places) / np.ptp(places))
 
 
 class _Curve(NamedTuple):

@@ -1,0 +1,9 @@
+"""Answers measured by another route than that of the service: every number that both have, and how far they differ.
+
+Linkages (:mod:`~benchmarks.independent.linkages`): random ordinary tasks of all kinds are solved, and each mechanism of
+an answer is driven from its skeleton alone by Newton's iteration on what keeps its length; extremes are closed in
+between the steps. Cams (:mod:`~benchmarks.independent.cams`): laws and curves of the textbooks, written out.
+
+Differences are relative to the scale of each quantity: a right angle or a turn for angles, the size of the task for
+places, the value itself for lengths, ratios and rates. What an answer states and this does not compare is listed.
+"""

@@ -1,0 +1,29 @@
+"""Measure and report: ``python -m benchmarks.independent --answers 200 --cams 50``."""
+
+from __future__ import annotations
+
+import argparse
+
+from benchmarks.independent.cams import cams
+from benchmarks.independent.comparison import Measured
+from benchmarks.independent.linkages import linkages
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--answers", type=int, default=200, help="designs of linkages to compare")
+    parser.add_argument("--cams", type=int, default=50)
+    parser.add_argument("--names", default="", help="names of ordinary tasks, with commas; all if left out")
+    parser.add_argument("--seed", type=int, default=0)
+    args = parser.parse_args()
+    result = Measured()
+    names = tuple(filter(None, args.names.split(",")))
+    designs = linkages(args.answers, names, args.seed, result) if args.answers else 0
+    answered = cams(args.cams, args.seed, result)
+    print(f"{designs} designs of linkages, {answered} of {args.cams} cams")
+    print(result.report())
+
+
+if __name__ == "__main__":
+    main()
