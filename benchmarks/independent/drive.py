@@ -79,6 +79,7 @@ class Drive:
         self.nodes = np.zeros(1)
         self.places = self.home[None]
         self.rates = self._rates(self.nodes, self.places)
+        self.sense = self._sense(self.home)
 
     def _link(self, joints: list[int]) -> None:
         home = self.home
@@ -146,6 +147,11 @@ class Drive:
             gradients.append(gradient)
         return misfits, matrix, gradients
 
+    def _sense(self, places: Complex) -> float:
+        """The sign of the determinant of the conditions, which no branch changes."""
+        _, matrix, _ = self._system(places[None])
+        return float(np.linalg.slogdet(matrix[0])[0])
+
     def _rates(self, turns: Real, z: Complex) -> Complex:
         """Derivatives of all joints by the input, (n, joints)."""
         rates = np.zeros_like(z)
@@ -196,7 +202,9 @@ class Drive:
             to = end if way == abs(end - turn) else turn + (way if forward else -way)
             ahead = place + rate * (to - turn)
             there = self.closed(np.array([to]), ahead[None])[0]
-            if not np.abs(there - ahead).max() <= HIT * self.size:
+            hit = np.abs(there - ahead).max() <= HIT * self.size
+            # The other branch, near by at a toggle, has a determinant of the other sign.
+            if not hit or self._sense(there) != self.sense:
                 step *= 0.5
                 if step < longest / 2**HALVINGS:
                     return False

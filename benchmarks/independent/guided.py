@@ -125,6 +125,10 @@ def compare_guided(result: Measured, stated: dict[str, Any], design: Any, name: 
         if check.name == "reaches_targets" and check.value is not None:
             far = max(float(misses.max()) / task, float(np.abs(wrong).max()))
             result.add(f"{kind} check reaches_targets", check.value, far, 1.0, name)
+        if check.name == "within_tolerance" and kind == "path":
+            shares = misses / np.array([pose["tolerance"] for pose in poses])
+            result.add("path check within_tolerance", check.value, float(shares.max()), 1.0, name)
+            compared.add("check within_tolerance")
     ease = 1.0
     if kind == "path":
         compared |= _compare_path(result, design, drive, points, p, closed, used, task, name)

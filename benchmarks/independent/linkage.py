@@ -26,7 +26,7 @@ OWN_PINS = {
     "crank_shaper": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "whitworth": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "drag_link_rocker": {"output_ground": ("O4", "O6")},
-    "geared_fivebar": {"ground": ("O2", "O5")},
+    "geared_fivebar": {"ground": ("O2", "O5"), "coupler_1": ("A", "C")},
 }
 """The same of single types."""
 

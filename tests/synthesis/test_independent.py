@@ -64,6 +64,18 @@ def test_a_linkage_is_not_driven_beyond_its_toggle() -> None:
     assert not drive.follow(0.0, toggle + 1e-4)
 
 
+def test_a_linkage_keeps_to_its_branch_by_a_change_point() -> None:
+    """All but a parallelogram: its other branch comes as near as a thousandth of its size, and is not taken."""
+    b = 4.0 + 0.5e-6 + 2j  # a crank that is shorter by a millionth
+    stated = PARALLELOGRAM | {"joints": PARALLELOGRAM["joints"] | {"A": [0.0, 2.0 - 1e-6], "B": [b.real, b.imag]}}  # type: ignore[operator]
+    drive, turns = Drive(Skeleton.model_validate(stated)), np.linspace(0.0, math.tau, 5000)
+    assert drive.follow(0.0, math.tau)
+    z = drive.at(turns)
+    a, b_at, o4 = (z[:, drive.names.index(name)] for name in ("A", "B", "O4"))
+    sense = (np.conj(b_at - a) * (b_at - o4)).imag
+    assert np.all(np.sign(sense) == np.sign(sense[0]))
+
+
 def test_a_block_and_a_slide_are_driven() -> None:
     """Scott-Russell's slider-crank: P stays on its line, and the crank's end is halfway between P and B."""
     skeleton = Skeleton.model_validate(
