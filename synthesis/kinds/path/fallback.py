@@ -1,19 +1,23 @@
 """What method ``auto`` does where no design meets the points exactly and keeps all demands: the points are fitted.
 
 Few points may still be too many: nine on a conic, or points in an order that no linkage of the family visits them in.
-The answer is then that of least squares, and the account and the summary are those of both searches.
+The answer is then that of least squares, and the account and the summary are those of both searches. Points were to be
+met, so that a fit which misses one by far is no answer: the task has then none, and how near a fit comes is told.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.kind import Progress, part_of
 
 FIRST_PART = 0.8
 """Share of the progress that the exact search counts for."""
+
+FAR = 0.05
+"""Share of the task's size by which a fit may miss a point and still be offered."""
 
 Solve = Callable[[PathProblem, Progress], PathResult]
 
@@ -37,6 +41,9 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
         return first
     nearly = problem.model_copy(update={"method": "least_squares"})
     second = fitted(nearly, part_of(progress, FIRST_PART, 1.0))
+    near = [design for design in second.designs if _farthest(design) <= FAR * problem.task_size]
+    if not any(design.verification.passed for design in near):
+        return first.model_copy(update={"summary": f"{first.summary}{_too_far(second.designs, problem.length_unit)}"})
     account = second.search.model_copy(
         update={
             "complete": False,
@@ -45,7 +52,7 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
         }
     )
     counted = {name: getattr(first, name) for name in ("triples", "given_pivots", "family", "timed")}
-    shown = [*second.designs, *first.designs] if problem.include_failed else second.designs
+    shown = [*near, *first.designs] if problem.include_failed else near
     begun = "No linkage meets the points exactly and keeps all demands; they are fitted instead."
     return second.model_copy(
         update={
@@ -54,6 +61,21 @@ def exact_or_fitted(problem: PathProblem, progress: Progress, exact: Solve, fitt
             "search": account,
             "summary": f"{begun} {second.summary} Exactly: {first.summary}",
         }
+    )
+
+
+def _farthest(design: PathDesign) -> float:
+    return max(target.point_residual for target in design.targets)
+
+
+def _too_far(fitted: list[PathDesign], unit: str) -> str:
+    """How near the nearest fit that keeps all demands comes to the points, in a sentence."""
+    misses = [_farthest(design) for design in fitted if design.verification.passed]
+    if not misses:
+        return ""
+    return (
+        f" Fitted by least squares, the farthest point is missed by {min(misses):.4g} {unit} at best, which is more "
+        f"than {FAR:.0%} of the task's size; the method least_squares shows such designs."
     )
 
 
