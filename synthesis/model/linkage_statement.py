@@ -98,3 +98,8 @@ class LinkageProblem(StatedProblem):
 
     constraints: Constraints = Constraints()
     rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "quality"
+
+    @property
+    def error_measure(self) -> str | None:
+        """The field of the metrics that tells how near a design is to this task, where the task chooses it."""
+        return None

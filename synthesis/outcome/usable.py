@@ -60,8 +60,13 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
     passed = [design for design in designs if design.verification.passed]
     if limited or not _by_default(problem, "rank_by") or not passed or usable(passed[0]):
         return Ordered(list(designs), "")
-    least = min((error_of(design) for design in passed), default=0.0)
-    near = [design for design in passed if error_of(design) <= BAND * max(least, ROUNDING)]
+
+    def error(design: Any) -> float:
+        measure = problem.error_measure
+        return error_of(design) if measure is None else float(getattr(design.metrics, measure))
+
+    least = min(map(error, passed))
+    near = [design for design in passed if error(design) <= BAND * max(least, ROUNDING)]
     missing = (
         "No design that was found" if len(near) == len(passed) else f"No design within {BAND:g} times the least error"
     )

@@ -149,7 +149,7 @@ def test_a_store_that_does_not_answer_costs_only_the_queue():
 
 def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
     metrics = HostMetrics()
-    metrics.watch(lambda: 2, lambda: 1, lambda: 3)
+    metrics.watch(lambda: 2, lambda: 1)
     metrics.attempt("succeeded", "motion", 0.25)
     metrics.worker_restart("timeout")
     with socket.socket() as free:
@@ -160,7 +160,6 @@ def test_a_worker_host_shows_its_metrics_where_it_is_told_to():
     for line in (
         "mechsynth_workers_ready 2.0",
         'mechsynth_host_jobs{status="running"} 1.0',
-        'mechsynth_host_jobs{status="waiting"} 3.0',
         'mechsynth_job_seconds_sum{kind="motion"} 0.25',
         'mechsynth_job_attempts_total{outcome="succeeded"} 1.0',
         'mechsynth_worker_restarts_total{reason="timeout"} 1.0',

@@ -27,6 +27,8 @@ MEASURING = {
     "transmission_angle": ANGLE,
     "contact_force": FORCE,
     "shortest_link": LENGTH,
+    "fixed_pivot_region": LENGTH,
+    "moving_pivot_region": LENGTH,
     "longest_link": LENGTH,
     "swing": ANGLE,
     "steering_error": ANGLE,

@@ -209,10 +209,7 @@ def test_constraints_are_checked_and_the_order_kept(name: str, rank_by: str) -> 
         assert design.verification.passed
         agrees(name, design, demands)
     values = [order_of(name, rank_by)(design) for design in designs]
-    groups = [getattr(design.metrics, "full_rotation", True) for design in designs]
-    if CASES[name]["kind"] != "parallel_motion":
-        groups = [True] * len(designs)
-    keyed = [(not turns, round(value, 6)) for turns, value in zip(groups, values, strict=True)]
+    keyed = [round(value, 6) for value in values]
     assert keyed == sorted(keyed)
 
 

@@ -31,7 +31,7 @@ from synthesis.kinds.cam.composition import (
     least_pitch_radius,
     roller_radius_range,
 )
-from synthesis.kinds.cam.design import CamDesign, CamMetrics, CamResult
+from synthesis.kinds.cam.design import CamDesign, CamMechanism, CamMetrics, CamResult
 from synthesis.kinds.cam.followers import (
     BarrelRoller,
     LengthRange,
@@ -87,6 +87,10 @@ MIN_BASE = 1e-3
 """Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
 
 
+MEASURED_SHORT = 1e-3
+"""Relative shortfall of the measured curvature up to which it comes from the measure, and the cam is sized again."""
+
+
 def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     """Solve a cam problem."""
     progress(0.05, "composing the motion program")
@@ -111,16 +115,11 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return none_of(problem, reason, proven, "size")
     cam, size = sized
     progress(0.7, "verifying")
-    curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
-    laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
-    angle = max(laid, key=len)
-    mechanism, verification, measured = resolved(
-        angle,
-        partial(cam_mechanism, cam, groove=problem.closure == "form"),
-        partial(verify, problem),
-        _closer,
-        progress,
-    )
+    mechanism, verification, measured = _verified(problem, cam, progress)
+    tighter = _tightened(problem, verification)
+    if tighter is not None and (larger := _sized(tighter, composed.program)) is not None:
+        cam, size = larger
+        mechanism, verification, measured = _verified(problem, cam, progress)
     if measured is None:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
     metrics = _metrics(problem, cam, measured)
@@ -135,6 +134,35 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     )
     progress(1.0, "verified")
     return result_of(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
+
+
+def _verified(problem: CamProblem, cam: Cam, progress: Progress) -> tuple[CamMechanism, Verification, Measured | None]:
+    """The finished cam, what its checks say, and its measure; None where the follower cannot be laid on."""
+    curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
+    laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
+    return resolved(
+        max(laid, key=len),
+        partial(cam_mechanism, cam, groove=problem.closure == "form"),
+        partial(verify, problem),
+        _closer,
+        progress,
+    )
+
+
+def _tightened(problem: CamProblem, verification: Verification) -> CamProblem | None:
+    """The problem with the limit of curvature that brings the measured one within the stated one.
+
+    Sizes are exact, the finished cam is measured through its points, on the safe side. None where nothing else than a
+    little curvature is missing.
+    """
+    failed = [check for check in verification.checks if not check.passed]
+    if [check.name for check in failed] != ["curvature_ratio"] or not failed[0].value or failed[0].limit is None:
+        return None
+    short = failed[0].limit / failed[0].value - 1.0
+    if not 0.0 < short < MEASURED_SHORT:
+        return None
+    limit = problem.limits.curvature_ratio * (1.0 + 2.0 * short)
+    return problem.model_copy(update={"limits": problem.limits.model_copy(update={"curvature_ratio": limit})})
 
 
 def _not_laid_on(cam: Cam) -> str:

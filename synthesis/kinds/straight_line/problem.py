@@ -104,6 +104,11 @@ class StraightLineProblem(LinkageProblem):
         """Rotation of the input for a type, degrees."""
         return DEFAULT_RANGE[mechanism] if self.crank_range is None else self.crank_range
 
+    @property
+    def error_measure(self) -> str | None:
+        """What is optimized."""
+        return "velocity_variation" if self.optimize == "velocity" else None
+
     def contradictions(self) -> list[Contradiction]:
         """Ranges that a type cannot have, and demands that exclude one another."""
         contradictions = list(self.constraints.contradictions())
