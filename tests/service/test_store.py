@@ -527,9 +527,10 @@ def test_a_flood_over_many_connections_has_a_job_a_turn(engine, store):
     for thread in threads:
         thread.join()
     other = made(store, "other", count=30)
-    first = given(store, count=60)
+    shared = 15  # the first few, which were there at once, may share turns; each of the others has its own
+    first = given(store, count=60 + shared)
     assert [job_id for job_id in first if job_id in other] == other
     with engine.connect() as connection:
         turns = connection.execute(select(jobs.c.turn).where(jobs.c.tenant == "flood")).scalars().all()
     assert len(turns) == 80
-    assert len(set(turns)) >= 65, "but for the first few, which were there at once"
+    assert len(set(turns)) >= 80 - shared
