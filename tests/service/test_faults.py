@@ -39,7 +39,7 @@ from tests.service.scripted_server import (
     STEPS,
 )
 
-TIMEOUT_S = 4.0
+TIMEOUT_S = 8.0
 LATE = (str(Path(__file__).with_name("late_server.py")),)
 
 
