@@ -37,6 +37,8 @@ TARGET_S = 0.5
 
 MAX_PART_S = 120.0
 PAUSE_S = 0.05
+"""Between two short jobs of a tenant: a client who looks at an answer before the next, twenty a second."""
+
 LONG_JOBS = 40
 CONNECTIONS = 4
 CANCELLING = 2

@@ -174,7 +174,7 @@ def compare_dwell(result: Measured, stated: dict[str, Any], design: Any, name: s
         result.add("dwell level", rest.level, level + turns, way, name)
     result.add("dwell jitter", metrics.jitter, max(jitters), way, name)
     for metric, function in (("peak_velocity", output.rate), ("peak_acceleration", output.acceleration)):
-        peak = greatest(lambda turns, f=function: np.abs(f(turns)), 0.0, math.tau).value  # type: ignore[misc]
+        peak = greatest(_magnitude(function), 0.0, math.tau).value
         result.add(f"dwell {metric}", getattr(metrics, metric), peak, peak, name)
     places = drive.at(np.linspace(0.0, math.tau, 2881)).ravel()
     task = way if not output.turns else 2.0 * abs(drive.home[drive.names.index("A")] - drive.home[0])
@@ -232,3 +232,7 @@ def _root(function: Callable[[Real], Real], near: float, width: float = 0.02) ->
         k = int(beyond[0]) + 1 if len(beyond) else 40
         low, high = float(places[k - 1]), float(places[k])
     return 0.5 * (low + high)
+
+
+def _magnitude(function: Callable[[Real], Real]) -> Callable[[Real], Real]:
+    return lambda turns: np.abs(function(turns))

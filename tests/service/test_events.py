@@ -253,7 +253,7 @@ async def begun(poller, job):
     """A stream of the job that has become a listener."""
     following = asyncio.create_task(stream(poller, job))
     while not poller.listeners:
-        await asyncio.sleep(0)
+        await asyncio.sleep(0)  # the task takes its turn
     return following
 
 
@@ -284,7 +284,7 @@ def test_the_listeners_of_a_tenant_leave_room_for_others(store, monkeypatch):
     async def listen(poller):
         following = [asyncio.create_task(stream(poller, jobs["flood"])) for _ in range(3)]
         while poller.listeners < 3:
-            await asyncio.sleep(0)
+            await asyncio.sleep(0)  # the tasks take their turns
         with pytest.raises(Refusal) as refused:
             await events.follow_job(request, poller, "flood", jobs["flood"].id)
         heard = await events.follow_job(request, poller, "other", jobs["other"].id)

@@ -31,7 +31,7 @@ def test_the_laws_written_out_are_motions(name: str) -> None:
     assert np.gradient(v, u)[1:-1] == pytest.approx(a[1:-1], abs=1e-4)
 
 
-PARALLELOGRAM = {
+PARALLELOGRAM: dict[str, Any] = {
     "joints": {"O2": [0.0, 0.0], "O4": [4.0, 0.0], "A": [0.0, 2.0], "B": [4.0, 2.0], "P": [2.0, 3.0]},
     "links": [
         {"name": "ground", "joints": ["O2", "O4"]},
@@ -67,7 +67,7 @@ def test_a_linkage_is_not_driven_beyond_its_toggle() -> None:
 def test_a_linkage_keeps_to_its_branch_by_a_change_point() -> None:
     """All but a parallelogram: its other branch comes as near as a thousandth of its size, and is not taken."""
     b = 4.0 + 0.5e-6 + 2j  # a crank that is shorter by a millionth
-    stated = PARALLELOGRAM | {"joints": PARALLELOGRAM["joints"] | {"A": [0.0, 2.0 - 1e-6], "B": [b.real, b.imag]}}  # type: ignore[operator]
+    stated = PARALLELOGRAM | {"joints": PARALLELOGRAM["joints"] | {"A": [0.0, 2.0 - 1e-6], "B": [b.real, b.imag]}}
     drive, turns = Drive(Skeleton.model_validate(stated)), np.linspace(0.0, math.tau, 5000)
     assert drive.follow(0.0, math.tau)
     z = drive.at(turns)
