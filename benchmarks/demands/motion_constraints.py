@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from benchmarks.demands.planted import box, crank_rocker, least_transmission
+from benchmarks.demands.planted import around, box, crank_rocker, least_transmission
 from benchmarks.demands.positions import passed
 from benchmarks.demands.task import Task
 from kinematics.linkage.fourbar import OPEN, positions
@@ -31,8 +31,7 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
     for n in range(count):
         planted = crank_rocker(rng, TRANSMISSION)
         number = COUNTS[n % len(COUNTS)]
-        gaps = rng.uniform(0.5, 1.5, number + 1)
-        inputs = rng.uniform(0.0, math.tau) + math.tau * np.cumsum(gaps)[:-1] / gaps.sum()
+        inputs = around(rng, number)
         carried = positions(planted, inputs, OPEN)
         o2, o4 = complex(planted.input_pivot), complex(planted.output_pivot)
         a, b = complex(carried.a[0]), complex(carried.b[0])

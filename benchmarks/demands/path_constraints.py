@@ -6,13 +6,12 @@ where it is fitted, comes within a hundredth of the task's size.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from benchmarks.demands.planted import box, crank_rocker, curve, extent, least_transmission, listed
+from benchmarks.demands.planted import around, box, crank_rocker, curve, extent, least_transmission, listed
 from benchmarks.demands.task import Task
 from kinematics.linkage.fourbar import OPEN, positions
 
@@ -35,8 +34,7 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
     for n in range(count):
         planted = crank_rocker(rng, TRANSMISSION)
         number = POINTS[n % len(POINTS)]
-        gaps = rng.uniform(0.5, 1.5, number + 1)
-        inputs = rng.uniform(0.0, math.tau) + math.tau * np.cumsum(gaps)[:-1] / gaps.sum()
+        inputs = around(rng, number)
         points = curve(planted, inputs)
         o2, o4 = complex(planted.input_pivot), complex(planted.output_pivot)
         stands = positions(planted, float(inputs[0]), OPEN)

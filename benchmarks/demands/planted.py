@@ -31,6 +31,12 @@ def crank_rocker(rng: np.random.Generator, transmission: float = 0.0) -> Fourbar
             return linkage
 
 
+def around(rng: np.random.Generator, number: int) -> Real:
+    """Crank angles in a turn, radians, shape (number,): apart by gaps of which none is three times another."""
+    gaps = rng.uniform(0.5, 1.5, number + 1)
+    return np.asarray(rng.uniform(0.0, math.tau) + math.tau * np.cumsum(gaps)[:-1] / gaps.sum())
+
+
 def least_transmission(linkage: Fourbar) -> float:
     """The least transmission angle over a whole turn, degrees."""
     return math.degrees(float(transmission_extremes(linkage, 0.0, math.tau)[0]))
