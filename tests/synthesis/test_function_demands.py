@@ -12,10 +12,7 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.solver import solve_function
 from synthesis.kinds.function.task import function_task
 from tests.campaign import sampled
-
-
-def silent(_fraction, _message):
-    pass
+from tests.synthesis.function_tasks import silent
 
 
 @pytest.mark.parametrize("task", list(function_constraints.tasks(sampled(24), 3)), ids=lambda task: task.name)

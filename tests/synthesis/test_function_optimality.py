@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from tests.synthesis.test_function import UNBOUNDED, measured, solved
+from tests.synthesis.function_tasks import UNBOUNDED, measured, solved
 
 CLASSICAL = {
     "x^1.5, 1 to 4": {"name": "power", "exponent": 1.5, "x": [1.0, 4.0]},
