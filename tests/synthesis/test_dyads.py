@@ -9,7 +9,7 @@ import pytest
 
 from synthesis.kinds.motion.choices import side_dyads, stated_conditions
 from synthesis.kinds.motion.dyads import DyadConditions, Dyads, solve_dyads
-from synthesis.kinds.motion.problem import DyadChoices
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases
@@ -24,7 +24,7 @@ def task_of(points: list[complex], angles: list[float]) -> MotionTask:
 
 
 def only(task: MotionTask, **conditions: object) -> tuple[complex, complex]:
-    dyads, found = solve_dyads(task, DyadConditions(**conditions), ANY_START)  # type: ignore[arg-type]
+    dyads, found = solve_dyads(task, DyadConditions(**conditions), ANY_START)
     assert found.tolist() == [True]
     return complex(dyads.fixed[0]), complex(dyads.moving[0])
 

@@ -18,7 +18,8 @@ from synthesis.kinds.motion.fit_starts import starts
 from synthesis.kinds.motion.least_squares import fit_demands
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
 from synthesis.kinds.motion.pose_fit import PoseDemands, PoseFit
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import LinkageDesign

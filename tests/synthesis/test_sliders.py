@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from synthesis.analyses import parse_request
 from synthesis.dispatch import solve
 from synthesis.kinds.motion.design import MotionResult
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sliders import Sliders, sliders
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import InvertedSliderCrankMechanism, LinkageDesign, SliderCrankMechanism

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism, LinkageMetrics, Target
 from synthesis.proof.carried import Carried

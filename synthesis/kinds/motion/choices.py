@@ -31,8 +31,9 @@ from synthesis.kinds.motion.dyads import (
     settled,
     solve_dyads,
 )
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sections import SliderDyad, pose_rows, section
+from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 from synthesis.model.linkage_statement import Constraints, Region
 from synthesis.model.statement import PartialPoint

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.driver_joints import ROOM, coupler_driven, diagonal
-from synthesis.kinds.motion.problem import DriverDyad
+from synthesis.kinds.motion.stated_dyads import DriverDyad
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism
 from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.measures import UNEVEN

@@ -26,7 +26,8 @@ from kinematics.linkage.fourbar import positions
 from synthesis.kinds.motion.coupler_driver import coupler_drivers
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.driver_joints import ROOM, diagonal, rocker_driven
-from synthesis.kinds.motion.problem import DriverDyad, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_dyads import DriverDyad
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, SixbarMechanism

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.constraint_manifold import NUMBERS, Surface, of_pivots
 from synthesis.kinds.motion.linear_fit import dyads_of_poses
 from synthesis.kinds.motion.pose_fit import Mask, PoseDemands
-from synthesis.kinds.motion.problem import DyadChoices
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, stated_pivot
 
 Real = NDArray[np.float64]

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.choices import Cloud, side_dyads
 from synthesis.kinds.motion.demanded import Demanded
 from synthesis.kinds.motion.dyads import Dyads
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.kinds.motion.sections import SliderDyad
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import MotionTask, motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import LinkageDesign

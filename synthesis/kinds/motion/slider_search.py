@@ -24,9 +24,10 @@ from numpy.typing import NDArray
 from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads import Dyads
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.sliders import Sliders, sliders
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress

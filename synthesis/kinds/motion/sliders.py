@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from synthesis.kinds.motion.draws import distances, points_around
-from synthesis.kinds.motion.problem import DyadChoices
+from synthesis.kinds.motion.stated_dyads import DyadChoices
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 
 IN_LINE = 1e-9

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.motion.draws import points_around
 from synthesis.kinds.motion.dyads import Dyads
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.screening import demands, screen
+from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
 from synthesis.model.linkage_statement import Constraints, LengthLimits, Region
 from synthesis.outcome.ranking import widest_apart

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from synthesis.kinds.motion.problem import DyadChoices, MotionProblem, whole_point
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
 from synthesis.model.linkage_statement import Region
 from synthesis.model.statement import PartialPoint
 

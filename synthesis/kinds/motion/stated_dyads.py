@@ -1,0 +1,104 @@
+"""What the client fixes of the linkage: numbers of its two dyads, a line of the ground, and what drives it."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Literal
+
+from pydantic import Field
+
+from synthesis.model.linkage_statement import Region
+from synthesis.model.statement import Degrees, PartialPoint, Point, PositiveLength, Statement
+
+
+def whole_point(point: PartialPoint | None) -> complex | None:
+    """A stated point as a complex number; None where it, or one of its coordinates, is left open."""
+    if point is None or point[0] is None or point[1] is None:
+        return None
+    return complex(point[0], point[1])
+
+
+class GroundLine(Statement):
+    """A straight line on which both fixed pivots lie."""
+
+    point: Point
+    angle: Degrees = Field(description="Direction of the line, degrees.")
+
+    def offset(self, point: complex) -> float:
+        """Signed distance of a point from the line, in length units."""
+        return ((point - complex(*self.point)) * cmath.exp(-1j * math.radians(self.angle))).imag
+
+    def foot(self, point: complex) -> complex:
+        """The point of the line that is nearest to a point."""
+        return point - 1j * cmath.rect(self.offset(point), math.radians(self.angle))
+
+
+class CouplerVector(Statement):
+    """Vector Z from the moving pivot to the body's point P in the first position; each part may be left open."""
+
+    length: PositiveLength | None = None
+    angle: Degrees | None = Field(default=None, description="Angle of Z in the first position, degrees.")
+
+
+class DyadChoices(Statement):
+    """What the client fixes of one dyad (link and coupler side); all that is left out is searched.
+
+    Norton's letters: ``link_angle`` is θ (output side: σ), ``coupler_vector`` is Z at φ (S at ψ), ``rotations``
+    are β₂, β₃ (γ₂, γ₃).
+    """
+
+    dyad: Literal["any", "RR", "PR", "RP"] = Field(
+        default="any",
+        description="What joins the body to the ground. RR: a link with two pins. PR: a pin of the body slides on a "
+        "line of the ground. RP: a line of the body slides through a block that is pinned to the ground. any: "
+        "pins, and a slider where pins cannot do what is asked.",
+    )
+    fixed_pivot: PartialPoint | None = Field(default=None, description="null leaves a coordinate open.")
+    moving_pivot: PartialPoint | None = Field(
+        default=None, description="Moving pivot in the first position; null leaves a coordinate open."
+    )
+    rotations: list[Degrees | None] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=8,
+        description="Rotation of the link from the first position to the 2nd, 3rd, ..., degrees; null leaves one open.",
+    )
+    link_angle: Degrees | None = Field(
+        default=None, description="Angle of the link, fixed pivot to moving pivot, in the first position, degrees."
+    )
+    coupler_vector: CouplerVector | None = None
+    slide_angle: Degrees | None = Field(
+        default=None,
+        description="For PR: angle of the slide's line, degrees. For RP: of the body's line in the first position.",
+    )
+
+    def count(self) -> int:
+        """How many numbers are fixed."""
+        vector = self.coupler_vector or CouplerVector()
+        pivots = [*(self.fixed_pivot or ()), *(self.moving_pivot or ())]
+        scalars = [self.link_angle, self.slide_angle, vector.length, vector.angle, *(self.rotations or []), *pivots]
+        return sum(s is not None for s in scalars)
+
+    @property
+    def pivots_alone(self) -> bool:
+        """Whether nothing but pivots is fixed, or their coordinates."""
+        vector = self.coupler_vector
+        whole = vector is None or (vector.length is not None and vector.angle is not None)
+        return whole and self.link_angle is None and not any(b is not None for b in self.rotations or [])
+
+    @property
+    def one_pivot(self) -> bool:
+        """Whether one whole pivot is all that is fixed."""
+        pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)
+        return self.count() == 2 and pivots.count(None) == 1
+
+
+class DriverDyad(Statement):
+    """A crank and a link that are added to drive the linkage between its end positions."""
+
+    link: Literal["any", "input", "output", "coupler"] = Field(
+        default="any",
+        description="The link that is driven; any: input or output, and the coupler where neither can be driven well.",
+    )
+    pivot_region: Region | None = Field(default=None, description="Where the crank's fixed pivot may lie.")
