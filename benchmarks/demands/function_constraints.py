@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.demands.planted import SIZE, box
+from benchmarks.demands.planted import SIZE, looser
 from benchmarks.demands.task import Task
 from kinematics.linkage.fourbar import (
     CROSSED,
@@ -30,9 +30,6 @@ Real = NDArray[np.float64]
 
 PAIRS = (2, 3, 4, 5, 6, 12)
 """Pairs, one number after the other; the last are fitted."""
-
-LOOSER = 0.05
-"""Share by which a limit is looser than what the planted linkage has; of a region's size for regions."""
 
 LENGTHS = 1.0
 """Links are e to the power of −this to this times the ground."""
@@ -86,17 +83,9 @@ class _Planted:
 
     def demands(self) -> dict[str, Any]:
         """Its constraints, all looser than it has them."""
-        return {
-            "min_transmission_angle": (1.0 - LOOSER) * self.least,
-            "grashof": CLASSES.get(self.grashof, self.grashof),
-            "full_rotation": self.grashof in ("crank_rocker", "double_crank"),
-            "same_branch": True,
-            "in_order": True,
-            "link_length": {"min": (1.0 - LOOSER) * min(self.lengths), "max": (1.0 + LOOSER) * max(self.lengths)},
-            "max_link_ratio": (1.0 + LOOSER) * max(self.lengths) / min(self.lengths),
-            "fixed_pivot_region": box([self.o2, complex(self.o4)], LOOSER * abs(self.o4 - self.o2)),
-            "moving_pivot_region": box([self.a, self.b], LOOSER * abs(self.b - self.a)),
-        }
+        fixed, moving = [self.o2, complex(self.o4)], [self.a, self.b]
+        grashof = CLASSES.get(self.grashof, self.grashof)
+        return looser(self.lengths, fixed, moving, transmission=self.least, grashof=grashof)
 
 
 def tasks(count: int, seed: int) -> Iterator[Task]:

@@ -11,15 +11,23 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.demands.planted import around, box, crank_rocker, curve, extent, least_transmission, listed
+from benchmarks.demands.planted import (
+    LOOSER,
+    around,
+    box,
+    crank_rocker,
+    curve,
+    extent,
+    least_transmission,
+    lengths,
+    listed,
+    looser,
+    pivots,
+)
 from benchmarks.demands.task import Task
-from kinematics.linkage.fourbar import OPEN, positions
 
 POINTS = (5, 6, 7, 8, 12)
 """Points, one number after the other."""
-
-LOOSER = 0.05
-"""Share by which a limit is looser than what the planted linkage has; of a region's size for regions."""
 
 TRANSMISSION = 20.0
 """Least transmission angle of the planted linkages, degrees."""
@@ -36,25 +44,17 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
         number = POINTS[n % len(POINTS)]
         inputs = around(rng, number)
         points = curve(planted, inputs)
-        o2, o4 = complex(planted.input_pivot), complex(planted.output_pivot)
-        stands = positions(planted, float(inputs[0]), OPEN)
-        a, b = complex(stands.a), complex(stands.b)
-        lengths = [abs(o4 - o2), float(planted.input), float(planted.coupler), float(planted.output)]
+        fixed, moving = pivots(planted, float(inputs[0]))
+        loose = looser(
+            lengths(planted), fixed, moving, transmission=least_transmission(planted), grashof="crank_rocker"
+        )
         p = complex(planted.coupler_point)
         statement = {
             "kind": "path",
             "points": listed(points),
             "constraints": {
-                "min_transmission_angle": (1.0 - LOOSER) * least_transmission(planted),
-                "grashof": "crank_rocker",
-                "full_rotation": True,
-                "same_branch": True,
-                "in_order": True,
-                "link_length": {"min": (1.0 - LOOSER) * min(lengths), "max": (1.0 + LOOSER) * max(lengths)},
-                "max_link_ratio": (1.0 + LOOSER) * max(lengths) / min(lengths),
-                "fixed_pivot_region": box([o2, o4], LOOSER * abs(o4 - o2)),
-                "input_pivot_region": box([o2], LOOSER * abs(o4 - o2)),
-                "moving_pivot_region": box([a, b], LOOSER * abs(b - a)),
+                **loose,
+                "input_pivot_region": box(fixed[:1], LOOSER * abs(fixed[1] - fixed[0])),
                 "coupler_point": {
                     "along": [p.real - LOOSER * abs(p), p.real + LOOSER * abs(p)],
                     "across": [p.imag - LOOSER * abs(p), p.imag + LOOSER * abs(p)],

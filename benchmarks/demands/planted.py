@@ -1,8 +1,9 @@
-"""Random linkages that problems are planted with, and their coupler curves."""
+"""Random linkages that problems are planted with, their coupler curves, and the constraints that they just keep."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,12 @@ Complex = NDArray[np.complex128]
 
 SIZE = 100.0
 """Length of the crank, times a random factor of 0.2 to 1."""
+
+LOOSER = 0.05
+"""Share by which a limit is looser than what the planted linkage has; of a region's size for regions."""
+
+TURNING = ("crank_rocker", "double_crank")
+"""Grashof's classes of fourbars whose input turns through."""
 
 
 def crank_rocker(rng: np.random.Generator, transmission: float = 0.0) -> Fourbar:
@@ -40,6 +47,53 @@ def around(rng: np.random.Generator, number: int) -> Real:
 def least_transmission(linkage: Fourbar) -> float:
     """The least transmission angle over a whole turn, degrees."""
     return math.degrees(float(transmission_extremes(linkage, 0.0, math.tau)[0]))
+
+
+def pivots(linkage: Fourbar, angle: float) -> tuple[list[complex], list[complex]]:
+    """Fixed pivots, and moving pivots at an input angle, radians, in the open assembly."""
+    stands = positions(linkage, angle, OPEN)
+    return [complex(linkage.input_pivot), complex(linkage.output_pivot)], [complex(stands.a), complex(stands.b)]
+
+
+def lengths(linkage: Fourbar) -> list[float]:
+    """Of the ground and the three links."""
+    ground = abs(complex(linkage.output_pivot) - complex(linkage.input_pivot))
+    return [ground, float(linkage.input), float(linkage.coupler), float(linkage.output)]
+
+
+def looser(
+    links: list[float], fixed: list[complex], moving: list[complex], *, transmission: float, grashof: str
+) -> dict[str, Any]:
+    """The constraints that fourbars have in every task, each looser by :data:`LOOSER` than a linkage keeps it.
+
+    Parameters
+    ----------
+    links : list of float
+        Their lengths.
+    fixed, moving : list of complex
+        Input and output pivot, and moving pivots in the first position.
+    transmission : float
+        Its least transmission angle, degrees.
+    grashof : str
+        Its class, as it is demanded.
+    """
+    return {
+        "min_transmission_angle": (1.0 - LOOSER) * transmission,
+        "grashof": grashof,
+        "full_rotation": grashof in TURNING,
+        "same_branch": True,
+        "in_order": True,
+        "link_length": {"min": (1.0 - LOOSER) * min(links), "max": (1.0 + LOOSER) * max(links)},
+        "max_link_ratio": (1.0 + LOOSER) * max(links) / min(links),
+        "fixed_pivot_region": around_pivots(fixed, LOOSER),
+        "moving_pivot_region": around_pivots(moving, LOOSER),
+    }
+
+
+def around_pivots(pivots: list[complex], margin: float) -> dict[str, list[float]]:
+    """The box around two pivots as a region, wider on each side by a share of the distance between them."""
+    first, second = pivots
+    return box(pivots, margin * abs(second - first))
 
 
 def curve(linkage: Fourbar, inputs: Real) -> Complex:

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.demands.planted import box, crank_rocker, extent
-from benchmarks.demands.task import Task
+from benchmarks.demands.planted import around_pivots, crank_rocker, extent, pivots
+from benchmarks.demands.task import Task, passed
 from kinematics.linkage.fourbar import OPEN, positions
 
 COUNTS = (3, 4)
@@ -40,8 +40,7 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
         number = COUNTS[n % len(COUNTS)]
         inputs = rng.uniform(0.0, math.tau) + np.cumsum(rng.uniform(0.3, 1.0, number))
         carried = positions(planted, inputs, OPEN)
-        o2, o4 = complex(planted.input_pivot), complex(planted.output_pivot)
-        a, b = complex(carried.a[0]), complex(carried.b[0])
+        fixed, moving = pivots(planted, float(inputs[0]))
         size = extent(np.asarray(carried.p))
         exact = rng.uniform(size=number) < EXACT
         if exact.all():
@@ -60,13 +59,8 @@ def tasks(count: int, seed: int) -> Iterator[Task]:
             "kind": "motion",
             "positions": poses,
             "constraints": {
-                "fixed_pivot_region": box([o2, o4], ZONE * abs(o4 - o2)),
-                "moving_pivot_region": box([a, b], ZONE * abs(b - a)),
+                "fixed_pivot_region": around_pivots(fixed, ZONE),
+                "moving_pivot_region": around_pivots(moving, ZONE),
             },
         }
         yield Task(statement, passed, f"{n}: {number} positions")
-
-
-def passed(result: Any) -> bool:
-    """Whether a design passes all checks."""
-    return any(design.verification.passed for design in result.designs)

@@ -22,3 +22,8 @@ class Task(NamedTuple):
     statement: dict[str, Any]
     answered: Callable[[Any], bool]
     name: str
+
+
+def passed(result: Any) -> bool:
+    """Whether a design passes all checks."""
+    return any(design.verification.passed for design in result.designs)

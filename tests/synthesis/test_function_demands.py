@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.demands import function_constraints
+from benchmarks.demands.planted import box
 from synthesis import parse_problem
 from synthesis.kinds.function.limits import GeneratorLimits
 from synthesis.kinds.function.problem import FunctionProblem
@@ -49,8 +50,8 @@ def test_an_approximation_keeps_regions_of_its_own_place_without_loss(mechanism,
     moving = [z for name, z in zip(joints, turned, strict=True) if name not in still]
     statement["constraints"] = {
         **limits,
-        "fixed_pivot_region": function_constraints.box(fixed, 2.0),
-        "moving_pivot_region": function_constraints.box(moving, 2.0),
+        "fixed_pivot_region": box(fixed, 2.0),
+        "moving_pivot_region": box(moving, 2.0),
     }
     (found,) = solve_function(parse_problem(statement), silent).designs
     assert found.verification.passed
