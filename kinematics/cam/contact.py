@@ -21,7 +21,7 @@ a); neither is a difference quotient of displacements.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -37,8 +37,10 @@ from kinematics.cam.local_curves import (
     curve_value,
     halved,
     local_curves,
+    no_breaks,
     stencils,
     straightened,
+    unit_tangents,
 )
 from kinematics.cam.profile import Rotation
 from kinematics.cam.program import TURN
@@ -122,7 +124,7 @@ class Contour:
 
     points: Complex
     at: Real | None = None
-    breaks: Indices | None = None
+    breaks: Indices = field(default_factory=no_breaks)
 
     def __post_init__(self) -> None:
         if self.points.ndim != 1 or len(self.points) < FEWEST:
@@ -143,29 +145,24 @@ class Contour:
     @cached_property
     def tangents(self) -> Complex:
         """Unit tangents of the profile at its points, in the order of the points."""
-        first, _ = curve_derivatives(self._curves, np.zeros(len(self.points)))
-        return np.asarray(first / np.abs(first))
+        return unit_tangents(self._curves)
 
     @cached_property
     def _curves(self) -> Complex:
         """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
         n = len(self.points)
-        first = stencils(n, self._breaks)
+        first = stencils(n, self.breaks)
         index = first[:, None] + np.arange(STENCIL)
         points = self.points[index % n]
         if self.at is None:
             return local_curves(points, chord_lengths(points), np.arange(n) - first)
         curves = local_curves(points, self.at[index % n] + TURN * (index // n), np.arange(n) - first)
-        return straightened(curves, self.at, self._breaks)
-
-    @cached_property
-    def _breaks(self) -> Indices:
-        return np.empty(0, dtype=np.int64) if self.breaks is None else self.breaks
+        return straightened(curves, self.at, self.breaks)
 
     @cached_property
     def coarser(self) -> Contour:
         """The curve through every second point of each stretch between breaks."""
-        kept, breaks = halved(len(self.points), self._breaks)
+        kept, breaks = halved(len(self.points), self.breaks)
         return Contour(self.points[kept], None if self.at is None else self.at[kept], breaks)
 
     @cached_property

@@ -86,6 +86,11 @@ def local_curves(points: Complex, at: Real, own: Indices) -> Complex:
     return np.asarray(curves)
 
 
+def no_breaks() -> Indices:
+    """The breaks of a curve that has none, shape (0,)."""
+    return np.empty(0, dtype=np.int64)
+
+
 def straightened(curves: Complex, at: Real, breaks: Indices) -> Complex:
     """Curves with edges: straight between two neighbouring points that are breaks at almost one cam angle.
 
@@ -127,6 +132,11 @@ def curve_derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
     first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
     second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
     return curve_value(first, share), curve_value(second, share)
+
+
+def unit_tangents(curves: Complex) -> Complex:
+    """Directions of local curves at their first points, shape (n,)."""
+    return np.asarray(curves[:, 1] / np.abs(curves[:, 1]))
 
 
 def halved(count: int, breaks: Indices) -> tuple[Indices, Indices]:

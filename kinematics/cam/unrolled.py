@@ -12,7 +12,7 @@ at least, a point of the upper wall for P_y − √(…) at most; the roller sta
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -20,14 +20,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from kinematics.cam.contact import CUSP, FEWEST, NARROW, NARROWINGS
+from kinematics.cam.contact import CUSP, FEWEST, GOLDEN, NARROW, NARROWINGS
 from kinematics.cam.local_curves import (
     STENCIL,
     chord_lengths,
     curve_derivatives,
     halved,
     local_curves,
+    no_breaks,
     stencils,
+    unit_tangents,
 )
 from kinematics.cam.program import TURN
 from kinematics.errors import DimensionError, ShapeError
@@ -35,8 +37,6 @@ from kinematics.errors import DimensionError, ShapeError
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
-
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 class Touch(NamedTuple):
@@ -73,7 +73,7 @@ class UnrolledWall:
     points: Complex
     period: float
     at: Real | None = None
-    breaks: Indices | None = None
+    breaks: Indices = field(default_factory=no_breaks)
 
     def __post_init__(self) -> None:
         if self.points.ndim != 1 or len(self.points) < FEWEST:
@@ -91,27 +91,22 @@ class UnrolledWall:
     @cached_property
     def _curves(self) -> Complex:
         n = len(self.points)
-        first = stencils(n, self._breaks)
+        first = stencils(n, self.breaks)
         index = first[:, None] + np.arange(STENCIL)
         points = self.points[index % n] + self.period * (index // n)
         at = chord_lengths(points) if self.at is None else self.at[index % n] + TURN * (index // n)
         return local_curves(points, at, np.arange(n) - first)
 
     @cached_property
-    def _breaks(self) -> Indices:
-        return np.empty(0, dtype=np.int64) if self.breaks is None else self.breaks
-
-    @cached_property
     def coarser(self) -> UnrolledWall:
         """The curve through every second point of each stretch between breaks."""
-        kept, breaks = halved(len(self.points), self._breaks)
+        kept, breaks = halved(len(self.points), self.breaks)
         return UnrolledWall(self.points[kept], self.period, None if self.at is None else self.at[kept], breaks)
 
     @cached_property
     def tangents(self) -> Complex:
         """Unit tangents at the points."""
-        first, _ = curve_derivatives(self._curves, np.zeros(len(self.points)))
-        return np.asarray(first / np.abs(first))
+        return unit_tangents(self._curves)
 
     @property
     def cusped(self) -> bool:
