@@ -74,6 +74,16 @@ hosts = Table(
 )
 
 
+def _written(function: type[FunctionElement[Any]], **databases: str) -> None:
+    """State how each database writes a function; its arguments, if it has any, stand in the braces."""
+    for database, expression in databases.items():
+
+        def write(element: Any, compiler: Any, expression: str = expression, **options: Any) -> str:
+            return expression.format(compiler.process(element.clauses, **options))
+
+        compiles(function, database)(write)
+
+
 class StoreClock(FunctionElement[float]):
     """The present time by the clock of the database, which all who share it agree on; seconds since 1970."""
 
@@ -82,14 +92,11 @@ class StoreClock(FunctionElement[float]):
     inherit_cache = True
 
 
-@compiles(StoreClock, "sqlite")
-def _sqlite_clock(_element: Any, _compiler: Any, **_: Any) -> str:
-    return "((julianday('now') - 2440587.5) * 86400.0)"
-
-
-@compiles(StoreClock, "postgresql")
-def _postgresql_clock(_element: Any, _compiler: Any, **_: Any) -> str:
-    return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"
+_written(
+    StoreClock,
+    sqlite="((julianday('now') - 2440587.5) * 86400.0)",
+    postgresql="CAST(extract(epoch FROM clock_timestamp()) AS double precision)",
+)
 
 
 class Later(FunctionElement[int]):
@@ -100,14 +107,7 @@ class Later(FunctionElement[int]):
     inherit_cache = True
 
 
-@compiles(Later, "sqlite")
-def _sqlite_later(element: Any, compiler: Any, **options: Any) -> str:
-    return f"max({compiler.process(element.clauses, **options)})"
-
-
-@compiles(Later, "postgresql")
-def _postgresql_later(element: Any, compiler: Any, **options: Any) -> str:
-    return f"greatest({compiler.process(element.clauses, **options)})"
+_written(Later, sqlite="max({})", postgresql="greatest({})")
 
 
 @dataclass(frozen=True, slots=True)
