@@ -5,15 +5,34 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable, Collection, Sequence
-from typing import Any, TypeVar
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
-from pydantic import BaseModel
 
+from synthesis.model.linkage_answer import Skeleton
 from synthesis.model.linkage_statement import ON_EDGE, Constraints, Region
 from synthesis.numerics.placing import Boxes, Placing, placed
 
-Mechanism = TypeVar("Mechanism", bound=BaseModel)
+
+class Linked(Protocol):
+    """What is asked of the mechanism of an answer with linkages, a model of its dimensions."""
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """Its joints and links at the first target."""
+        ...
+
+    def model_dump(self) -> dict[str, Any]:
+        """Its fields by name."""
+        ...
+
+    @classmethod
+    def model_validate(cls, obj: Any) -> Self:
+        """One of its type with such fields."""
+        ...
+
+
+Mechanism = TypeVar("Mechanism", bound=Linked)
 
 
 def placement(
@@ -72,21 +91,21 @@ def put(
     constraints : Constraints
         Whose regions and limits of length are to be kept.
     mechanism : a mechanism of an answer
-        With a skeleton; it stays where it is if it fits there.
+        It stays where it is if it fits there.
     lengths : sequence of float
         Of its links.
     sized, turned : bool
         Whether its size, and its direction, may be others.
     """
-    skeleton = mechanism.skeleton  # type: ignore[attr-defined]  # which every mechanism of a linkage has
+    skeleton = mechanism.skeleton
     still = next(link.joints for link in skeleton.links if link.name == "ground")
     places = {name: complex(*place) for name, place in skeleton.joints.items() if name != "P"}
     fixed = [place for name, place in places.items() if name in still]
     moving = [place for name, place in places.items() if name not in still]
     if _fits(constraints, fixed, moving, lengths):
         return mechanism
-    found = placement(constraints, fixed, moving, lengths if sized else None, 1.0 + 0j, turned=turned)
-    return moved(mechanism, found.origin, found.along)
+    there = placement(constraints, fixed, moving, lengths if sized else None, 1.0 + 0j, turned=turned)
+    return moved(mechanism, there.origin, there.along)
 
 
 def _fits(
