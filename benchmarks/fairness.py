@@ -84,9 +84,13 @@ class Tenant:
         self._client.delete(f"/v1/jobs/{job_id}")
 
     def cancel_all(self) -> None:
-        while jobs := self.unfinished():
+        def none_left() -> bool:
+            jobs = self.unfinished()
             for job_id in jobs:
                 self.cancel(job_id)
+            return not jobs
+
+        until(none_left, MAX_PART_S, "the end of the cancelled jobs")
 
 
 def short_jobs(tenant: Tenant, jobs: int) -> list[float]:

@@ -40,7 +40,7 @@ from benchmarks.mechanisms import STATED
 from synthesis.analyses import families
 from synthesis.registry import KINDS
 from tests.service import hostile, test_hostile_bodies
-from tests.service.running import RunningServer, alive, until
+from tests.service.running import START_S, RunningServer, alive, until
 from tests.service.test_limits import HALVES
 
 PROBLEM_5_26 = {
@@ -117,9 +117,11 @@ def processor_s(pid: int) -> float:
 
 def until_settled(server: RunningServer, workers: int = 3) -> None:
     """Wait until the workers have loaded what they load beside their first jobs, and are idle for some seconds."""
-    until(lambda: len(server.workers()) == workers, 60.0)
+    until(lambda: len(server.workers()) == workers, 60.0, f"{workers} workers")
+    deadline = time.monotonic() + START_S
     used = [sum(map(processor_s, server.workers()))]
     while len(used) < 4 or used[-1] > used[-4] + 0.03:
+        assert time.monotonic() < deadline, f"the workers are not idle {START_S:.0f} s after they were started"
         time.sleep(1.0)  # the span over which their processor time is looked at
         used.append(sum(map(processor_s, server.workers())))
 
