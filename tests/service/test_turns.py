@@ -124,10 +124,17 @@ def test_a_job_that_turns_out_to_be_long_gives_the_last_lane_back(store):
     assert not turns.outstayed(seats[0]), "the other is free for short ones"
 
 
-def test_a_free_lane_hears_of_a_job_at_once(store):
+def test_a_free_lane_hears_of_a_job_at_once(store, monkeypatch):
     seats = [Seat()]
     turns = opened(store, seats, 1)
-    taken = []
+    taken, asked = [], threading.Event()
+
+    def ask(mark, costs):
+        claim = JobStore.take(store, mark, costs)
+        asked.set()
+        return claim
+
+    monkeypatch.setattr(store, "take", ask)
 
     def wait():
         while not taken:
@@ -137,7 +144,7 @@ def test_a_free_lane_hears_of_a_job_at_once(store):
 
     lane = threading.Thread(target=wait)
     lane.start()
-    time.sleep(0.3)  # it has asked, and waits
+    assert asked.wait(SOON_S)
     made(store, Cost.SHORT)
     told = time.monotonic()
     turns.wake()
@@ -240,23 +247,27 @@ def test_a_cancelled_job_that_reports_progress_costs_no_worker(server, gate):
 def test_a_short_job_is_done_while_workers_are_killed_by_cancels(server, gate):
     """Two clients post what cannot be stopped but by killing its worker, and cancel it as soon as it runs."""
     done = threading.Event()
+    cancelled = []
 
     def storm():
         while not done.is_set():
             job_id = server.post(NATIVE, problem=LONG)["id"]
             until(lambda job_id=job_id: done.is_set() or server.job(job_id)["status"] == "running", 60.0, "it running")
             server.client.delete(f"/v1/jobs/{job_id}")
+            cancelled.append(job_id)
 
     clients = [threading.Thread(target=storm) for _ in range(2)]
     for client in clients:
         client.start()
     took = []
     try:
-        for _ in range(10):
+        for turn in range(10):
             began = time.monotonic()
             assert server.post(INSTANT, wait=20)["status"] == "succeeded"
             took.append(time.monotonic() - began)
-            time.sleep(0.3)  # the storm goes on beside
+            if turn % 2:  # of two jobs one follows upon a kill, the other is right behind it
+                before = len(cancelled)
+                until(lambda before=before: len(cancelled) > before, 60.0, "another worker killed")
     finally:
         done.set()
         for client in clients:
