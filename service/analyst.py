@@ -31,6 +31,7 @@ MAX_START_DELAY_S = 10.0
 """The core is loaded after the first worker has started, so that the service is ready soon, but not later than this."""
 
 _PERIOD_S = 0.02
+"""Period at which it looks whether that worker has started, which tells nobody."""
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -19,6 +19,7 @@ START_TIMEOUT_S = 120.0
 
 STOP_TIMEOUT_S = 10.0
 _POLL_S = 0.05
+"""Period at which the file is read into which the service announces itself; a file tells nobody."""
 
 
 class DemoFailure(Exception):

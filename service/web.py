@@ -24,6 +24,7 @@ GRACE_S = 2
 """How long requests under way may take to end when the service stops."""
 
 _READY_PERIOD_S = 0.02
+"""Workers that get ready tell nobody; so late at most is the announcement."""
 
 _OPENTELEMETRY = {"OTEL_SERVICE_NAME": "mechsynth", "OTEL_EXPORTER_OTLP_TIMEOUT": "1"}
 """Where its exporters are asked for and nothing else is said. The last sending of each is waited for when the service

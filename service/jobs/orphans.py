@@ -12,6 +12,8 @@ import time
 
 _PR_SET_PDEATHSIG = 1
 _WATCH_PERIOD_S = 0.5
+"""Where the kernel does not tell, a process looks this often whether its parent is there."""
+
 _PARENT = "MECHSYNTH_PARENT_PID"
 """Not a setting: how a process is told, before it is told anything else, whose child it is."""
 

@@ -17,6 +17,7 @@ MAX_REMOVED_AT_ONCE = 200
 MAX_PERIOD_S = 3600.0
 MIN_PERIOD_S = 0.5
 _PAUSE_S = 0.05
+"""Between two such statements, so that others get to write."""
 
 log = structlog.get_logger(__name__)
 

@@ -30,7 +30,7 @@ FOLDER = Path(os.environ.get("SCRIPTED_FOLDER", "."))
 def solve(problem, progress):
     match problem.seed:
         case 101:  # native code that holds the interpreter: no Python handler can run
-            ctypes.PyDLL(None).sleep(60)
+            ctypes.PyDLL(None).sleep(60)  # longer than any test waits; it is killed before
         case 102:
             import numpy as np
 
@@ -51,7 +51,7 @@ def solve(problem, progress):
                 time.sleep(0.01)  # a file tells nobody that it is there
         case 106:
             while not (FOLDER / "open").exists():
-                time.sleep(0.01)
+                time.sleep(0.01)  # the same, but that it reports
                 progress(0.25, "a quarter")
         case 107:
             begin()

@@ -83,7 +83,7 @@ def astray(client, url, bodies):
     for body in bodies:
         answer = client.post(url, json=body)
         while answer.status_code == 503:  # the first analyses may have to compile their kernels
-            time.sleep(float(answer.headers["retry-after"]))
+            time.sleep(float(answer.headers["retry-after"]))  # as a client is asked to
             answer = client.post(url, json=body)
         assert answer.status_code in (200, 202, 422), answer.text
         if answer.status_code != 422:

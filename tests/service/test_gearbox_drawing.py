@@ -102,7 +102,7 @@ def test_dxf_is_sound_and_true(task: tuple[Any, Any]) -> None:
     design, problem = task
     text = exported(design, problem, "Box", "dxf")
     assert text == exported(design, problem, "Box", "dxf")
-    document = ezdxf.read(io.StringIO(text))  # type: ignore[attr-defined]
+    document = ezdxf.read(io.StringIO(text))
     audit = document.audit()
     assert not audit.errors
     assert not audit.fixes
@@ -140,6 +140,6 @@ def test_files_of_gearboxes_through_http(client: Any, kind: str) -> None:
         answer = client.get(f"/v1/jobs/{body['id']}/designs/0.{form}")
         assert answer.status_code == 200, answer.text
         assert answer.headers["content-type"].startswith(media)
-    document = ezdxf.read(io.StringIO(client.get(f"/v1/jobs/{body['id']}/designs/0.dxf").text))  # type: ignore[attr-defined]
+    document = ezdxf.read(io.StringIO(client.get(f"/v1/jobs/{body['id']}/designs/0.dxf").text))
     assert not document.audit().errors
     assert document.modelspace().query("LWPOLYLINE")

@@ -144,7 +144,7 @@ def test_linkages_of_other_kinds_have_the_same_files(statement: dict[str, Any]) 
 
 def test_a_hostile_title_is_only_text() -> None:
     for form in ("dxf", "csv", "svg"):
-        text = exported(*solved("fourbar"), 'A "<b>\x00\n= 1+1', form)  # type: ignore[arg-type]
+        text = exported(*solved("fourbar"), 'A "<b>\x00\n= 1+1', form)
         assert "\x00" not in text
         if form == "dxf":
             assert not ezdxf.read(io.StringIO(text)).audit().has_errors

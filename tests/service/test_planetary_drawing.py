@@ -76,7 +76,7 @@ def test_sheet_dxf_and_table_of_a_planetary_train() -> None:
     assert radii["ring"] / radii["sun"] == pytest.approx(teeth["ring"] / teeth["sun"], rel=1e-3)
     text = exported(design, problem, "Train", "dxf")
     assert text == exported(design, problem, "Train", "dxf")
-    document = ezdxf.read(io.StringIO(text))  # type: ignore[attr-defined]
+    document = ezdxf.read(io.StringIO(text))
     assert not document.audit().errors
     pitch = [entity.dxf.radius for entity in document.modelspace().query("CIRCLE")]
     assert max(pitch) == pytest.approx(0.5 * teeth["ring"])
@@ -89,7 +89,7 @@ def test_sheet_dxf_and_table_of_a_planetary_train() -> None:
 def test_bevel_differential_is_drawn() -> None:
     design, problem = solved(ratio=2, arrangement="bevel_differential")
     for form in ("svg", "dxf", "csv"):
-        assert exported(design, problem, "Differential", form)  # type: ignore[arg-type]
+        assert exported(design, problem, "Differential", form)
 
 
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])

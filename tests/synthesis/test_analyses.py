@@ -38,7 +38,10 @@ def stated(name):
     # With a ratio that does not repeat, circuits would not be listed.
     mechanism = take(geared_fivebar(rng, 1, -2.0) if name == "geared fivebar" else EVERY[name](rng, 1), 0)
     kind = KINDS.get(name, name.split()[0])
-    pair = lambda z: [complex(z).real, complex(z).imag]  # noqa: E731
+
+    def pair(place):
+        return [complex(place).real, complex(place).imag]
+
     binary = {n: j for n, j in mechanism.links.items() if len(j) == 2}
     return {
         "type": kind,

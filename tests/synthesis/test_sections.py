@@ -42,7 +42,7 @@ def rational_task(
     halves = [float((t - first[2]) / (1 + t * first[2])) for _, _, t in poses]
     turns = np.array([(1.0 + 1j * t) ** 2 / (1.0 + t**2) for t in halves])
     size = float(np.abs(points[:, None] - points).max()) if moved < 1 else 1.0
-    return MotionTask(points / size, turns, 0j, size), real_dyads(poses)  # type: ignore[arg-type]
+    return MotionTask(points / size, turns, 0j, size), real_dyads(poses)
 
 
 def compared_with_the_oracle(seed: int, count: int) -> None:

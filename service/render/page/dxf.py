@@ -15,7 +15,7 @@ from ezdxf.layouts.layout import Modelspace
 from numpy.typing import NDArray
 
 # Without the time and the random marks of its making, so that the same design gives the same file.
-ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]
+ezdxf.options.write_fixed_meta_data_for_testing = True  # type: ignore[attr-defined]  # ezdxf documents it, and does not export it
 
 UNITS = {"mm": units.MM, "cm": units.CM, "m": units.M, "in": units.IN}
 

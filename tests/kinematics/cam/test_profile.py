@@ -227,7 +227,7 @@ def test_programs_that_a_follower_cannot_make_are_refused() -> None:
     with pytest.raises(DimensionError, match="velocity"):
         Cam(double_dwell(0.9), OscillatingFlat(0.5, 2.0))
     with pytest.raises(DimensionError, match="rotation"):
-        Cam(double_dwell(), TranslatingFlat(1.5), "both")  # type: ignore[arg-type]
+        Cam(double_dwell(), TranslatingFlat(1.5), "both")
     with pytest.raises(DimensionError, match="flat-faced"):
         _ = Cam(double_dwell(), TranslatingRoller(2.0, 0.1)).radius_extremes
     with pytest.raises(DimensionError, match="roller"):
