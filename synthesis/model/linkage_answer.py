@@ -246,8 +246,8 @@ class Target(DrivenTo):
 class MotionMetrics(Answer):
     """What is measured of every driven linkage (:class:`synthesis.proof.measures.Measures`), whatever it is for.
 
-    Angles and size are those of the motion that the design was verified along: from the first target to the last, or
-    the whole turn of a crank that turns through.
+    Angles are those of the motion that the design was verified along: from the first target to the last, or the whole
+    turn of a crank that turns through. The size is that at the targets, where there are any.
     """
 
     grashof: (
@@ -264,7 +264,10 @@ class MotionMetrics(Answer):
         "Greatest distance between two joints of one link, in sizes of the task (docs/ranking.md); left out where a "
         "task has no size."
     )
-    size: Length = Field(description="Diagonal of the box around all joints and the point P over that motion.")
+    size: Length = Field(
+        description="Diagonal of the box around all joints and the point P at all targets; where there are none, over "
+        "the verified motion."
+    )
     quality: float = Field(description="Between 0 and 1; see docs/ranking.md.")
 
 

@@ -77,7 +77,7 @@ class Measures(NamedTuple):
     reach : float or None
         Greatest distance between two joints of one link, in task sizes; None where a task has none.
     size : float
-        Diagonal of the box around all joints.
+        Diagonal of the box around all joints: at the targets, or over the motion of a kind that has none.
     quality : float
         Between 0 and 1.
     lengths : list of float
@@ -128,7 +128,7 @@ def measured(
     transmission : mapping of str to float
         The least transmission angle at each closure over the used range, radians; empty where there is no such range.
     places : complex, shape (n,)
-        Where the joints stand.
+        Where the joints stand: at the targets, or along the motion of a kind that has none.
     barker, same_branch, visits_in_order, full_rotation
         As in :class:`Measures`.
     eased : float

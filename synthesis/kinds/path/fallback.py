@@ -1,6 +1,8 @@
 """What method ``auto`` does where no design meets the points exactly and keeps all demands: the points are fitted.
 
-Few points may still be too many: nine on a conic, or points in an order that no linkage of the family visits them in.
+Few points may still be too many: in an order that no linkage of the family visits them in, or where the demands leave
+none. Nine points on an ellipse are searched like any others: a coupler curve is of the sixth order and may cross an
+ellipse twelve times, so that where they lie does not rule a fourbar out.
 The answer is then that of least squares, and the account and the summary are those of both searches. Points were to be
 met, so that a fit which misses one by far is no answer: the task has then none, and how near a fit comes is told.
 """
