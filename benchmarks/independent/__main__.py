@@ -10,18 +10,23 @@ from benchmarks.independent.linkages import linkages
 
 
 def main() -> None:
-    """Read the command line."""
+    """Read the command line; what was compared until then is told where the program is interrupted."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--answers", type=int, default=200, help="designs of linkages to compare")
     parser.add_argument("--cams", type=int, default=50)
-    parser.add_argument("--names", default="", help="names of ordinary tasks, with commas; all if left out")
+    parser.add_argument("--names", default="", help="names of families of statements, with commas; all if left out")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--verbose", action="store_true", help="a line for each statement")
     args = parser.parse_args()
     result = Measured()
     names = tuple(filter(None, args.names.split(",")))
-    designs = linkages(args.answers, names, args.seed, result) if args.answers else 0
-    answered = cams(args.cams, args.seed, result)
-    print(f"{designs} designs of linkages, {answered} of {args.cams} cams")
+    try:
+        if args.answers:
+            linkages(args.answers, names, args.seed, result, told=0.0 if args.verbose else None)
+        answered = cams(args.cams, args.seed, result)
+        print(f"{answered} of {args.cams} cams answered")
+    except KeyboardInterrupt:
+        print("interrupted")
     print(result.report())
 
 

@@ -6,6 +6,8 @@ import math
 from collections import Counter, defaultdict
 from typing import Any, NamedTuple
 
+from benchmarks.independent.quantities import COMPARED, NOT_MEASURED, stated_by
+
 AGREE = 1e-6
 """Difference, relative to the scale of the quantity, up to which two values are the same."""
 
@@ -16,8 +18,8 @@ class Difference(NamedTuple):
     metric: str
     value: float
     name: str
-    stated: float = math.nan
-    found: float = math.nan
+    stated: Any = math.nan
+    found: Any = math.nan
 
 
 class Measured:
@@ -26,18 +28,13 @@ class Measured:
     def __init__(self) -> None:
         self.differences: dict[str, list[Difference]] = defaultdict(list)
         self.left: Counter[str] = Counter()
+        self.without: Counter[str] = Counter()
+        self.designs: Counter[str] = Counter()
 
-    def add(self, metric: str, stated: float | None, found: float, scale: float, name: str) -> None:
-        """Compare a stated value; one that is not stated is not compared."""
-        if stated is not None:
-            off = abs(stated - found) / scale
-            self.differences[metric].append(Difference(metric, off, name, stated, found))
-
-    def leave(self, design: Any, compared: set[str]) -> None:
-        """List the metrics and checks of a design that were not compared."""
-        stated = {name for name, value in design.metrics.model_dump().items() if isinstance(value, float)}
-        stated |= {f"check {c.name}" for c in design.verification.checks if c.value is not None}
-        self.left.update(f"{design.mechanism.type}: {name}" for name in stated - compared)
+    def beside(self, kind: str, design: Any, name: str) -> Beside:
+        """A design of an answer to a problem of this kind, and what it is called where it differs."""
+        self.designs[f"{kind} {design.mechanism.type}"] += 1
+        return Beside(self, kind, design, name)
 
     @property
     def over(self) -> list[Difference]:
@@ -47,13 +44,79 @@ class Measured:
 
     def report(self) -> str:
         """A line for each quantity."""
-        lines = []
+        lines = [f"{count:6d} designs: {name}" for name, count in sorted(self.designs.items())]
         for metric, group in sorted(self.differences.items()):
             worst = max(group, key=lambda d: d.value if d.value == d.value else math.inf)
             over = sum(not d.value <= AGREE for d in group)
-            lines.append(f"{metric:44s} {len(group):6d} compared, worst {worst.value:.1e}, {over} over {AGREE:g}")
+            lines.append(f"{metric:52s} {len(group):6d} compared, worst {worst.value:.1e}, {over} over {AGREE:g}")
         lines += [
             f"  over: {d.metric} {d.value:.1e} {d.name}: {d.stated!r} stated, {d.found!r}" for d in self.over[:40]
         ]
+        lines += [f"  no measure: {name} ({count})" for name, count in sorted(self.without.items())]
         lines += [f"  not compared: {name} ({count})" for name, count in sorted(self.left.items())]
+        compared, worst_of_all = (
+            sum(map(len, self.differences.values())),
+            max((d.value for d in self._all()), default=0),
+        )
+        lines.append(
+            f"{self.designs.total()} designs, {compared} comparisons of {len(self.differences)} quantities: largest "
+            f"difference {worst_of_all:.1e}, {len(self.over)} over {AGREE:g}; {self.left.total()} not compared"
+        )
         return "\n".join(lines)
+
+    def _all(self) -> list[Difference]:
+        return [d for group in self.differences.values() for d in group]
+
+
+class Beside:
+    """A design beside what is measured of it; quantities have their paths in the design, without indices of lists."""
+
+    def __init__(self, measured: Measured, kind: str, design: Any, name: str) -> None:
+        self.measured, self.kind, self.design, self.name = measured, kind, design, name
+        self.compared: set[str] = set()
+
+    def add(self, quantity: str, stated: float | None, found: float, scale: float) -> None:
+        """Compare a stated value; one that is not stated is not compared."""
+        if stated is None:
+            return
+        self._put(quantity, abs(stated - found) / scale if scale else float(stated != found), stated, found)
+
+    def same(self, quantity: str, stated: Any, found: Any) -> None:
+        """Compare what is no number, such as a class: it is the same or not."""
+        if stated is not None:
+            self._put(quantity, float(stated != found), stated, found)
+
+    def metric(self, name: str, found: float, scale: float) -> None:
+        """Compare a number of the metrics that a design may state."""
+        self.add(f"metrics.{name}", getattr(self.design.metrics, name, None), found, scale)
+
+    def check(self, name: str, found: float | bool, scale: float = 1.0) -> None:
+        """Compare the value of a check, or where it has none whether it passed, if the design has the check."""
+        for check in self.design.verification.checks:
+            if check.name == name:
+                if check.value is None:
+                    self.same(f"checks.{name}", check.passed, bool(found))
+                else:
+                    self.add(f"checks.{name}", check.value, float(found), scale)
+
+    def without(self, quantity: str, why: str) -> None:
+        """A quantity that is stated, but has no measure for this design."""
+        self.compared.add(quantity)
+        self.measured.without[f"{self.kind} {quantity}: {why}"] += 1
+
+    def unmeasured(self, why: str) -> None:
+        """The design cannot be measured here at all."""
+        self.measured.left[f"{self.kind} {self.design.mechanism.type}: {why} ({self.name})"] += 1
+        self.compared = stated_by(self.design)
+
+    def finish(self) -> None:
+        """List what the design states and what was not compared, though it is a measure."""
+        left = stated_by(self.design) - self.compared - set(NOT_MEASURED)
+        self.measured.left.update(f"{self.kind} {self.design.mechanism.type}: {name}" for name in left)
+
+    def _put(self, quantity: str, off: float, stated: Any, found: Any) -> None:
+        if quantity not in COMPARED[self.kind]:
+            raise ValueError(f"{quantity} of {self.kind} is not listed as compared")
+        self.compared.add(quantity)
+        metric = f"{self.kind} {quantity}"
+        self.measured.differences[metric].append(Difference(metric, off, self.name, stated, found))

@@ -55,3 +55,14 @@ def least(function: Function, low: float, high: float, grid: int = GRID) -> Extr
     """The least value between two places."""
     found = greatest(lambda places: -function(places), low, high, grid)
     return Extreme(found.at, -found.value)
+
+
+def root(function: Function, low: float, high: float) -> float:
+    """Where a function that changes its sign between two places is nothing, by ever finer grids."""
+    sign = np.sign(function(np.array([low])))
+    for _ in range(9):
+        places = np.linspace(low, high, 41)
+        beyond = np.flatnonzero(np.sign(function(places[1:-1])) != sign)
+        k = int(beyond[0]) + 1 if len(beyond) else 40
+        low, high = float(places[k - 1]), float(places[k])
+    return 0.5 * (low + high)

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.independent.comparison import Measured
+from benchmarks.independent.cognates import compare_cognates
+from benchmarks.independent.comparison import Beside
+from benchmarks.independent.course import Course
 from benchmarks.independent.drive import Complex, Drive
-from benchmarks.independent.extremes import greatest
-from benchmarks.independent.linkage import DRIVERS, compare_linkage
+from benchmarks.independent.extremes import GRID, greatest, least, root
+from benchmarks.independent.linkage import DRIVERS, Used, compare_linkage, outside, turns_of_gears
+from benchmarks.independent.sides import compare_sides
 
 Real = NDArray[np.float64]
-
-BULGE = 0.25
-"""What a curve may bulge between two points, as a share of their distance."""
 
 PANELS, NODES = 256, 12
 """Panels of Gauss's quadrature along the way, and nodes of each."""
 
-FINE = 20_001
-"""Inputs between which a body's turning is added up."""
+COURSE = 2881
+"""Inputs at which a curve is laid beside the course of its points."""
+
+EXACT = 5
+"""Positions that are met exactly, where nothing else is stated."""
 
 
 def span(drive: Drive, design: Any) -> Real:
@@ -34,19 +38,6 @@ def span(drive: Drive, design: Any) -> Real:
     at = np.radians(at)
     first = (at[0] - drive.reference + math.pi) % math.tau - math.pi
     return np.asarray(at - at[0] + first)
-
-
-def off_course(places: Complex, points: Complex, closed: bool, allowed: float, share: float) -> Real:
-    """Distances of places from the lines through points, less what is allowed and a share of the line's length."""
-    starts = points if closed else points[:-1]
-    sides = (np.roll(points, -1) if closed else points[1:]) - starts
-    gaps = places[:, None] - starts
-    with np.errstate(divide="ignore", invalid="ignore"):
-        along = np.nan_to_num((gaps * np.conj(sides)).real / np.abs(sides) ** 2)
-    off = np.abs(gaps - np.clip(along, 0.0, 1.0) * sides) - allowed - share * np.abs(sides)
-    least: Real = off.min(axis=1)
-    least[np.isnan(places)] = np.nan
-    return least
 
 
 def travelled(drive: Drive, low: float, high: float) -> float:
@@ -74,124 +65,234 @@ def rotation(drive: Drive, places: Complex) -> Real:
     return np.asarray(np.angle((places[:, j] - places[:, i]) / (drive.home[j] - drive.home[i])))
 
 
-def compare_guided(result: Measured, stated: dict[str, Any], design: Any, name: str) -> set[str]:
+class Met(NamedTuple):
+    """The linkage at its targets.
+
+    Attributes
+    ----------
+    turns : float, shape (targets,)
+        How far the input has moved from the skeleton's configuration.
+    joints : complex, shape (targets, joints)
+    points, misses : shape (targets,)
+        The demanded points, and how far P is from them.
+    wrong : float, shape (targets,)
+        Differences of the body's angle to the demanded one, radians; 0 where none is demanded.
+    used : tuple of float
+        The first and the last turn that is used.
+    task : float
+        The size of the task.
+    """
+
+    turns: Real
+    joints: Complex
+    points: Complex
+    misses: Real
+    wrong: Real
+    used: tuple[float, float]
+    task: float
+
+
+def compare_guided(beside: Beside, stated: dict[str, Any]) -> None:
     """Targets, errors, the whole way and how a body is carried."""
-    kind, metrics, drive = stated["kind"], design.metrics, Drive(design.mechanism.skeleton)
-    poses = stated["positions" if kind == "motion" else "points"]
+    design = beside.design
+    drive = Drive(design.mechanism.skeleton)
+    met = _met(beside, stated, drive)
+    if met is None:
+        return
+    worst = np.maximum(met.misses / met.task, np.abs(met.wrong))
+    for k, target in enumerate(design.targets):
+        beside.add("targets.point_residual", target.point_residual, float(met.misses[k]), met.task)
+        beside.add("targets.residual", target.residual, float(worst[k]), 1.0)
+        if target.angle_residual is not None:
+            wrong = math.degrees(abs(met.wrong[k]))
+            beside.add("targets.angle_residual", target.angle_residual, wrong, 180.0)
+        _compare_input(beside, drive, target, float(met.turns[k]))
+    beside.metric("rms_residual", math.sqrt(float(np.mean((met.misses / met.task) ** 2 + met.wrong**2))), 1.0)
+    turned = float(met.turns[-1] - met.turns[0])
+    beside.metric("input_rotation", math.degrees(turned), 360.0)
+    beside.metric("input_stroke", turned, drive.size)
+    ease = 1.0
+    if stated["kind"] == "path":
+        beside.check("reaches_targets", float(worst.max()))
+        _compare_path(beside, stated, drive, met)
+    else:
+        _compare_tolerances(beside, stated, drive, met)
+        ease = _compare_body(beside, drive, met)
+        compare_sides(beside, stated, drive, met.task)
+    driven = design.mechanism.type in DRIVERS
+    way = (0.0, math.tau) if driven else met.used
+    steps = np.diff(met.turns)
+    in_order = bool((steps >= 0).all() or (steps <= 0).all())
+    compare_linkage(beside, stated, drive, Used(way, met.task, met.joints.ravel(), ease, in_order))
+    if driven:
+        _compare_driver(beside, stated, drive, met)
+
+
+def _met(beside: Beside, stated: dict[str, Any], drive: Drive) -> Met | None:
+    """The linkage at its targets; None where it cannot be driven to them."""
+    design = beside.design
+    poses = stated["positions" if stated["kind"] == "motion" else "points"]
     points = np.array([complex(pose["x"], pose["y"]) for pose in poses])
     task = float(np.abs(points[:, None] - points).max())
     placed = getattr(design, "placement", None)
     if placed is not None:
         points = placed.size * points * cmath.rect(1.0, math.radians(placed.rotation)) + complex(*placed.shift)
     turns = span(drive, design)
-    if not (metrics.same_branch and metrics.visits_in_order):
-        result.left["designs that leave their branch or order"] += 1
-        return set()
-    closed = bool(stated.get("closed"))
     low, high = float(turns.min()), float(turns.max())
     used = (low, high)
-    if kind == "path" and closed and not drive.slides_in:
-        gears = [abs(g.ratio) for g in design.mechanism.skeleton.gears]
-        if any(ratio != round(ratio) for ratio in gears):
-            result.left["geared fivebars of broken ratio, closed"] += 1
-            return set()
-        used = (float(turns[0]), float(turns[0]) + math.tau)
+    if stated["kind"] == "path" and stated.get("closed") and not drive.slides_in:
+        used = (float(turns[0]), float(turns[0]) + math.tau * turns_of_gears(design.mechanism))
     if not drive.follow(min(low, *used), max(high, *used)):
-        result.left[f"{design.mechanism.type}: could not be driven"] += 1
-        return set()
-    steps = np.diff(turns)
-    result.add(f"{kind} visits_in_order", 1.0, float((steps >= 0).all() or (steps <= 0).all()), 1.0, name)
+        beside.unmeasured("could not be driven")
+        return None
     joints = drive.at(turns)
-    p = joints[:, drive.names.index("P")]
-    misses = np.abs(p - points)
     wrong = np.zeros(len(points))
-    if kind == "motion" and all(pose.get("angle") is not None for pose in poses):
+    if stated["kind"] == "motion":
         demanded = np.radians([pose["angle"] for pose in poses])
         begun = getattr(design.mechanism, "reference_body_angle", None)
         begun = float(demanded[0]) if begun is None else math.radians(begun)
         wrong = (begun + rotation(drive, joints) - demanded + math.pi) % math.tau - math.pi
-    for k, target in enumerate(design.targets):
-        result.add(f"{kind} point_residual", target.point_residual, float(misses[k]), task, name)
-        result.add(f"{kind} residual", target.residual, max(misses[k] / task, abs(wrong[k])), 1.0, name)
-        if target.angle_residual is not None:
-            result.add(f"{kind} angle_residual", abs(target.angle_residual), math.degrees(abs(wrong[k])), 180.0, name)
-    compared = {"rms_residual", "input_rotation", "input_stroke", "check reaches_targets"}
-    rms = math.sqrt(float(np.mean((misses / task) ** 2 + wrong**2)))
-    result.add(f"{kind} rms_residual", metrics.rms_residual, rms, 1.0, name)
-    turned = float(turns[-1] - turns[0])
-    result.add(f"{kind} input_rotation", metrics.input_rotation, math.degrees(turned), 360.0, name)
-    result.add(f"{kind} input_stroke", metrics.input_stroke, turned, drive.size, name)
-    for check in design.verification.checks:
-        if check.name == "reaches_targets" and check.value is not None:
-            far = max(float(misses.max()) / task, float(np.abs(wrong).max()))
-            result.add(f"{kind} check reaches_targets", check.value, far, 1.0, name)
-        if check.name == "within_tolerance" and kind == "path":
-            shares = misses / np.array([pose["tolerance"] for pose in poses])
-            result.add("path check within_tolerance", check.value, float(shares.max()), 1.0, name)
-            compared.add("check within_tolerance")
-    ease = 1.0
-    if kind == "path":
-        compared |= _compare_path(result, design, drive, points, p, closed, used, task, name)
-    else:
-        ease, more = _compare_body(result, design, drive, p, rotation(drive, joints), used, task, name)
-        compared |= more
-    way = (0.0, math.tau) if design.mechanism.type in DRIVERS else used
-    return compared | compare_linkage(
-        result, kind, design, drive, name, way=way, task=task, places=joints.ravel(), ease=ease
-    )
+    misses = np.abs(joints[:, drive.names.index("P")] - points)
+    return Met(turns, joints, points, misses, wrong, used, task)
 
 
-def _compare_path(
-    result: Measured,
-    design: Any,
-    drive: Drive,
-    points: Complex,
-    p: Complex,
-    closed: bool,
-    used: tuple[float, float],
-    task: float,
-    name: str,
-) -> set[str]:
-    metrics, misses = design.metrics, np.abs(p - points)
-    squares, worst = float((misses**2).sum()), float(misses.max())
-    result.add("path sum_of_squares", metrics.sum_of_squares, squares, task**2, name)
-    result.add("path rms_distance", metrics.rms_distance, math.sqrt(squares / len(points)), task, name)
-    result.add("path max_distance", metrics.max_distance, worst, task, name)
+def _compare_input(beside: Beside, drive: Drive, target: Any, turn: float) -> None:
+    """Where the input stands, from the joints on it."""
+    if drive.slides_in:
+        beside.add("targets.input_place", target.input_place, turn, drive.size)
+        return
+    joint, (pivot, _) = next(iter(drive.turning.items()))
+    arm = drive.at(np.array([turn]))[0]
+    off = target.input_angle - math.degrees(float(np.angle(arm[joint] - arm[pivot])))
+    beside.add("targets.input_angle", target.input_angle, target.input_angle - math.remainder(off, 360.0), 360.0)
 
-    def beyond(allowed: float, share: float) -> float:
-        at = greatest(lambda u: off_course(drive.joint("P", u), points, closed, allowed, share), *used)
+
+def _compare_path(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met) -> None:
+    squares, worst = float((met.misses**2).sum()), float(met.misses.max())
+    beside.metric("sum_of_squares", squares, met.task**2)
+    beside.metric("rms_distance", math.sqrt(squares / len(met.points)), met.task)
+    beside.metric("max_distance", worst, met.task)
+    course = Course(met.points, bool(stated.get("closed")))
+
+    def greatest_of(distance: Callable[[Complex], Real]) -> float:
+        at = greatest(lambda turns: distance(drive.joint("P", turns)), *met.used, grid=COURSE)
         return max(0.0, at.value) if at.value == at.value else math.nan
 
-    if metrics.curve_distance is not None:
-        result.add("path curve_distance", metrics.curve_distance, beyond(0.0, 0.0), task, name)
-        result.add("path excursion", metrics.excursion, beyond(worst, BULGE), task, name)
-    return {"sum_of_squares", "rms_distance", "max_distance", "curve_distance", "excursion"}
+    if beside.design.metrics.curve_distance is not None:
+        beside.metric("curve_distance", greatest_of(course.distances), met.task)
+        beside.metric("excursion", greatest_of(lambda z: course.beyond_bulges(z, worst)), met.task)
+    if all(point.get("tolerance") is not None for point in stated["points"]):
+        tolerances = np.array([point["tolerance"] for point in stated["points"]])
+        beside.check("within_tolerance", float((met.misses / tolerances).max()))
+        beside.check("curve_within_tolerance", greatest_of(lambda z: course.tolerance_used(z, tolerances)))
+    compare_demands_of_path(beside, stated, drive, met.task, met.turns[:1])
+    compare_cognates(beside, drive, met.turns)
 
 
-def _compare_body(
-    result: Measured,
-    design: Any,
-    drive: Drive,
-    p: Complex,
-    turned: Real,
-    used: tuple[float, float],
-    task: float,
-    name: str,
-) -> tuple[float, set[str]]:
+def compare_demands_of_path(
+    beside: Beside, stated: dict[str, Any], drive: Drive, task: float, first_turn: Real
+) -> None:
+    """Pivots that are given, P's place on the coupler, the crank's phase, and links that a match may have."""
+    at = {name: complex(place) for name, place in zip(drive.names, drive.home, strict=True)}
+    pivots = stated.get("fixed_pivots", {})
+    gaps = [
+        abs(value - wanted) / task
+        for name, joint in (("input", "O2"), ("output", "O4" if "O4" in at else "O5"))
+        for value, wanted in zip((at.get(joint, 0j).real, at.get(joint, 0j).imag), pivots.get(name) or (), strict=False)
+        if wanted is not None
+    ]
+    if gaps:
+        beside.check("fixed_pivots", max(gaps))
+    limits = stated.get("constraints", {}).get("coupler_point")
+    if limits is not None:
+        along = (at["B"] - at["A"]) / abs(at["B"] - at["A"])
+        place = (at["P"] - at["A"]) * along.conjugate()
+        box = {"x": limits.get("along", (-math.inf, math.inf)), "y": limits.get("across", (-math.inf, math.inf))}
+        beside.check("coupler_point", outside(box, place) <= 1e-9 * drive.size)
+    if stated.get("crank_phase", "free") != "free":
+        first = drive.at(first_turn)[0]
+        stands = cmath.phase(complex(first[drive.names.index("A")]) - at["O2"])
+        stands -= cmath.phase(at["O4"] - at["O2"]) if stated["crank_phase"] == "ground_line" else 0.0
+        signs = (1.0, -1.0) if stated.get("crank_direction") == "either" else (1.0,)
+        wanted = math.radians(stated["points"][0]["crank_angle"])
+        beside.check("crank_phase", min(abs(math.remainder(stands - sign * wanted, math.tau)) for sign in signs))
+
+
+def _compare_tolerances(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met) -> None:
+    """How much of their tolerances the positions use, and how exactly the others are met."""
+    fitted = len(stated["positions"]) > EXACT or stated.get("method") == "least_squares"
+    toleranced = any(pose.get("tolerance") is not None for pose in stated["positions"])
+    held, used = 0.0, 0.0
+    off = met.joints[:, drive.names.index("P")] - met.points
+    for k, pose in enumerate(stated["positions"]):
+        offsets = np.array([off[k].real, off[k].imag, met.wrong[k]])
+        limits = np.full(3, math.inf if fitted and not toleranced and not pose.get("exact") else 0.0)
+        tolerance = pose.get("tolerance")
+        if isinstance(tolerance, dict):
+            limits[:] = [tolerance.get(name) or 0.0 for name in ("x", "y", "angle")]
+            limits[2] = math.radians(limits[2])
+        elif tolerance is not None:
+            limits[:] = [tolerance, tolerance, min(tolerance / met.task, math.pi)]
+        exact = np.where(limits == 0.0, offsets, 0.0)
+        held = max(held, float(np.hypot(exact[0], exact[1])) / met.task, abs(exact[2]))
+        some = (limits > 0.0) & np.isfinite(limits)
+        used = max(used, float((np.abs(offsets[some]) / limits[some]).max(initial=0.0)))
+    beside.check("reaches_targets", held)
+    beside.check("within_tolerance", used)
+
+
+def _compare_body(beside: Beside, drive: Drive, met: Met) -> float:
     """How the body is carried; the factor of the quality."""
-    metrics = design.metrics
-    travel = 0.0 if drive.slides_in else math.degrees(used[1] - used[0])
-    if not drive.slides_in:
-        result.add("motion input_travel", metrics.input_travel, travel, 360.0, name)
-    way, needed = travelled(drive, *used), float(np.abs(np.diff(p)).sum())
-    angles = np.unwrap(rotation(drive, drive.at(np.linspace(*used, FINE))))
-    turning = float(np.abs(np.diff(angles)).sum())
+    low, high = float(met.turns.min()), float(met.turns.max())
+    p, turned = met.joints[:, drive.names.index("P")], rotation(drive, met.joints)
+    travel = 0.0 if drive.slides_in else math.degrees(high - low)
+    beside.metric("input_travel", travel, 360.0)
+    way, needed = travelled(drive, low, high), float(np.abs(np.diff(p)).sum())
+    turning = _turning(drive, low, high)
     steps = np.diff(turned)
     needed_turn = float(np.abs((steps + math.pi) % math.tau - math.pi).sum())
-    result.add("motion body_travel_ratio", metrics.body_travel_ratio, way / needed, way / needed, name)
+    beside.metric("body_travel_ratio", way / needed, way / needed)
     if needed_turn > 0.0:
-        ratio = turning / needed_turn
-        result.add("motion body_turn_ratio", metrics.body_turn_ratio, ratio, ratio, name)
-    excess = max((way - needed) / max(needed, task), (turning - needed_turn) / max(needed_turn, math.radians(15.0)))
-    ease = 1.0 / ((1.0 + (travel / 180.0) ** 2) * (1.0 + excess**2))
-    return ease, {"input_travel", "body_travel_ratio", "body_turn_ratio"}
+        beside.metric("body_turn_ratio", turning / needed_turn, turning / needed_turn)
+    excess = max((way - needed) / max(needed, met.task), (turning - needed_turn) / max(needed_turn, math.radians(15.0)))
+    return 1.0 / ((1.0 + (travel / 180.0) ** 2) * (1.0 + excess**2))
+
+
+def _turning(drive: Drive, low: float, high: float) -> float:
+    """All that the body turns: its rate, by quadrature between the places where that changes its sign."""
+    i, j = body(drive)
+
+    def rate(turns: Real) -> Real:
+        z, rates = drive.at(turns), drive.rates_at(turns)
+        return np.asarray(((rates[:, j] - rates[:, i]) / (z[:, j] - z[:, i])).imag)
+
+    places = np.linspace(low, high, GRID)
+    sign = np.sign(rate(places))
+    inside = [
+        root(rate, float(places[k]), float(places[k + 1])) for k in np.flatnonzero(sign[1:] * sign[:-1] < 0.0).tolist()
+    ]
+    ends = np.array([low, *inside, high])
+    turned = np.unwrap(rotation(drive, drive.at(np.sort(np.concatenate([places, ends])))))
+    at_ends = turned[np.searchsorted(np.sort(np.concatenate([places, ends])), ends)]
+    return float(np.abs(np.diff(at_ends)).sum())
+
+
+def _compare_driver(beside: Beside, stated: dict[str, Any], drive: Drive, met: Met) -> None:
+    """The driven link goes from its place at the first target to that at the last, and no farther."""
+    names = drive.names.index
+    driven = next(name for name in ("input", "output", "coupler") if names("C") in drive.links[name])
+    pivot, pin = (names("O4"), names("B")) if driven == "output" else (names("O2"), names("A"))
+    nodes = np.unwrap(np.angle(drive.places[:, pin] - drive.places[:, pivot]))
+
+    def angle(turns: Real) -> Real:
+        near = np.interp(turns, drive.nodes, nodes)
+        z = drive.at(turns)
+        return np.asarray(near + np.angle((z[:, pin] - z[:, pivot]) * np.exp(-1j * near)))
+
+    swing = greatest(angle, 0.0, math.tau).value - least(angle, 0.0, math.tau).value
+    ends = angle(met.turns[[0, -1]])
+    beside.check("limits", swing - abs(float(ends[1] - ends[0])), 1.0)
+    wanted = stated.get("driver_dyad")
+    if isinstance(wanted, dict) and wanted.get("pivot_region") is not None:
+        place = complex(drive.home[names("O6")])
+        beside.check("driver_pivot_region", outside(wanted["pivot_region"], place) <= 1e-9 * drive.size)

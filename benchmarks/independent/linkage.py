@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.independent.comparison import Measured
+from benchmarks.independent.comparison import Beside
 from benchmarks.independent.drive import Complex, Drive
+from benchmarks.independent.mobility import class_of
 from benchmarks.independent.transmission import least_angles
 
 PINS = {
@@ -23,6 +24,7 @@ PINS = {
 """The joints between which a length is measured, where it is not the greatest of its link in the skeleton."""
 
 OWN_PINS = {
+    "fourbar": {"output": ("O4", "B")},
     "crank_shaper": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "whitworth": {"rocker": ("O4", "C"), "coupler": ("C", "D")},
     "drag_link_rocker": {"output_ground": ("O4", "O6")},
@@ -70,64 +72,137 @@ def box(places: Complex) -> float:
     return math.hypot(np.ptp(places.real), np.ptp(places.imag))
 
 
-def compare_linkage(
-    result: Measured,
-    kind: str,
-    design: Any,
-    drive: Drive,
-    name: str,
-    *,
-    way: tuple[float, float],
-    task: float | None,
-    places: Complex,
-    ease: float | None = 1.0,
-) -> set[str]:
-    """Compare what all kinds state; the names of what was compared.
+class Used(NamedTuple):
+    """Over what a design of a kind is measured.
 
-    ``way`` are the turns that transmission angles are taken over, ``task`` the size of the task (None: it has none),
-    ``places`` all joints that the box is around, ``ease`` the factor of the quality (None: not to be compared).
+    Attributes
+    ----------
+    way : tuple of float
+        The turns that transmission angles are taken over.
+    task : float or None
+        The size of the task; None where it has none.
+    places : complex
+        All joints that the box is around.
+    ease : float or None
+        The factor of the quality; None where a kind has no quality.
+    in_order : bool
+        Whether the targets are visited in order.
     """
-    metrics, mechanism = design.metrics, design.mechanism
+
+    way: tuple[float, float]
+    task: float | None
+    places: Complex
+    ease: float | None = 1.0
+    in_order: bool = True
+
+
+def compare_linkage(beside: Beside, stated: dict[str, Any], drive: Drive, used: Used) -> None:
+    """Compare what all kinds state, and the checks of constraints."""
+    metrics, mechanism = beside.design.metrics, beside.design.mechanism
+    lengths = _compare_lengths(beside, drive)
+    ratio, reach = max(lengths) / min(lengths), reach_of(drive)
+    beside.metric("link_ratio", ratio, ratio)
+    beside.metric("size", box(used.places), box(used.places))
+    if used.task is not None:
+        beside.metric("reach", reach / used.task, reach / used.task)
+    checks = {"link_ratio": ratio, "shortest_link": min(lengths), "longest_link": max(lengths)}
+    for name, value in checks.items():
+        beside.check(name, value, value)
+    _compare_regions(beside, stated.get("constraints", {}), drive)
+    wanted = stated.get("constraints", {}).get("grashof", "any")
+    if {"O2", "A", "B", "O4"} <= set(drive.names) and not drive.slides_in and not _joined_by_a_slide(drive):
+        grashof = class_of(*(complex(drive.home[drive.names.index(name)]) for name in ("O2", "A", "B", "O4")))
+        if getattr(metrics, "grashof", None) is not None:
+            beside.same("metrics.grashof", metrics.grashof, grashof.motion)
+            beside.same("metrics.barker", metrics.barker, grashof.code)
+        beside.check("grashof", grashof.motion == {"non_grashof": "rocker_rocker"}.get(wanted, wanted))
+    if not drive.follow(*used.way):
+        beside.unmeasured("could not be driven")
+        return
+    beside.same("metrics.same_branch", getattr(metrics, "same_branch", None), True)
+    beside.same("metrics.visits_in_order", getattr(metrics, "visits_in_order", None), used.in_order)
+    beside.check("same_branch", True)
+    beside.check("same_circuit", True)
+    beside.check("visits_in_order", used.in_order)
+    if hasattr(metrics, "full_rotation"):
+        turns = turns_through(drive, mechanism)
+        beside.same("metrics.full_rotation", metrics.full_rotation, turns)
+        beside.check("full_rotation", turns)
+        beside.check("crank_turns", turns)
+    angles = least_angles(drive, *used.way)
+    found = min(angles.values())
+    beside.metric("min_transmission_angle", found, 90.0)
+    beside.check("transmission_angle", found, 90.0)
+    for link, angle in getattr(metrics, "transmission_angles", {}).items():
+        of_link = [least for links, least in angles.items() if link in links]
+        if of_link:
+            beside.add("metrics.transmission_angles", angle, of_link[0], 90.0)
+        else:
+            beside.measured.left[f"{mechanism.type}: transmission angle of {link}"] += 1
+    if used.ease is not None:
+        far = 0.0 if used.task is None else reach / used.task
+        weighed = math.sin(math.radians(found)) / ((1.0 + (far / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
+        beside.metric("quality", used.ease * weighed, 1.0)
+
+
+def _compare_lengths(beside: Beside, drive: Drive) -> list[float]:
+    """Compare the lengths of the links; those that are found."""
+    mechanism = beside.design.mechanism
     stated_links = mechanism.links if isinstance(mechanism.links, dict) else mechanism.links.model_dump()
     lengths = []
     for link, stated in stated_links.items():
         found = length_of(drive, mechanism.type, link)
         if found is None:
-            result.left[f"{mechanism.type}: length {link}"] += 1
+            beside.measured.left[f"{mechanism.type}: length {link}"] += 1
             continue
-        result.add(f"{kind} length", stated, found, max(stated, 1e-6 * drive.size), name)
+        beside.add("mechanism.links", stated, found, max(stated, 1e-6 * drive.size))
         lengths.append(found)
-    lengths = [length for length in lengths if length > 1e-12 * drive.size]
-    ratio, reach = max(lengths) / min(lengths), reach_of(drive)
-    result.add(f"{kind} link_ratio", metrics.link_ratio, ratio, ratio, name)
-    compared = {"link_ratio", "check link_ratio", "check shortest_link", "check longest_link", "reach", "size"}
-    for check in design.verification.checks:
-        lengths_of = {"link_ratio": ratio, "shortest_link": min(lengths), "longest_link": max(lengths)}
-        if check.name in lengths_of:
-            result.add(f"{kind} check {check.name}", check.value, lengths_of[check.name], lengths_of[check.name], name)
-    result.add(f"{kind} size", metrics.size, box(places), box(places), name)
-    if task is not None and getattr(metrics, "reach", None) is not None:
-        result.add(f"{kind} reach", metrics.reach, reach / task, reach / task, name)
-    if not drive.follow(*way):
-        result.left[f"{mechanism.type}: could not be driven"] += 1
-        return compared
-    angles = least_angles(drive, *way)
-    found = min(angles.values())
-    result.add(f"{kind} min_transmission_angle", metrics.min_transmission_angle, found, 90.0, name)
-    compared |= {"min_transmission_angle", "check transmission_angle"}
-    for check in design.verification.checks:
-        if check.name == "transmission_angle":
-            result.add(f"{kind} check transmission_angle", check.value, found, 90.0, name)
-    for link, stated in getattr(metrics, "transmission_angles", {}).items():
-        of_link = [angle for links, angle in angles.items() if link in links]
-        if of_link:
-            result.add(f"{kind} transmission_angles", stated, of_link[0], 90.0, name)
-        else:
-            result.left[f"{mechanism.type}: transmission angle of {link}"] += 1
-    quality = getattr(metrics, "quality", None)
-    if quality is not None and ease is not None:
-        far = 0.0 if task is None else reach / task
-        weighed = math.sin(math.radians(found)) / ((1.0 + (far / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
-        result.add(f"{kind} quality", quality, ease * weighed, 1.0, name)
-        compared.add("quality")
-    return compared
+    return [length for length in lengths if length > 1e-12 * drive.size]
+
+
+def _joined_by_a_slide(drive: Drive) -> bool:
+    """Whether O4 and B, or A and B, are joined by a slide and not by links of a fourbar."""
+    at = drive.names.index
+    return not any({at("A"), at("B")} <= set(joints) for joints in drive.links.values()) or not any(
+        {at("O4"), at("B")} <= set(joints) for joints in drive.links.values()
+    )
+
+
+def _compare_regions(beside: Beside, constraints: dict[str, Any], drive: Drive) -> None:
+    """How far the pivots are outside of their regions in the skeleton's configuration."""
+    kind = beside.design.mechanism.type
+    added = {"O6", "C", "D"} if kind in DRIVERS else set()
+    ground = {drive.names[joint] for joint in drive.links["ground"]}
+    fixed = [drive.home[drive.names.index(name)] for name in drive.names if name in ground - added]
+    moving = [drive.home[drive.names.index(name)] for name in drive.names if name not in ground | added | {"P"}]
+    for name, pivots in (("fixed_pivot_region", fixed), ("moving_pivot_region", moving)):
+        region = constraints.get(name)
+        if region is not None:
+            beside.check(name, max(outside(region, pivot) for pivot in pivots), drive.size)
+    region = constraints.get("input_pivot_region")
+    if region is not None:
+        beside.check("input_pivot_region", outside(region, fixed[0]) <= 1e-9 * drive.size)
+
+
+def outside(region: dict[str, Any], place: complex) -> float:
+    """How far a place lies outside of a rectangle."""
+    (left, right), (low, high) = region["x"], region["y"]
+    nearest = complex(min(max(place.real, left), right), min(max(place.imag, low), high))
+    return abs(place - nearest)
+
+
+def turns_through(drive: Drive, mechanism: Any) -> bool:
+    """Whether the input turns all round and all joints come home; of gears so many turns as these need."""
+    if drive.slides_in:
+        return False
+    turns = turns_of_gears(mechanism)
+    if not drive.follow(0.0, turns * math.tau):
+        return False
+    back = drive.at(np.array([turns * math.tau]))[0]
+    return bool(np.abs(back - drive.home).max() <= 1e-7 * drive.size)
+
+
+def turns_of_gears(mechanism: Any) -> int:
+    """Turns of the input after which all gears stand as before."""
+    ratios = [gear.ratio for gear in mechanism.skeleton.gears]
+    return next((n for n in range(1, 61) if all(abs(n * r - round(n * r)) < 1e-9 for r in ratios)), 1)

@@ -12,7 +12,8 @@ from synthesis.dispatch import solve
 from synthesis.kinds.dwell.arcs import arcs, lines
 from synthesis.kinds.dwell.design import DwellDesign, DwellResult
 from synthesis.kinds.dwell.problem import DwellProblem
-from synthesis.kinds.dwell.verification import _means, _ranges, verify_dwell
+from synthesis.kinds.dwell.rests import _means, _ranges
+from synthesis.kinds.dwell.verification import verify_dwell
 from synthesis.model.statement import ContradictionError
 from synthesis.registry import parse_problem
 from tests.cases import Case, cases

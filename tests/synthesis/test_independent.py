@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from benchmarks.demands.ordinary import KINDS
-from benchmarks.independent.cams import FOLLOWERS, LAWS, cams, law
+from benchmarks.independent import cam_motion
+from benchmarks.independent.cam_motion import LAWS, by_law, law
+from benchmarks.independent.cams import FOLLOWERS, cams
 from benchmarks.independent.comparison import Measured
+from benchmarks.independent.course import Course
 from benchmarks.independent.drive import Drive
-from benchmarks.independent.extremes import greatest, least
-from benchmarks.independent.linkages import compare, linkages
+from benchmarks.independent.extremes import greatest, least, root
+from benchmarks.independent.linkages import linkages
+from benchmarks.independent.mobility import class_of
+from benchmarks.independent.statements import families
 from benchmarks.independent.transmission import least_angles
-from synthesis.dispatch import solve
 from synthesis.model.linkage_answer import Skeleton
-from synthesis.registry import parse_problem
 from tests.campaign import sampled
 
 
@@ -25,10 +28,18 @@ from tests.campaign import sampled
 def test_the_laws_written_out_are_motions(name: str) -> None:
     """From nothing to one, and each derivative that of the one before."""
     u = np.linspace(0.0, 1.0, 20_001)
-    s, v, a = law(name, u)
+    s, v, a, j = law(name, u)
     assert (s[0], s[-1]) == pytest.approx((0.0, 1.0), abs=1e-12)
     assert np.gradient(s, u)[1:-1] == pytest.approx(v[1:-1], abs=1e-6)
     assert np.gradient(v, u)[1:-1] == pytest.approx(a[1:-1], abs=1e-4)
+    assert np.gradient(a, u)[1:-1] == pytest.approx(j[1:-1], abs=2e-2)
+
+
+def test_peaks_and_means_of_pieces_are_exact() -> None:
+    move = by_law("cycloidal", 0.0, math.tau, 0.0, 2.0)
+    assert cam_motion.greatest(move.v) == pytest.approx(2.0 / math.pi, rel=1e-12)
+    assert cam_motion.least(move.a) == pytest.approx(-1.0 / math.pi, rel=1e-10)
+    assert cam_motion.mean([move], [move.v**2]) == pytest.approx(1.5 / math.pi**2, rel=1e-12)
 
 
 PARALLELOGRAM: dict[str, Any] = {
@@ -103,22 +114,57 @@ def test_peaks_between_the_steps_are_found() -> None:
     at, value = greatest(lambda x: np.maximum(np.cos(x - 1.2345678), 0.9995 * np.cos(x - 4.0)), 0.0, 6.0, grid=61)
     assert (at, value) == pytest.approx((1.2345678, 1.0), abs=1e-6)
     assert math.isnan(greatest(lambda x: np.where(x > 1.0, np.nan, x), 0.0, 2.0).value)
+    assert root(lambda x: np.cos(x), 1.0, 2.0) == pytest.approx(0.5 * math.pi, abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "motion", "code"),
+    [
+        ((4.0, 1.0, 3.0, 3.5), "crank_rocker", "GCRR"),
+        ((1.0, 4.0, 3.0, 3.5), "double_crank", "GCCC"),
+        ((4.0, 3.0, 1.0, 3.5), "double_rocker", "GRCR"),
+        ((4.0, 3.0, 3.5, 1.0), "rocker_crank", "GRRC"),
+        ((3.0, 5.0, 2.0, 3.5), "rocker_rocker", "RRR2"),
+        ((4.0, 2.0, 4.0, 2.0), "change_point", "S"),
+    ],
+)
+def test_links_that_turn_through_tell_the_class(lengths: tuple[float, ...], motion: str, code: str) -> None:
+    """Norton, Table 2-4: ground, input, coupler, output."""
+    ground, crank, coupler, output = lengths
+    # B anywhere at the coupler's length from A and the output's from O4: only the lengths count.
+    a, o4 = 0.5j * crank + crank * math.sqrt(0.75), complex(ground)
+    reach = abs(o4 - a)
+    along = (coupler**2 - output**2 + reach**2) / (2.0 * reach)
+    b = a + complex(along, math.sqrt(max(coupler**2 - along**2, 0.0))) * (o4 - a) / reach
+    assert class_of(0j, a, b, o4) == (motion, code)
+
+
+def test_a_course_is_as_wide_as_its_smooth_curve_bulges() -> None:
+    """Points of a circle: the spline through them is nearly the circle, whose arc bulges by its sagitta."""
+    points = np.exp(1j * np.linspace(0.0, math.tau, 24, endpoint=False))
+    course = Course(points, closed=True)
+    sagitta = 1.0 - math.cos(math.pi / 24)
+    place = np.array([(1.0 + 0.5 * sagitta) * np.exp(1j * math.pi / 24)])
+    assert course.distances(place)[0] == pytest.approx(1.5 * sagitta)
+    assert course.tolerance_used(place, np.full(24, 0.1))[0] == pytest.approx(5.0 * sagitta, rel=1e-3)
+    assert course.beyond_bulges(place, 0.0)[0] < 0.0
 
 
 def test_a_difference_is_seen() -> None:
-    result = Measured()
-    result.add("size", 1.0 + 2e-6, 1.0, 1.0, "off")
-    result.add("size", 1.0 + 2e-7, 1.0, 1.0, "near")
-    result.add("size", None, 1.0, 1.0, "not stated")
-    result.add("angle", math.nan, 1.0, 1.0, "unknown")
-    assert {difference.name for difference in result.over} == {"off", "unknown"}
+    result, design = Measured(), SimpleNamespace(mechanism=SimpleNamespace(type="fourbar"))
+    for name, stated in (("off", 1.0 + 2e-6), ("near", 1.0 + 2e-7), ("not stated", None), ("unknown", math.nan)):
+        result.beside("motion", design, name).add("metrics.size", stated, 1.0, 1.0)
+    result.beside("motion", design, "other").same("metrics.grashof", "crank_rocker", "double_crank")
+    assert {difference.name for difference in result.over} == {"off", "unknown", "other"}
+    assert "5 designs, 4 comparisons of 2 quantities" in result.report()
 
 
 def test_cams_of_every_follower_agree() -> None:
     result = Measured()
     assert cams(2 * len(FOLLOWERS), 7, result) == 2 * len(FOLLOWERS)
     assert not result.over, result.report()
-    assert sum(map(len, result.differences.values())) > 60
+    assert not result.left, result.report()
+    assert len(result.differences) > 40
 
 
 QUICK = (
@@ -127,100 +173,65 @@ QUICK = (
     "pairs",
     "quick return",
     "straight line",
-    "dwell",
     "steering",
     "parallel motion",
+    "output slides in the body",
+    "output slides",
+    "input slides",
+    "input is driven",
+    "coupler is driven",
+    "sides",
+    "timed path",
+    "tolerated path",
+    "functions",
+    "body on a rocker",
+    "demands of a line",
+    "demands of steering",
+    "parallel motion along a path",
+    "positions",
 )
-"""Names of tasks whose answers take less than a second each."""
+"""Families whose answers take a second or two each."""
 
 
 @pytest.mark.parametrize("name", QUICK)
-def test_a_linkage_of_a_kind_agrees(name: str) -> None:
+def test_a_family_agrees(name: str) -> None:
     result = Measured()
-    assert linkages(1, (name,), 3, result, most=4)
+    assert linkages(3, (name,), 3, result, most=3)
     assert not result.over, result.report()
-    assert sum(map(len, result.differences.values())) >= 8
+    assert not result.left, result.report()
+    assert len(result.differences) >= 15
 
 
-DYADS = [
-    {"output_side": {"dyad": "RP"}},
-    {"output_side": {"dyad": "PR", "slide_angle": 15}},
-    {"input_side": {"dyad": "PR"}},
-    *({"driver_dyad": {"link": link}} for link in ("input", "output", "coupler")),
-]
-
-
-@pytest.mark.parametrize("asked", DYADS, ids=str)
-def test_sliders_and_drivers_agree(asked: dict[str, Any]) -> None:
-    poses = [{"x": 0, "y": 0, "angle": 0}, {"x": 40, "y": 15, "angle": -25}, {"x": 75, "y": 5, "angle": -60}]
-    stated, result = {"kind": "motion", "positions": poses, **asked}, Measured()
-    designs = solve(parse_problem(stated)).designs[:3]
-    assert designs
-    for k, design in enumerate(designs):
-        compare(result, stated, design, f"design {k}")
+@pytest.mark.parametrize("name", ["dwell", "two dwells"])
+def test_a_rest_agrees(name: str) -> None:
+    """What the output moves, and for how long it keeps within the tolerance, between all steps."""
+    result = Measured()
+    assert linkages(1, (name,), 1, result, most=1)
+    assert result.differences["dwell targets.width"]
     assert not result.over, result.report()
-    assert len(result.differences["motion transmission_angles"]) >= len(designs)
+    assert not result.left, result.report()
+
+
+def test_cognates_agree_where_two_points_are_met_at_one_place() -> None:
+    """Two of the noisy points are nearest to one place of the curve: the cognate passes them in order all the same."""
+    result = Measured()
+    assert linkages(1, ("closed_curves",), 1, result) == 1
+    assert result.differences["path cognates.visits_in_order"]
+    assert not result.over, result.report()
 
 
 @pytest.mark.campaign
 def test_many_cams_agree() -> None:
     result = Measured()
-    assert cams(200, 11, result) >= 190
+    assert cams(200, 11, result) >= 180
     assert not result.over, result.report()
-
-
-SLOW = ("four points", "ten points")
-"""Names of tasks whose answers take many seconds."""
+    assert not result.left, result.report()
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", [name for name, _ in KINDS if name not in SLOW])
+@pytest.mark.parametrize("name", [family.name for family in families()])
 def test_many_linkages_agree(name: str) -> None:
     result = Measured()
-    linkages(sampled(12), (name,), 11, result, most=3)
+    linkages(sampled(40), (name,), 11, result, most=3)
     assert not result.over, result.report()
-
-
-POINTS = [(0, 0, 0), (20, 12, 20), (42, 16, 42), (60, 10, 60), (75, -3, 85)]
-
-OTHERS: dict[str, dict[str, Any]] = {
-    "timed path": {
-        "kind": "path",
-        "timing": "prescribed",
-        "points": [{"x": x, "y": y, "crank_angle": angle} for x, y, angle in POINTS],
-    },
-    "slider-crank along a path": {
-        "kind": "path",
-        "mechanism": "slider_crank",
-        "points": [{"x": x, "y": y} for x, y, _ in POINTS],
-    },
-    "slider-crank by a function": {
-        "kind": "function",
-        "mechanism": "slider_crank",
-        "function": {"name": "sine", "x": [0, 60]},
-        "input_range": 60,
-        "output_range": 50,
-    },
-    "slider that dwells": {"kind": "dwell", "dwell_angle": 40, "output": {"type": "slider", "stroke": 50}},
-    "two dwells": {"kind": "dwell", "dwell_angle": 30, "count": 2, "output": {"type": "rocker", "swing": 40}},
-    "slot that dwells": {
-        "kind": "dwell",
-        "dwell_angle": 40,
-        "output": {"type": "rocker", "swing": 40},
-        "mechanism": "straight_slot",
-    },
-    "rockers that return quickly": {"kind": "quick_return", "time_ratio": 1.25, "swing": 45.0, "mechanism": "auto"},
-    "a line with an even velocity": {"kind": "straight_line", "length": 80, "optimize": "velocity", "direction": 30},
-}
-
-
-@pytest.mark.campaign
-@pytest.mark.parametrize("name", OTHERS)
-def test_other_types_agree(name: str) -> None:
-    result = Measured()
-    designs = solve(parse_problem(OTHERS[name])).designs[:2]
-    assert designs
-    for k, design in enumerate(designs):
-        compare(result, OTHERS[name], design, f"{name}, design {k}")
-    assert not result.over, result.report()
-    assert result.differences
+    assert not result.left, result.report()

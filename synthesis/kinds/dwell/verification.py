@@ -8,16 +8,15 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.dwell.design import DwellDesign, DwellMechanism, DwellMetrics, Rest
 from synthesis.kinds.dwell.problem import DwellProblem
+from synthesis.kinds.dwell.rests import Turn, rests
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import OUTPUT
 from synthesis.proof.checks import at_most, tolerated
@@ -31,9 +30,6 @@ Real = NDArray[np.float64]
 GRID = 2880
 """Crank angles of the turn: every eighth of a degree."""
 
-WHOLE_STEP = 1e-9
-"""Steps of the grid by which rounding may put an angle above a whole number of them."""
-
 WAY_MET = 1e-6
 """How far swing or stroke may be from the demanded one, as a share of it."""
 
@@ -45,14 +41,6 @@ NO_TOGGLE = 1e-6
 
 END = 0.05
 """How far a dwell's mean may be from the end of the way, as a share of it."""
-
-
-class _Rest(NamedTuple):
-    start: int
-    level: float
-    jitter: float
-    width: float
-    off_end: float
 
 
 def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign | None:
@@ -91,8 +79,13 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     way = high - low
     transmission = least_angles(partial(drive, mechanism, order=0), inputs, motion)
     turns = closed and turned <= 0.5 * way and min(transmission.values()) > NO_TOGGLE
-    rests = _rests(values[:-1], problem, low, high)
-    if not rests:
+
+    def at(angles: Real) -> Real:
+        return output(drive(mechanism, angles, order=0))
+
+    turn = Turn(at, inputs, values, math.inf if slides else 360.0)
+    found = rests(turn, math.radians(problem.dwell_angle), problem.count, problem.allowed, (low, high))
+    if not found:
         return None
     rates = [_peak(mechanism, inputs, motion, order, slides=slides) for order in (1, 2)]
     lengths = _lengths(mechanism)
@@ -109,7 +102,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     )
     metrics = DwellMetrics(
         way=way,
-        jitter=max(rest.jitter for rest in rests),
+        jitter=max(rest.jitter for rest in found),
         peak_velocity=rates[0],
         peak_acceleration=rates[1],
         **measures.within(DwellMetrics),
@@ -117,13 +110,13 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
     targets = [
         Rest(
             index=k,
-            input_angle=math.degrees(float(inputs[rest.start])),
+            input_angle=math.degrees(rest.begin),
             level=rest.level,
             jitter=rest.jitter,
-            width=rest.width,
+            width=math.degrees(rest.width),
             off_end=rest.off_end,
         )
-        for k, rest in enumerate(rests)
+        for k, rest in enumerate(found)
     ]
     checks = _checks(problem, mechanism, measures, metrics.way, targets)
     return DwellDesign(
@@ -160,50 +153,6 @@ def _peak(mechanism: Mechanism, inputs: Real, motion: MechanismMotion, order: in
 
     known = -magnitude(motion)
     return -least_near(lambda closer: -magnitude(drive(mechanism, closer, order=order)), inputs, known)[1]
-
-
-def _rests(values: Real, problem: DwellProblem, low: float, high: float) -> list[_Rest]:
-    """The dwells of periodic values: one, or one near each end, the one that begins first at the front."""
-    window = math.ceil(problem.dwell_angle / 360.0 * GRID - WHOLE_STEP) + 1
-    jitter, mean = _ranges(values, window), _means(values, window)
-    middle = 0.5 * (low + high)
-    rests = []
-    for near in (mean > middle, mean <= middle):
-        if near.any():
-            start = int(np.where(near, jitter, np.inf).argmin())
-            off = min(high - mean[start], mean[start] - low) / (high - low)
-            held = np.take(values, np.arange(start, start + window), mode="wrap")
-            level = 0.5 * float(held.max() + held.min())
-            width = _width(values, start, window, problem.allowed)
-            rests.append(_Rest(start, level, float(jitter[start]), width, float(off)))
-    if problem.count == 1:
-        return [min(rests, key=lambda rest: rest.jitter)]
-    return sorted(rests, key=lambda rest: rest.start) if len(rests) == 2 else []
-
-
-def _ranges(values: Real, window: int) -> Real:
-    """Greatest less least of each ``window`` values from an index on, around the turn."""
-    top, foot = (f(values, window, mode="wrap") for f in (maximum_filter1d, minimum_filter1d))
-    return np.asarray(np.roll(top - foot, -(window // 2)))
-
-
-def _means(values: Real, window: int) -> Real:
-    return np.asarray(np.roll(uniform_filter1d(values, window, mode="wrap"), -(window // 2)))
-
-
-def _width(values: Real, start: int, window: int, tolerance: float) -> float:
-    """The greatest rotation, degrees, about a dwell's middle over which the output stays within the tolerance."""
-    middle = start + window // 2
-
-    def holds(width: int) -> bool:
-        starts = np.arange(middle - width + 1, middle + 1)
-        return bool(np.take(_ranges(values, width), starts, mode="wrap").min() <= tolerance)
-
-    low, high = 1, GRID
-    while high - low > 1:
-        tried = (low + high) // 2
-        low, high = (tried, high) if holds(tried) else (low, tried)
-    return (low - 1) * 360.0 / GRID
 
 
 def _lengths(mechanism: Mechanism) -> list[float]:

@@ -240,7 +240,7 @@ def verify_function(
         **measures.within(FunctionMetrics),
         max_structural_error=error.max,
         rms_structural_error=error.rms,
-        output_range=float(targets.places[-1] - targets.places[0]) * degrees,
+        output_range=_output_range(problem, dials),
     )
     checks = []
     if problem.aim == "precision":
@@ -325,6 +325,16 @@ def _range(problem: FunctionProblem, dials: Dials, targets: _Wanted) -> tuple[fl
         return float(angles.min() if onward else angles.max()), float(angles.max() if onward else angles.min())
     start, end = np.radians(_place(dials.input, np.array(problem.function.interval)))
     return float(start), float(end)
+
+
+def _output_range(problem: FunctionProblem, dials: Dials) -> float:
+    """What the output dial turns, or moves, from the first value to the last: of all of x, or of the pairs."""
+    if problem.function is None:
+        values = problem.values[[0, -1], 1]
+    else:
+        values = problem.function.values(np.array(problem.function.interval))
+    first, last = _place(dials.output, values)
+    return float(last - first)
 
 
 def _structural_error(

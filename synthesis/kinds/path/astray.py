@@ -36,8 +36,9 @@ STEP, HALVINGS = 0.01, 40
 """Inputs are put between two whose places are farther apart than this share of the curve's size, so many times at most:
 near a change point a linkage runs over much of its curve in next to no time."""
 
-SMOOTH_STEPS = 32
-"""Places between two points at which the smooth curve's distance from the straight line is looked for."""
+SMOOTH_PLACES, SMOOTH_LOOKS = 33, 5
+"""Places between two points at which the smooth curve's distance from the straight line is looked for, and how often it
+is looked for again, sixteen times as closely, about the greatest."""
 
 
 class Astray(NamedTuple):
@@ -77,8 +78,7 @@ def tolerated_course(points: Complex, closed: bool, tolerances: Real) -> tuple[C
     spline = CubicSpline(knots, corners, bc_type="periodic" if closed else "not-a-knot")
     lengths = np.abs(lines.sides)
     begin = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
-    smooth = spline(begin[:, None] + lengths[:, None] * np.linspace(0.0, 1.0, SMOOTH_STEPS))
-    bulges = _bulges(smooth, lines.starts, lines.sides)
+    bulges = _bulges(spline, begin, lengths, lines)
     ends = np.append(tolerances, tolerances[0]) if closed else tolerances
     return lines._replace(allowed=np.minimum(bulges, lines.allowed)), np.maximum(ends[1:], ends[:-1])
 
@@ -178,13 +178,29 @@ def _off(place: complex, start: complex, side: complex) -> float:
     return math.sqrt(x * x + y * y)
 
 
+def _bulges(smooth: CubicSpline, begin: Real, lengths: Real, lines: Course) -> Real:
+    """The greatest distance of the smooth curve from each line that it goes over; it begins at a parameter for each."""
+    low, high = np.zeros(len(begin)), np.ones(len(begin))
+    found = np.zeros(len(begin))
+    for _ in range(SMOOTH_LOOKS):
+        shares = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, SMOOTH_PLACES)
+        off = _offs(smooth(begin[:, None] + lengths[:, None] * shares), lines.starts, lines.sides)
+        best, step = (
+            np.take_along_axis(shares, off.argmax(axis=1)[:, None], 1)[:, 0],
+            (high - low) / (SMOOTH_PLACES - 1),
+        )
+        found = np.maximum(found, off.max(axis=1))
+        low, high = np.maximum(best - step, 0.0), np.minimum(best + step, 1.0)
+    return found
+
+
 @njit(cache=True, nogil=True)
-def _bulges(smooth: Complex, starts: Complex, sides: Complex) -> Real:
-    """The greatest distance from each line of places on the smooth curve over it, shape (lines, places)."""
-    out = np.zeros(len(starts))
+def _offs(places: Complex, starts: Complex, sides: Complex) -> Real:
+    """Distances of places from their lines, shape (lines, places)."""
+    out = np.empty(places.shape)
     for k in range(len(starts)):
-        for place in smooth[k]:
-            out[k] = max(out[k], _off(place, starts[k], sides[k]))
+        for n in range(places.shape[1]):
+            out[k, n] = _off(places[k, n], starts[k], sides[k])
     return out
 
 

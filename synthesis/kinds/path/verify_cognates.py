@@ -17,6 +17,9 @@ from synthesis.kinds.path.design import PathCognate, PathDesign
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import DrivenFourbar, FourbarConfiguration, driven_fourbar, fourbar_mechanism
 
+ONE_PLACE = 1e-9
+"""Radians of the input between targets that are met at one place."""
+
 ALIKE = 0.05
 """Transmission angles that differ by less, in degrees, are not told apart."""
 
@@ -51,7 +54,9 @@ def _measured(
     p, a, b = (part[:, 0] for part in (stands.p, stands.a, stands.b))
     if not (np.all(at.valid) and np.all(np.isfinite(p))):
         return None
-    way = traverse(cognate.linkage, at.input_angle, at.assembly)
+    # A fit may meet neighbouring points at one place, which is then one target of the motion.
+    apart = np.append(True, np.abs(np.diff(inputs)) > ONE_PLACE)
+    way = traverse(cognate.linkage, at.input_angle[apart], at.assembly[apart])
     least = float(transmission_extremes(cognate.linkage, way.start, way.end)[0]) if way.same_branch else 0.0
     barker = barker_class(cognate.linkage)
     o2, o4 = complex(cognate.linkage.input_pivot), complex(cognate.linkage.output_pivot)

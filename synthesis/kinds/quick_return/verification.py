@@ -90,16 +90,19 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
         return None
     inputs = turn_from(float(mechanism.reference_input))
     motion = drive(mechanism, inputs, order=1)
+    # The point of a body on the rocker is a joint of it, as the point of a coupler is.
+    whole = mechanism if carrier is None else carrier
+    places = motion.joints if carrier is None else drive(carrier, inputs, order=0).joints
     turns = bool(motion.smooth.all())
     swings = output in mechanism.links
     travel = math.degrees(reversals.travel) if swings else reversals.travel
     measures = measured(
         link_lengths(design),
-        reach_of(mechanism),
+        reach_of(whole),
         # The way of the output's pin, as the chord of its arc or along its slide.
         2.0 * _rocker(design) * abs(math.sin(0.5 * reversals.travel)) if swings else travel,
         least_angles(partial(drive, mechanism, order=0), inputs, motion),
-        np.concatenate([jet[0] for jet in motion.joints.values()]),
+        np.concatenate([jet[0] for jet in places.values()]),
         barker=_barker(design),
         same_branch=turns,
         visits_in_order=turns,  # the output reverses twice in a turn: there is one order

@@ -31,14 +31,15 @@ from synthesis.model.dimension import ANGLE
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import driven_fourbar
 from synthesis.proof.checks import at_most
+from synthesis.proof.closer import least_near
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import link_lengths, measured
 from synthesis.proof.rebuilt import rebuilt
 
 Real = NDArray[np.float64]
 
-SAMPLES = 2001
-"""Inputs from lock to lock, on each side of the straight position half of them."""
+SAMPLES = 2049
+"""Inputs from lock to lock, on each side of the straight position half of them: 64 to each position that is listed."""
 
 SHOWN = 17
 """Positions that an answer lists, from straight to the lock."""
@@ -57,11 +58,12 @@ EXACT = 1e-9
 
 
 class _Driven(NamedTuple):
-    """Wheel angles over inputs from lock to lock; radians, counter-clockwise from straight."""
+    """Wheel angles over inputs from lock to lock, and at any other; radians, counter-clockwise from straight."""
 
     inputs: Real
     left: Real
     right: Real
+    wheels: Callable[[Real], tuple[Real, Real]]
     transmission: dict[str, float]
     on_branch: bool
     barker: BarkerClass | None = None
@@ -86,16 +88,19 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     if driven is None:
         return None
     ratio, lock = problem.pivot_distance / problem.wheelbase, math.radians(problem.lock)
-    to_left = driven.left >= 0.0
-    inner = np.where(to_left, driven.left, -driven.right)
-    outer = np.where(to_left, driven.right, -driven.left)
+    inner, outer = _by_turn(driven.left, driven.right)
     error = np.degrees(outer - outer_angle(inner, ratio))
-    worst = float(np.abs(error).max())
+
+    def errs(inputs: Real) -> Real:
+        nearer, farther = _by_turn(*driven.wheels(inputs))
+        return -np.abs(np.degrees(farther - outer_angle(nearer, ratio)))
+
+    worst = -least_near(errs, driven.inputs, -np.abs(error))[1]
     joints = {name: complex(*place) for name, place in design.skeleton.joints.items()}
     arm = joints["A"] - joints["O2"]
     behind = arm.imag < 0.0
     required = float(outer_angle(lock, ratio))
-    half = inner[to_left], outer[to_left], error[to_left], driven.inputs[to_left]
+    half = [values[SAMPLES // 2 :] for values in (inner, outer, error, driven.inputs)]
     measures = measured(
         link_lengths(design),
         problem.pivot_distance,
@@ -130,7 +135,7 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
     fixed = [joints.pop(name) for name in ("O2", "O4")]
     of_constraints = constraint_checks(problem.constraints, measures, fixed, list(joints.values()))
     checks += [check for check in of_constraints if check.name != "same_branch"]  # demanded in any case
-    listed = np.linspace(0, len(half[0]) - 1, SHOWN).round().astype(int)
+    listed = np.linspace(0, len(half[0]) - 1, SHOWN, dtype=int)
     turns = isinstance(design, FourbarMechanism)
     return SteeringDesign(
         mechanism=design,
@@ -149,6 +154,12 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         verification=Verification.of(checks),
         metrics=metrics,
     )
+
+
+def _by_turn(left: Real, right: Real) -> tuple[Real, Real]:
+    """Angles of the inner and the outer wheel."""
+    to_left = left >= 0.0
+    return np.where(to_left, left, -right), np.where(to_left, right, -left)
 
 
 def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | None:
@@ -174,7 +185,11 @@ def _fourbar(problem: SteeringProblem, design: FourbarMechanism) -> _Driven | No
         return None
     least = float(transmission_extremes(linkage, straight + low, straight + lock)[0])
     stays = bool(stays_on_branch(linkage, straight + low, straight + lock))
-    return _Driven(straight + left, left, moved, {"coupler": least}, stays, barker_class(linkage))
+
+    def wheels(inputs: Real) -> tuple[Real, Real]:
+        return inputs - straight, right(inputs - straight)
+
+    return _Driven(straight + left, left, moved, wheels, {"coupler": least}, stays, barker_class(linkage))
 
 
 def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
@@ -207,7 +222,12 @@ def _gear(problem: SteeringProblem, design: DavisMechanism) -> _Driven | None:
     if not (np.isfinite(left).all() and np.isfinite(right).all()):
         return None
     least = {link: math.asin(min(float(np.abs(sine).min()), 1.0)) for link, sine in motion.sines.items()}
-    return _Driven(straight + sense * travel, left, right, least, bool(motion.smooth.all()))
+
+    def wheels(inputs: Real) -> tuple[Real, Real]:
+        at = sense * (inputs - straight)
+        return arm("left_arm", at), arm("right_arm", at)
+
+    return _Driven(straight + sense * travel, left, right, wheels, least, bool(motion.smooth.all()))
 
 
 def _where(right: Callable[[Real], Real], low: float, lock: float) -> float | None:
