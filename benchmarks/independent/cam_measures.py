@@ -269,8 +269,8 @@ def _barrel(turn: Turn, mechanism: Any) -> dict[str, float]:
     rho = 1.0 / greatest(radius * np.abs(turn.a) / (radius**2 + turn.v**2) ** 1.5)
     normal = roller * radius / np.hypot(radius, turn.v)
     return {
-        "max_pressure_angle_rise": greatest(np.where(turn.v >= 0.0, slope, 0.0)),
-        "max_pressure_angle_fall": greatest(np.where(turn.v <= 0.0, slope, 0.0)),
+        "max_pressure_angle_rise": greatest(np.where(turn.v >= 0.0, slope, -np.inf)),
+        "max_pressure_angle_fall": greatest(np.where(turn.v <= 0.0, slope, -np.inf)),
         "min_radius": rho,
         "curvature_ratio": rho / roller,
         "groove_width": 2.0 * roller,
@@ -302,8 +302,8 @@ def _radial(turn: Turn, mechanism: Any) -> dict[str, float]:
     bend = (np.conj(z1) * z2).imag / np.abs(z1) ** 3
     convex, hollow = 1.0 / greatest(bend), -1.0 / least(bend) if least(bend) < 0.0 else math.inf
     found = {
-        "max_pressure_angle_rise": greatest(np.where(v >= 0.0, steep, 0.0)),
-        "max_pressure_angle_fall": greatest(np.where(v <= 0.0, steep, 0.0)),
+        "max_pressure_angle_rise": greatest(np.where(v >= 0.0, steep, -np.inf)),
+        "max_pressure_angle_fall": greatest(np.where(v <= 0.0, steep, -np.inf)),
         "min_convex_radius": convex - roller,
         "curvature_ratio": min(convex, hollow) / roller,
         "size": greatest(np.abs(p - roller * normal)),

@@ -98,11 +98,11 @@ def by_table(program: Any, start: float, angle: float, unit: float) -> Move:
 
 
 def greatest(values: Real) -> float:
-    """The greatest of pieces, between their points by the parabola through neighbours."""
+    """The greatest of pieces, between their points by the parabola through neighbours; −∞ where nothing counts."""
     rows = np.arange(len(values))
     k = np.clip(values.argmax(axis=1), 1, values.shape[1] - 2)
     before, at, after = values[rows, k - 1], values[rows, k], values[rows, k + 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = before - 2.0 * at + after
         top = at - 0.125 * (after - before) ** 2 / bend
     peaked = (at >= before) & (at >= after) & (bend < 0.0) & np.isfinite(top)

@@ -21,6 +21,9 @@ Statement = dict[str, Any]
 
 FOLLOWERS = ("translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat", "barrel_roller")
 
+OPTIMIZED = "optimized"
+"""What the name of a cam with optimized motions ends with."""
+
 CRITERIA = ("peak_acceleration", "peak_jerk", "rms_acceleration", "rms_jerk", "peak_velocity")
 """What optimized motions make least."""
 
@@ -133,7 +136,9 @@ def cams(count: int, seed: int, result: Measured) -> int:
     answered = 0
     for n, stated in enumerate(statements(count, seed)):
         for design in solve(parse_problem(stated)).designs:
-            beside = result.beside("cam", design, f"cam {n} (seed {seed}), {stated['follower']['type']}")
+            motion = OPTIMIZED if stated["segments"][0]["law"] == "optimal" else "by laws"
+            name = f"cam {n} (seed {seed}), {stated['follower']['type']}, {motion}"
+            beside = result.beside("cam", design, name)
             compare_cam(beside, stated, moves_of(stated, design.mechanism.program))
             beside.finish()
             answered += 1
