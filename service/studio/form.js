@@ -117,26 +117,32 @@ function field(sheet, schema, name, owner, path, required) {
 
 /** The words for what a value can be. @param {Schema} option */
 function shapeName(option) {
+  if (option.const !== undefined) return String(option.const);
   const names = Object.keys(option.properties ?? {});
   if (option.type === "object") return names.length === 2 && names.every((one) => ["min", "max"].includes(one)) ? "a range" : "in detail";
-  return { boolean: "yes or no", array: "a list", string: "a word" }[/** @type {string} */ (option.type)] ?? "a number";
+  return { boolean: "yes or no", array: "a list", string: "a word", null: "left open" }[/** @type {string} */ (option.type)] ?? "a number";
 }
 
 /**
  * A value that is stated in one of several ways, as a number or a range: the way is chosen first.
+ *
+ * A word that stands for itself, and null where leaving the field out means something else, have nothing below them.
  * @param {Sheet} sheet @param {import("./schema.js").Kinded} what @param {Schema} schema @param {string} name @param {string} note
  * @param {string} path @param {boolean} required @param {any} owner @param {(value: any) => void} set
  * @returns {HTMLElement}
  */
 function shapes(sheet, what, schema, name, note, path, required, owner, set) {
-  const value = owner[name] ?? schema.default ?? undefined;
-  const now = shapeOf(what.options, value) ?? what.options[0];
+  const options = what.nullable && (schema.default ?? null) !== null ? [...what.options, { type: "null" }] : what.options;
+  const value = owner[name] === undefined ? schema.default : owner[name];
+  const now = shapeOf(options, value) ?? options[0];
   const dimension = schema["x-dimension"];
-  const ways = what.options.map(shapeName);
+  const ways = options.map(shapeName);
   const way = choice(ways, shapeName(now), false, (chosen) => {
-    owner[name] = initial(what.options[ways.indexOf(chosen)], sheet.root);
+    const option = options[ways.indexOf(chosen)];
+    owner[name] = option.type === "null" ? null : initial(option, sheet.root);
     sheet.rebuild();
   });
+  if (now.const !== undefined || now.type === "null") return labelled(name, "", note, path, required, way);
   way.setAttribute("aria-label", `${words(name)}: how it is stated`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
   // What is not stated yet stays unstated while it is only looked at.
