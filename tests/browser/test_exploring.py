@@ -78,7 +78,7 @@ def test_a_pivot_is_dragged_along_burmesters_curve(studio):
 @pytest.mark.parametrize(
     ("kind", "n", "pin"),
     [
-        ("motion", 6, "B"), ("motion", 7, "C"), ("quick_return", 1, "A"), ("quick_return", 0, "B"), ("dwell", 1, "P"),
+        ("motion", 7, "B"), ("motion", 8, "C"), ("quick_return", 1, "A"), ("quick_return", 0, "B"), ("dwell", 1, "P"),
         ("parallel_motion", 0, "B"), ("straight_line", 1, "A"),
     ],
 )  # fmt: skip

@@ -205,8 +205,8 @@ def test_every_number_beside_a_cognate_is_the_cognates_own(studio, server):
 @pytest.mark.parametrize(
     ("kind", "n", "kind_of_link"),
     [
-        ("motion", 6, ".live .block"),
-        ("motion", 7, ".others .curve.other"),
+        ("motion", 7, ".live .block"),
+        ("motion", 8, ".others .curve.other"),
         ("quick_return", 1, ".live .block"),
         ("parallel_motion", 0, ".others .curve.other"),
         ("dwell", 1, ".live .block"),
