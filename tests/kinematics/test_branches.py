@@ -163,7 +163,7 @@ def test_circuits_branches_and_toggles(name: str) -> None:
     check(take(EVERY[name](rng, 2), 0), rng, 1)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", ["stephenson_3 driven by its output", "stephenson_2 driven by its output"])
 def test_closures_that_fold_close_together(name: str) -> None:
     """Two closures bound a branch within half a degree: the least of their margins has a corner there."""

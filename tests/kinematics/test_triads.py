@@ -113,7 +113,7 @@ def near_gaps(name: str, n: int) -> tuple[Mechanism, float]:
     return Mechanism({joint: z[use] for joint, z in joints.items()}, pool.links, pool.input), way
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", NAMES)
 def test_near_gaps_no_leap_to_another_assembly(name: str) -> None:
     mechanism, way = near_gaps(name, 2)

@@ -19,7 +19,7 @@ CASES = [(kind, number) for kind in KINDS for number in range(len(KINDS[kind].ex
 SLOW = {("path", 0), ("path", 3), ("motion", 2), ("motion", 4), ("motion", 5)}
 """Examples whose search takes more than a second."""
 
-EXAMPLES = [pytest.param(*case, marks=[pytest.mark.slow] if case in SLOW else []) for case in CASES]
+EXAMPLES = [pytest.param(*case, marks=[pytest.mark.campaign] if case in SLOW else []) for case in CASES]
 
 
 def mechanisms_in(value: Any) -> Iterator[dict[str, Any]]:

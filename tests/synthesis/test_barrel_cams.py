@@ -31,6 +31,7 @@ def only(problem):
 MORE = [pytest.param(seed, marks=pytest.mark.campaign) for seed in range(4, 12)]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("seed", [*range(4), *MORE])
 def test_the_smallest_cylinder_by_brute_force(seed):
     """Pressure angle and curvature on dense angles: sound at the radius found, and at none that is smaller."""

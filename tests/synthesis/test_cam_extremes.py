@@ -56,6 +56,7 @@ def stated_program(law: str, lift: float) -> Program:
     )
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("law", LAW_NAMES)
 @pytest.mark.parametrize("follower", ["translating_roller", "oscillating_roller"])
 def test_a_roller_has_the_extremes_of_the_laws(law: str, follower: str) -> None:

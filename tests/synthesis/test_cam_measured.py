@@ -159,6 +159,7 @@ def test_an_acceleration_of_an_instant_is_not_called_met():
     assert "state one" in result.summary
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("count", "lift"),
     [

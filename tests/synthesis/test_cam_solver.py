@@ -320,6 +320,7 @@ WITHOUT_LIMITS = [
 ]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("minimize", "known", "order"), WITHOUT_LIMITS)
 def test_known_limits_through_the_whole_solver(minimize, known, order):
     """Unit rise in a quarter turn, fall in another: abrupt motions, verified on closer points where they bend.
@@ -337,7 +338,7 @@ def test_known_limits_through_the_whole_solver(minimize, known, order):
     assert design.optimality.bound <= known * unit * (1.0 + 1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_smallest_cam_over_all_motions():
     """No law gives a cam as small, curvature counted; the bound is by pressure angle alone."""
     best = only(answered(cam(segments=moves("optimal", "optimal"), minimize="size")))
@@ -345,6 +346,7 @@ def test_smallest_cam_over_all_motions():
     assert best.optimality.bound < best.mechanism.prime_radius < law.mechanism.prime_radius
 
 
+@pytest.mark.campaign
 def test_smallest_flat_faced_cam_over_all_motions():
     limits = {"face_width": 60.0, "jerk": 1500.0, "min_radius": 2.0}
     problem = cam(
@@ -373,6 +375,7 @@ def test_a_cam_that_comes_to_the_pivot_of_its_arm_is_refused():
     assert [check.name for check in design.verification.checks if not check.passed] == ["clears_pivot"]
 
 
+@pytest.mark.campaign
 def test_the_profile_is_held_against_the_program_between_its_points():
     """Two hundred moves of fifteen points each: exact at the points, and a ten-thousandth of the lift off between."""
     segments = [

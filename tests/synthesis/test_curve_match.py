@@ -328,6 +328,7 @@ def test_given_pivots_are_hit():
         assert np.allclose(design.mechanism.fixed_pivots.output, pivots["output"], atol=1e-6)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("count", [6, 8, pytest.param(24, marks=pytest.mark.campaign)])
 def test_a_curve_on_its_pivots_is_recovered_from_few_points_and_nothing_far_is_offered(count):
     pivots = {"input": [3.0, 2.0], "output": [10.0, 1.0]}

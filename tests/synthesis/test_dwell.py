@@ -172,6 +172,7 @@ def test_the_same_problem_has_the_same_answer() -> None:
     assert solved(stated(mechanism="straight_slot", seed=1)).model_dump() != one
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "fields", [{"dwell_angle": 300.0, "output": rocker(170.0)}, {"dwell_angle": 170.0, "count": 2}]
 )

@@ -88,6 +88,7 @@ def test_members_are_moved_into_demands_that_none_of_them_keeps(n):
         keeps(design, points)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("n", [6, *(pytest.param(n, marks=pytest.mark.campaign) for n in (4, 5, 7))])
 def test_one_given_pivot_is_hit(n):
     linkage, points = planted(n, 20 + n)

@@ -97,6 +97,7 @@ def test_planted_linkages_are_among_all_36():
         assert min(abs(one.a - at.a[0]) + abs(one.b - at.b[0]) for one in found.linkages) < 1e-7
 
 
+@pytest.mark.campaign
 def test_all_real_solutions_are_those_that_newton_finds():
     """Newton from thousands of starts finds no other real solution, and nearly all of ours."""
     rng = np.random.default_rng(8)
@@ -194,6 +195,7 @@ def test_points_that_cannot_be_met_exactly_are_fitted_and_that_is_said():
     assert "fitted instead" in result.summary
 
 
+@pytest.mark.campaign
 def test_points_that_fits_miss_by_far_have_no_answer():
     points = np.array([0.0, 3.0 + 1.0j, -2.0 + 0.5j, 5.0 - 2.0j, 1.0 + 4.0j])
     asked = {"constraints": {"grashof": "crank_rocker", "min_transmission_angle": 60}}
@@ -204,6 +206,7 @@ def test_points_that_fits_miss_by_far_have_no_answer():
     assert f"missed by {nearest:.4g} mm" in result.summary
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "points",
     [

@@ -69,7 +69,7 @@ class TestApproximations:
         assert either.designs[0].metrics.output_range < 0.0
         assert either.designs[0].structural_error.max == pytest.approx(0.00102, rel=0.005)
 
-    @pytest.mark.slow
+    @pytest.mark.campaign
     def test_a_limit_on_the_link_ratio_is_a_part_of_the_task(self):
         # x² from 0 runs to links without end: the more is allowed the smaller the error.
         errors = []
@@ -132,6 +132,7 @@ class TestApproximations:
             assert 50.0 - 1e-6 <= abs(design.metrics.input_rotation) <= 100.0 + 1e-6
             assert 50.0 - 0.01 <= abs(design.metrics.output_range) <= 100.0 + 0.01
 
+    @pytest.mark.campaign
     def test_an_answer_near_rounding_is_not_refined_without_end(self, monkeypatch):
         # The error falls to 2e-6 degrees and goes on falling: of two hundred level linkages only the best are improved.
         done = []

@@ -68,7 +68,7 @@ def test_finishing_at_once_is_the_same(ratio: str, fields: dict[str, object], mo
     assert len(found[0].pareto) > 4
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_two_stages_against_plain_search(plain: Plain) -> None:
     """200 random targets: the ten best by error and size."""
     rng = np.random.default_rng(1)

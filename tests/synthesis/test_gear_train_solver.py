@@ -352,7 +352,7 @@ def ranked_by(stated: GearTrainProblem, rows: list[tuple[Fraction, int, bool]]) 
     return sorted((abs(error), prefer and not hunting, size) for error, size, hunting in rows)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_preferences_against_plain_loops() -> None:
     """Size, hunting teeth and tolerance in every combination: the keys of the ten best, in order."""
     rng = np.random.default_rng(8)

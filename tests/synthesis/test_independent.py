@@ -160,6 +160,7 @@ def test_a_difference_is_seen() -> None:
     assert "5 designs, 4 comparisons of 2 quantities" in result.report()
 
 
+@pytest.mark.campaign
 def test_cams_of_every_follower_agree() -> None:
     result = Measured()
     assert cams(2 * len(FOLLOWERS), 7, result) == 2 * len(FOLLOWERS)

@@ -195,6 +195,7 @@ def test_tolerances_are_kept_and_held_coordinates_met() -> None:
         assert_sound_by_continuation(design)
 
 
+@pytest.mark.campaign
 def test_too_narrow_tolerances_find_nothing_and_say_so() -> None:
     rng = np.random.default_rng(4)
     positions = noisy(plant_many(rng, 10), 3e-2, rng)
@@ -351,6 +352,7 @@ def test_starts_take_stated_pivots() -> None:
     assert task.to_problem(moving) == pytest.approx(planted.input_side.moving_pivot)
 
 
+@pytest.mark.campaign
 @settings(max_examples=3, deadline=None)
 @given(st.floats(-3.0, 3.0), st.floats(-2.0, 2.0), st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
 def test_similar_tasks_have_similar_answers(turn: float, power: float, x: float, y: float) -> None:

@@ -291,7 +291,7 @@ def test_motions_past_a_toggle_on_demand() -> None:
         assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.campaign) for seed in range(1, 1 + sampled(3)))]
 )

@@ -150,6 +150,7 @@ def test_a_limit_that_a_kind_sets_itself_is_no_demand_of_the_clients():
     assert {constraints.max_link_ratio for constraints in asked} == {100.0}
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("angle", "count"), [(300.0, 1), (150.0, 2)])
 def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count):
     statement = {

@@ -64,6 +64,7 @@ def test_eleven_points_of_a_geared_fivebar_are_met():
         assert design.metrics.max_distance < 1e-8 * size
 
 
+@pytest.mark.campaign
 def test_what_no_slider_crank_meets_is_fitted():
     """An ellipse of two to one in eight points, the fourth and the seventh a little aside."""
     points = 2.0 * np.cos(np.arange(8) * np.pi / 4.5) + 1j * np.sin(np.arange(8) * np.pi / 4.5)
@@ -126,7 +127,7 @@ def test_a_slider_cranks_stroke_with_noise_is_fitted(method):
     assert best.metrics.visits_in_order
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("n", [3, 5, 8])
 def test_slider_cranks_meet_up_to_eight_points_exactly(n):
     points = sliders.coupler_points(SLIDER, np.linspace(0.4, 4.0, n), 1).p
@@ -196,7 +197,7 @@ def test_cognate_fivebars_draw_the_fourbars_curve():
     assert whole >= 2
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_fivebars_with_a_free_ratio_meet_nine_points():
     result = answer(geared(-1.0)[5:32:3], "geared_fivebar")
     assert result.designs

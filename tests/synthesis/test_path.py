@@ -86,7 +86,7 @@ def test_a_point_off_the_curve_is_not_reached(off, moved):
     assert design is None or not checks(design)["reaches_targets"]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("case", PUBLISHED[:3], ids=[case["id"] for case in PUBLISHED[:3]])
 def test_published_counts_of_usable_linkages(case):
     """Circuits and order of the real triples, counted independently once for the cases."""
@@ -121,7 +121,7 @@ def passes_in_order(design, points):
     return nearest == sorted(nearest) and all(np.abs(p - point).min() <= step for point in points)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_fewer_points_are_met_by_members_of_their_family():
     problem = parse_problem(example("path"))
     result = solve(problem, silent)

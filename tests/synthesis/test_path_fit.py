@@ -93,6 +93,7 @@ def test_a_planted_path_without_timing_is_recovered():
     assert best.metrics.full_rotation
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("seed", "least"), [(3, 2), (6, 4)])
 def test_verified_sums_agree_with_brute_force(seed, least):
     rng = np.random.default_rng(seed)
@@ -243,7 +244,7 @@ def test_degenerate_points_are_fitted(points):
     assert result.designs[0].metrics.rms_distance < 2e-3 * size
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_thousand_points_take_seconds():
     along = np.linspace(0.0, 6.2, 1000)
     points = positions(CRANK_ROCKER, along, OPEN).p

@@ -204,6 +204,7 @@ def test_timed_solutions_move_with_the_points(scale):
         assert np.abs(wanted - pair).max(axis=1).min() < 1e-5 * scale * (10.0 + np.abs(pair / scale).max())
 
 
+@pytest.mark.campaign
 def test_free_timing_on_a_given_pivot():
     points = planted(CRANK_ROCKER, ANGLES)
     pivot = {"input": [1.0, -2.0]}

@@ -121,7 +121,7 @@ def test_sliders_carry_the_body_without_a_defect(side: dict[str, Any]) -> None:
     assert check_all(ORDINARY[:2], **side) > 0
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("side", SIDES)
 def test_no_slider_design_has_a_defect_by_continuation(side: dict[str, Any]) -> None:
     rng = np.random.default_rng(8)

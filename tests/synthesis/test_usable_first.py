@@ -36,6 +36,7 @@ def test_a_usable_fit_stands_before_a_nearer_one_that_nobody_would_build() -> No
         assert "link ratio" in result.summary
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("limit", [{"min_transmission_angle": 1.0}, {"max_link_ratio": 50.0}])
 def test_with_a_limit_the_order_is_the_kinds_own(limit: dict[str, float]) -> None:
     result = solve(parse_problem({**CLOSED, "constraints": limit}))

@@ -111,6 +111,7 @@ def test_moved_pivot_is_found() -> None:
     assert design is None or "reaches_targets" in failed(design)
 
 
+@pytest.mark.campaign
 def test_every_defect_by_independent_continuation() -> None:
     """Random pairs of dyads: circuit, branch, order and transmission are as the continuation finds them."""
     from synthesis.kinds.motion.choices import side_dyads

@@ -155,6 +155,7 @@ def harmonic(lift: float) -> Program:
     return Program([law_segment(law, half, 0.0, lift), law_segment(law, half, lift, 0.0)])
 
 
+@pytest.mark.campaign
 def test_response_to_a_harmonic_is_the_transfer_function() -> None:
     """s = (1 − cos θ)/2 is one harmonic: x follows by the base-excited oscillator's transfer function."""
     train, speed = FollowerTrain(2.0, 800.0, 12.0), 7.0
