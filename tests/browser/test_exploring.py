@@ -108,7 +108,7 @@ def test_the_pins_of_any_linkage_are_dragged(studio, kind, n, pin):
 
 def test_a_statement_begins_with_what_was_found(studio):
     page = studio.page
-    solved(studio, examples("motion")[0])
+    solved(studio, {**examples("motion")[0], "constraints": {"full_rotation": True}})
     page.click("#explore summary")
     page.wait_for_selector("#explore button:has-text('positions')")
     assert page.locator("#explore .checks li").count() == 2
