@@ -157,6 +157,7 @@ def effort(name: object, quick: Sequence[object], slow: Sequence[object]) -> lis
     return [] if name in quick else [pytest.mark.slow] if name in slow else [pytest.mark.campaign]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", [pytest.param(name, marks=effort(name, QUICK, SLOW)) for name in TYPES])
 def test_circuits_branches_and_toggles(name: str) -> None:
     rng = np.random.default_rng([41, TYPES.index(name)])

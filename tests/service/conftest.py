@@ -6,7 +6,7 @@ from tests.service.running import SCRIPTED, RunningServer
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
     """The real service, as an operator would run it."""
-    running = RunningServer(tmp_path_factory.mktemp("server"), workers=2)
+    running = RunningServer(tmp_path_factory.mktemp("server"), workers=2, reserve=0)
     yield running
     assert running.stop() == 0
 

@@ -97,6 +97,7 @@ ANSWERED = {
 }
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 @pytest.mark.parametrize("name", ANSWERED)
 def test_what_is_extreme_is_answered(name, rotation):

@@ -53,6 +53,7 @@ def values(stated, mechanism):
     return {check.name: check.value for check in verdict.checks}
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("minimize", "limits"),
     [

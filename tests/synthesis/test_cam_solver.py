@@ -251,6 +251,7 @@ def test_units_of_force():
     assert large.metrics.forces.max_torque * 1000.0 == pytest.approx(small.metrics.forces.max_torque, rel=1e-2)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "minimize",
     [

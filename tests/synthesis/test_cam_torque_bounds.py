@@ -42,6 +42,7 @@ def test_the_known_limit():
     assert found.bound <= found.value <= found.bound * 1.002
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("law", SMOOTH)
 def test_no_law_beats_the_bound_under_its_own_peaks(law):
     """Each law keeps its own peaks: the best motion under those is as good, and the bound is below both."""
@@ -54,6 +55,7 @@ def test_no_law_beats_the_bound_under_its_own_peaks(law):
     assert "whatever their acceleration and jerk" in found.scope
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(6))
 def test_no_polynomial_beats_the_bound(seed):
     """Another solver (SLSQP) on another family of motions: 3-4-5 and u³(1−u)³ times powers of u."""

@@ -141,6 +141,7 @@ WIDE = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 30.0, "y": 40.0, "angle": 150.
         {"x": 10.0, "y": 70.0, "angle": -110.0}]  # fmt: skip
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("positions", [TWO, THREE, WIDE], ids=["two", "three", "wide"])
 def test_the_coupler_can_be_driven(positions: list[dict[str, float]]) -> None:
     problem, result = solved(positions, driver_dyad={"link": "coupler"})

@@ -58,7 +58,7 @@ def test_what_cannot_be_meant_is_refused_at_its_field(fields, path):
     assert path in [fault.path for fault in problem.contradictions()]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "fields",
     [

@@ -101,7 +101,7 @@ def brute(problem: GearboxProblem, shape: tuple[int, ...]) -> dict[int, float]:
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("speeds", "shapes", "teeth", "sums"),
     [

@@ -148,7 +148,7 @@ def test_error_is_not_above_that_of_the_planted_linkage(seed: int, noise: float)
     assert_not_above_the_plant(seed, noise, 20)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(20, 26))
 def test_error_is_not_above_that_of_more_planted_linkages(seed: int) -> None:
     assert_not_above_the_plant(seed, (1e-4, 1e-3, 1e-2, 3e-2)[seed % 4], 6 + seed % 15)

@@ -56,6 +56,7 @@ def confirm(result: MotionResult, positions: list[dict[str, float]], least: floa
         assert math.degrees(found.least_transmission) >= least - 1e-6
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("task", search_tasks(), ids=lambda task: task["id"])
 def test_positions_alone_give_five_distinct_usable_linkages(task: dict[str, Any]) -> None:
     result = run(positions=task["positions"])

@@ -188,7 +188,7 @@ SMALL: list[tuple[str, dict[str, tuple[int, int]], int, str, tuple[str, str, str
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize(("name", "ranges", "planets", "ratio", "roles"), SMALL)
 def test_against_plain_loops_over_all_teeth(
     name: str, ranges: dict[str, tuple[int, int]], planets: int, ratio: str, roles: tuple[str, str, str]
@@ -256,6 +256,7 @@ def mechanism_of(name: str, teeth: dict[str, int], planets: int, roles: tuple[st
     )
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("name", "roles", "ratio"),
     [

@@ -49,6 +49,7 @@ def excess_of(design: LinkageDesign, stated: list[dict[str, float]], size: float
     return max(travel, ((metrics.body_turn_ratio or 1.0) - 1.0) * turn / max(turn, 15.0), 0.0)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("n", "constraints"),
     [

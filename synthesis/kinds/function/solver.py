@@ -135,7 +135,7 @@ def _with_zeros(problem: FunctionProblem, progress: Progress, *, steered: bool =
     return harvest.searched("family")
 
 
-_HELD = " The zeros were held: the values are angles from the ground line. State null to leave them open."
+_HELD = " The zeros were held: the values are angles from the ground line. They may be left open instead."
 
 _OPENED = (
     "No linkage that has the values as angles from the ground line satisfies all demands; with the zeros left open:"
