@@ -168,7 +168,7 @@ PATH_ROWS: dict[str, Any] = {
     "constraints.coupler_point.along": Row(FAR, {"constraints.coupler_point": {"along": [-1e6, 1e6]}}),
     "constraints.coupler_point.across": Row(FAR, {"constraints.coupler_point": {"across": [-1e6, 1e6]}}),
     "max_designs": 1,
-    "include_failed": Row(True, NONE_KEEPS),
+    "include_failed": Row(True, {**NONE_KEEPS, "method": "exact"}),
     "rank_by": "size",
     "points": TIMED[:4],
     "points[].x": -24.0,
