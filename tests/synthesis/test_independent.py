@@ -230,7 +230,7 @@ SMALLER = {"min_radius", "min_convex_radius", "min_concave_radius", "curvature_r
 @pytest.mark.timeout(900)
 def test_many_cams_agree() -> None:
     result = Measured()
-    assert cams(200, 0, result) >= 180
+    assert cams(200, 11, result) >= 180
     assert not [d for d in result.over if not d.name.endswith(OPTIMIZED)], result.report()
     assert not result.left, result.report()
     # Of optimized motions, whose jerk steps at hundreds of angles, curvature and width may err to the safe side.
