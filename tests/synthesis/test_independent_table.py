@@ -47,7 +47,7 @@ def pattern(name: ast.expr) -> str | None:
     if isinstance(name, ast.Constant):
         return re.escape(str(name.value))
     if isinstance(name, ast.JoinedStr):
-        return "".join(re.escape(part.value) if isinstance(part, ast.Constant) else r"\w+" for part in name.values)  # type: ignore[arg-type]
+        return "".join(re.escape(part.value) if isinstance(part, ast.Constant) else r"\w+" for part in name.values)
     return None
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -208,6 +209,6 @@ def _width(turn: Turn, middle: float, allowed: float) -> float:
         spreads = turn.spread(begins, wide)
         least = float(spreads.min())
         if least > allowed and len(begins) > 1:
-            _, least = least_near(lambda some, wide=wide: turn.spread(some, wide), begins, spreads)  # type: ignore[misc]
+            _, least = least_near(partial(turn.spread, wide=wide), begins, spreads)
         low, high = (wide, high) if least <= allowed else (low, wide)
     return low
