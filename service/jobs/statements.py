@@ -31,7 +31,7 @@ MAX_IDS = 500
 COLUMNS = tuple(field.name for field in fields(JobRow))  # begins with the fields of a summary
 SUMMARY = [jobs.c[field.name] for field in fields(JobSummary)]
 WHOLE = [jobs.c[name] for name in COLUMNS]
-TAKEN = [jobs.c[name] for name in ("id", "claim", "attempt", "cost", "kind", "problem")]
+TAKEN = [jobs.c[name] for name in ("id", "tenant", "claim", "attempt", "cost", "kind", "problem")]
 
 
 def moved(name: str, job_id: Any, **values: Any) -> Any:
@@ -136,6 +136,7 @@ NEXT = (
     .limit(1)
     .with_for_update(skip_locked=True)
 )
+NEXT_OF_OTHERS = NEXT.where(jobs.c.tenant.not_in(bindparam("passed_over", expanding=True)))
 CLAIM = (
     update(jobs)
     .where(jobs.c.id == bindparam("job"), jobs.c.status.in_(MOVES["claim"].sources))

@@ -10,7 +10,7 @@ Several servers and worker hosts may share a store; what only they need is in :m
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -32,6 +32,7 @@ from service.jobs.statements import (
     INSERT,
     MAX_IDS,
     NEXT,
+    NEXT_OF_OTHERS,
     NO_KEY,
     SUCCEED,
     SUMMARY,
@@ -74,6 +75,7 @@ class Claim:
     """The right to run a job: its mark, the number of the attempt, the cost as estimated, the problem as JSON text."""
 
     job_id: str
+    tenant: str
     mark: str
     attempt: int
     cost: Cost
@@ -247,15 +249,16 @@ class JobStore:
         with self._engine.connect() as connection:
             return [JobSummary(*_values(row)) for row in connection.execute(query)]
 
-    def take(self, mark: str, costs: Sequence[Cost]) -> Claim | None:
+    def take(self, mark: str, costs: Sequence[Cost], passed_over: Collection[str] = ()) -> Claim | None:
         """Claim the queued job whose turn it is under a mark; None when there is none.
 
-        Jobs of the first of ``costs`` come first, those of the others where there are none. Only one of many who ask
-        gets a job. Who does not know whether it has got one asks :meth:`claimed`.
+        Jobs of the first of ``costs`` come first, those of the others where there are none. The short jobs of the
+        tenants ``passed_over`` are left in the queue. Only one of many who ask gets a job. Who does not know whether it
+        has got one asks :meth:`claimed`.
         """
         with self._engine.begin() as connection:
             for cost in costs:
-                while (job_id := connection.execute(NEXT, {"cost": cost}).scalar_one_or_none()) is not None:
+                while (job_id := _next(connection, cost, passed_over if cost == Cost.SHORT else ())) is not None:
                     row = connection.execute(CLAIM, {"job": job_id, "mark": mark, "moment": now()}).one_or_none()
                     if row is not None:  # it was not cancelled meanwhile
                         return _claim(row)
@@ -378,8 +381,15 @@ def _inserted(connection: Connection, row: Mapping[str, Any], max_queued: int | 
     return connection.execute(INSERT, {**row, **asked, "as": row["cost"]}).rowcount > 0
 
 
+def _next(connection: Connection, cost: Cost, passed_over: Collection[str]) -> str | None:
+    """The queued job of that cost whose turn it is, but for the tenants that are passed over."""
+    if not passed_over:
+        return connection.execute(NEXT, {"cost": cost}).scalar_one_or_none()
+    return connection.execute(NEXT_OF_OTHERS, {"cost": cost, "passed_over": [*passed_over]}).scalar_one_or_none()
+
+
 def _claim(row: Any) -> Claim:
-    return Claim(row.id, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem)
+    return Claim(row.id, row.tenant, row.claim, row.attempt, Cost(row.cost), row.kind, row.problem)
 
 
 def _values(row: Sequence[Any]) -> list[Any]:

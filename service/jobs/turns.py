@@ -3,7 +3,8 @@
 Whose turn it is among the tenants stands in the store (:func:`service.jobs.statements.turn_of`). What is decided here
 is which *cost* a lane may take, so that short jobs never wait for long ones to end: there are more lanes than long jobs
 may run, so that one is left for short jobs, and what is expected to be short and takes long counts as long from then
-on. Where lanes are free for both, short and long jobs go by turns too.
+on. Where lanes are free for both, short and long jobs go by turns too. And the lanes that are left for short jobs are
+not given to a tenant who has one running: whoever floods the queue leaves them free for the others.
 
 The store is asked when a job has been queued (:meth:`Turns.wake`), when a lane becomes free, and once a second: another
 server or host may have put a job back, or the news may have been lost.
@@ -13,7 +14,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import structlog
@@ -50,6 +52,14 @@ class Seat(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class _Held:
+    """What a lane is busy with."""
+
+    tenant: str
+    cost: Cost
+
+
 class Turns:
     """Gives jobs to the lanes of one process; ``most_long`` of them may run long jobs. Safe to use from all lanes."""
 
@@ -61,7 +71,7 @@ class Turns:
         self._news = threading.Condition()
         self._calls = 0
         self._open = False
-        self._busy: dict[Seat, Cost] = {}
+        self._busy: dict[Seat, _Held] = {}
         self._doubtful: str | None = None
         self._before = Cost.LONG
 
@@ -112,21 +122,25 @@ class Turns:
         That is where no lane is left that short jobs are kept.
         """
         with self._news:
-            self._busy[seat] = Cost.LONG
-            if not self._kept or any(self._busy.get(other) != Cost.LONG for other in self._seats):
+            self._busy[seat] = replace(self._busy[seat], cost=Cost.LONG)
+            if not self._kept or any(not self._is_long(other) for other in self._seats):
                 return False
             del self._busy[seat]
             return True
 
     @property
-    def _kept(self) -> bool:
-        """Whether a lane is kept for short jobs."""
-        return len(self._seats) > self._most_long
+    def _kept(self) -> int:
+        """How many lanes are kept for short jobs."""
+        return len(self._seats) - self._most_long
+
+    def _is_long(self, seat: Seat) -> bool:
+        held = self._busy.get(seat)
+        return held is not None and held.cost == Cost.LONG
 
     def _asked(self, seat: Seat, free_since: float) -> Claim | None:
         with self._asking:
             try:
-                claim = self._given(self._costs(seat, free_since))
+                claim = self._given(self._costs(seat, free_since), self._passed_over(seat))
             except SQLAlchemyError as error:
                 if not unreachable(error):
                     log.exception("the store could not be asked for a job")
@@ -134,17 +148,17 @@ class Turns:
             if claim is not None:
                 self._before = claim.cost
                 with self._news:
-                    self._busy[seat] = claim.cost
+                    self._busy[seat] = _Held(claim.tenant, claim.cost)
             return claim
 
-    def _given(self, costs: Sequence[Cost]) -> Claim | None:
+    def _given(self, costs: Sequence[Cost], passed_over: Collection[str]) -> Claim | None:
         if self._doubtful is not None:  # the store may have given a job, and not have come to say so
             claim = self._store.claimed(self._doubtful)
             self._doubtful = None
             if claim is not None:
                 return claim
         self._doubtful = mark = str(ULID())
-        claim = self._store.take(mark, costs)
+        claim = self._store.take(mark, costs, passed_over)
         self._doubtful = None
         return claim
 
@@ -153,9 +167,17 @@ class Turns:
             return (Cost.SHORT,)
         return (Cost.SHORT, Cost.LONG) if self._before == Cost.LONG else (Cost.LONG, Cost.SHORT)
 
+    def _passed_over(self, seat: Seat) -> Collection[str]:
+        """Tenants whose short jobs the lane leaves: where only kept lanes are free, those who have one running."""
+        with self._news:
+            free = sum(other is not seat and other not in self._busy for other in self._seats)
+            if free >= self._kept:
+                return ()
+            return {held.tenant for held in self._busy.values() if held.cost == Cost.SHORT}
+
     def _may_take_long(self, seat: Seat, free_since: float) -> bool:
         with self._news:
-            free = [other for other in self._seats if other is not seat and self._busy.get(other) != Cost.LONG]
+            free = [other for other in self._seats if other is not seat and not self._is_long(other)]
         if len(self._seats) - 1 - len(free) >= self._most_long:
             return False
         if not self._kept or time.monotonic() > free_since + PATIENCE_S:

@@ -43,9 +43,9 @@ def store(engine):
     return JobStore(engine)
 
 
-def made(store, cost, count=1):
+def made(store, cost, count=1, tenant=""):
     return [
-        store.create(tenant="", kind="motion", label=None, problem="{}", cost=cost, max_queued=1000).id
+        store.create(tenant=tenant, kind="motion", label=None, problem="{}", cost=cost, max_queued=1000).id
         for _ in range(count)
     ]
 
@@ -72,6 +72,30 @@ def test_a_lane_is_kept_for_short_jobs(store):
     turns.done(seats[0])
     assert cost_for(turns, seats[0]) == Cost.LONG
     assert cost_for(turns, seats[2], free_since=0.0) is None, "however long it has been idle"
+
+
+def test_a_flood_leaves_the_last_lane_to_other_tenants(store):
+    made(store, Cost.SHORT, 9, "flood")
+    seats = [Seat(), Seat(), Seat()]
+    turns = opened(store, seats, 2)
+    assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.SHORT, None]
+    [job] = made(store, Cost.SHORT, tenant="guest")
+    assert turns.take(seats[2], time.monotonic()).job_id == job
+    turns.done(seats[0])
+    assert cost_for(turns, seats[0]) is None, "the last one that is free, again"
+    turns.done(seats[1])
+    assert cost_for(turns, seats[0]) == Cost.SHORT, "another one is free"
+
+
+def test_a_tenant_whose_jobs_turn_out_to_be_long_gets_the_last_lane(store):
+    made(store, Cost.SHORT, 3)
+    seats = [Seat(), Seat(), Seat()]
+    turns = opened(store, seats, 2)
+    assert [cost_for(turns, seat) for seat in seats] == [Cost.SHORT, Cost.SHORT, None]
+    assert not turns.outstayed(seats[0])
+    assert cost_for(turns, seats[2]) is None, "one of them is short still"
+    assert not turns.outstayed(seats[1])
+    assert cost_for(turns, seats[2]) == Cost.SHORT
 
 
 def test_without_a_reserve_every_lane_takes_every_job(store):
@@ -129,8 +153,8 @@ def test_a_free_lane_hears_of_a_job_at_once(store, monkeypatch):
     turns = opened(store, seats, 1)
     taken, asked = [], threading.Event()
 
-    def ask(mark, costs):
-        claim = JobStore.take(store, mark, costs)
+    def ask(mark, costs, *more):
+        claim = JobStore.take(store, mark, costs, *more)
         asked.set()
         return claim
 
@@ -176,8 +200,8 @@ def test_a_job_that_was_given_while_the_store_broke_off_is_not_forgotten(store, 
     seats = [Seat()]
     turns = opened(store, seats, 1)
 
-    def broken_off(mark, costs):
-        JobStore.take(store, mark, costs)
+    def broken_off(mark, costs, *more):
+        JobStore.take(store, mark, costs, *more)
         monkeypatch.undo()
         raise OperationalError("", None, ConnectionError("the answer does not come"))
 
