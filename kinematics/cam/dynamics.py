@@ -37,6 +37,10 @@ SAME = 1e-10
 """Radians within which joints of several cams are one; share of the lift that is rounding."""
 
 
+PRESSED = 1e-12
+"""Share of the greatest force from which a force presses the follower to a wall; less is rounding."""
+
+
 @dataclass(frozen=True)
 class FollowerLoad:
     """What the cam has to move.
@@ -127,13 +131,17 @@ class RunningCam:
         return extremes(self.torque, self.program.breaks)
 
     def reversals(self) -> Real:
-        """Angles where F changes sign: a form-closed follower crosses to the other wall there.
+        """Angles from which F has the other sign than before: a form-closed follower crosses to the other wall there.
 
-        Where F is zero over a whole dwell it changes no sign.
+        Where F is zero in between, as in a rest without spring and preload, it is where that ends; where F only comes
+        to zero, or has one sign before a rest and after it, there is none. F has one sign between two neighbouring
+        roots or breaks. The last sign of a turn is the one before its first.
         """
-        at = np.concatenate([roots(self.force, self.program.breaks), self.program.breaks[1:]])
-        before, after = self.force(at - SAME), self.force(at + SAME)
-        return np.unique(np.mod(at[before * after < 0.0], TURN))
+        pieces = np.unique(np.concatenate([roots(self.force, self.program.breaks), self.program.breaks]))
+        force = self.force(0.5 * (pieces[:-1] + pieces[1:]))
+        pressed = np.flatnonzero(np.abs(force) > PRESSED * self.force_extremes.largest)
+        changed = force[pressed] * force[np.roll(pressed, 1)] < 0.0
+        return np.asarray(np.mod(pieces[:-1][pressed[changed]], TURN))
 
     def least_preload(self, floor: float = 0.0) -> float:
         """The preload with which F is nowhere below a floor, the rest of the load as it is; 0 where none is needed."""

@@ -148,7 +148,10 @@ class CamForces(Answer):
     max_contact_force: Force
     min_torque: Torque
     max_torque: Torque
-    wall_changes: list[Angle] | None = optional("Cam angles at which a roller in a groove changes walls.")
+    wall_changes: list[Angle] | None = optional(
+        "Cam angles at which a roller in a groove changes walls: where the force along its motion begins to have the "
+        "other sign than the last one that it had. Without spring and preload it is zero in a rest."
+    )
     natural_frequency: RadianFrequency = Field(description="Of mass and spring, rad/s.")
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     warning: str | None = optional()

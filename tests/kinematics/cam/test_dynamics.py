@@ -97,6 +97,27 @@ def test_a_form_closed_follower_changes_walls() -> None:
     assert parabolic.reversals() == pytest.approx([TURN / 8.0, 5.0 * TURN / 8.0])
 
 
+def test_a_force_that_comes_to_zero_changes_no_walls() -> None:
+    """A spring and the inertia are gone where the follower comes to rest at the bottom, and rounding is left of them.
+
+    Of a rise and a fall under a spring the force is negative in the second half of the rise and the first of the fall.
+    """
+    fall = law_segment(LAWS["polynomial_4567"], math.radians(99.231), 17.538, 0.0)
+    rise = law_segment(LAWS["polynomial_4567"], math.radians(83.06), 0.0, 17.538)
+    rests = [dwell(math.radians(120.64), 17.538), dwell(TURN - rise.angle - fall.angle - math.radians(120.64), 0.0)]
+    load = FollowerLoad(2.838720768024683e-3, 0.8649565934885397)
+    cam = RunningCam(Program([rise, rests[0], fall, rests[1]]), load, 315.9850877302169 * TURN / 60.0)
+    assert np.degrees(cam.reversals()) == pytest.approx([42.004297502, 79.690055086, 208.601572308, 252.497784357])
+
+
+def test_a_follower_changes_walls_where_a_rest_without_force_ends() -> None:
+    """Braked at the end of the rise, it is pressed to the other wall by the next rise; after the fall as before it."""
+    rise, rest = law_segment(LAWS["cycloidal"], 1.0, 0.0, 1.0), dwell(1.0, 1.0)
+    again, fall = law_segment(LAWS["cycloidal"], 1.0, 1.0, 2.0), law_segment(LAWS["cycloidal"], 2.0, 2.0, 0.0)
+    cam = RunningCam(Program([rise, rest, again, fall, dwell(TURN - 5.0, 0.0)]), FollowerLoad(2.0), 10.0)
+    assert cam.reversals() == pytest.approx([0.5, 2.0, 2.5, 4.0])
+
+
 def test_torque_does_the_work_of_friction() -> None:
     cam = some_cam(3)
     shaft = Camshaft([cam])
