@@ -243,7 +243,7 @@ def doubt(near: Real, wide: Real, room: NDArray[np.bool_], stretches: Stretches)
         More than 1 at chords that have to be divided, as what is not known of their curvature may be worse than all
         that is known: how many times more than allowed that is. 0 elsewhere.
     """
-    measured = ~stretches.narrow
+    measured, divisible = ~stretches.narrow, room
     unsettled = np.zeros(len(near))
     near, wide, room = near[measured], wide[measured], room[measured]
     apart = np.abs(near - wide)
@@ -262,7 +262,7 @@ def doubt(near: Real, wide: Real, room: NDArray[np.bool_], stretches: Stretches)
     unsettled[measured] = np.where(hidden.any(axis=1) & stretches.blurred[measured], WIDELY, np.minimum(factor, FEW))
     # The curve of a chord runs through the points of its neighbours.
     unsettled = np.max([np.roll(unsettled, k) for k in range(-REACH, REACH + 1)], axis=0)
-    return above, below, unsettled
+    return above, below, np.where(divisible, unsettled, 0.0)
 
 
 def _bends(curvature: Callable[[Real], Real], near: Real, stretches: Stretches) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematics.cam.contact import Contour
-from kinematics.cam.finished import Stretches, worst
+from kinematics.cam.finished import Stretches, doubt, worst
 from kinematics.cam.follower import OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
 from kinematics.cam.local_curves import halved, stencils
 from kinematics.cam.motion_laws import LAWS
@@ -118,6 +118,49 @@ def test_a_barrel_has_the_extremes_of_the_laws(law: str) -> None:
     assert found.max_pressure_angle_fall == pytest.approx(math.degrees(math.atan(-m.v.min() / radius)), rel=1e-6)
     assert found.min_radius == pytest.approx(least, rel=1e-6)
     assert found.min_radius <= least * (1.0 + 1e-8)
+
+
+def beside_a_step(follower: dict[str, object]) -> dict[str, object]:
+    """The acceleration is greatest where the jerk jumps, 1.25e-4° before one of the equal steps of half a degree."""
+    segments = [
+        {"motion": "rise", "angle": 70.857, "lift": 13.787, "law": "modified_sine"},
+        {"motion": "dwell", "angle": 81.353},
+        {"motion": "fall", "angle": 117.089, "lift": 13.787, "law": "modified_sine"},
+        {"motion": "dwell", "angle": 90.701},
+    ]
+    limits = {"pressure_angle": 35.0}
+    return {"kind": "cam", "segments": segments, "follower": follower, "limits": limits}
+
+
+def test_curvature_is_measured_where_a_step_is_almost_a_break() -> None:
+    """With points at both it was 1 % greater than it is: of so short a chord rounding leaves no curvature."""
+    (design,) = solve(parse_problem(beside_a_step({"type": "barrel_roller", "roller_radius": 6.132}))).designs
+    radius, rise, fall = design.mechanism.cylinder_radius, math.radians(70.857), math.radians(117.089)
+    law = LAWS["modified_sine"]
+    program = Program(
+        [
+            law_segment(law, rise, 0.0, 13.787),
+            dwell(math.radians(81.353), 13.787),
+            law_segment(law, fall, 13.787, 0.0),
+            dwell(TURN - rise - fall - math.radians(81.353), 0.0),
+        ]
+    )
+    m = dense_motion(program, 200_001)
+    least = ((radius**2 + m.v**2) ** 1.5 / np.maximum(np.abs(m.a) * radius, 1e-9)).min()
+    assert design.metrics.min_radius == pytest.approx(least, rel=1e-6)
+    steps = np.diff(design.mechanism.program.angle)
+    assert steps.min() > 0.01
+
+
+def test_chords_that_are_too_short_are_not_divided() -> None:
+    """Beside a chord whose curvature is not settled there is one of which rounding leaves none."""
+    near = np.ones((40, 2))
+    wide = near.copy()
+    near[20] += 0.01
+    room = np.arange(40) != 21
+    whole = Stretches(np.empty(0, np.int64), np.zeros(40, np.bool_), np.zeros(40, np.bool_))
+    unsettled = doubt(near, wide, room, whole)[2]
+    assert set(np.flatnonzero(unsettled).tolist()) == {18, 19, 20, 22}
 
 
 def test_a_profile_without_its_breaks_is_measured_worse_never_better() -> None:

@@ -35,6 +35,10 @@ SAME_ANGLE_TOLERANCE = 1e-9
 MAX_EQUAL_STEPS = 5760
 """Equal steps of a profile at most."""
 
+BESIDE_BREAK = 0.02
+"""Share of an equal step by which it has to be away from a break. Of a chord much shorter than its neighbours, and of
+those into which it is divided, rounding leaves no curvature."""
+
 MIN_CHORDS_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
 
@@ -73,16 +77,22 @@ def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_ra
     ]
     while True:
         even = even_angles(count)
+        even = even[_nearest(even, breaks) > BESIDE_BREAK * TURN / count]
         between = [_apart(steps, even) for steps in closer]
         others = np.unique(np.concatenate([even, *between]))
         # A step beside a break would be a chord of no length.
-        before = others - breaks[np.searchsorted(breaks, others, side="right") - 1]
-        after = np.append(breaks, TURN)[np.searchsorted(breaks, others)] - others
-        angle: Real = np.union1d(others[np.minimum(before, after) > SAME_ANGLE_TOLERANCE], breaks)
+        angle: Real = np.union1d(others[_nearest(others, breaks) > SAME_ANGLE_TOLERANCE], breaks)
         chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
         if chord * MIN_CHORDS_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MAX_EQUAL_STEPS:
             return angle
         count = min(math.ceil(count * max(chord * MIN_CHORDS_OF_ROLLER / roller_radius, CLOSER)), MAX_EQUAL_STEPS)
+
+
+def _nearest(angle: Real, breaks: Real) -> Real:
+    """How far each angle is from the nearest break, the first of which is 0."""
+    before = angle - breaks[np.searchsorted(breaks, angle, side="right") - 1]
+    after = np.append(breaks, TURN)[np.searchsorted(breaks, angle)] - angle
+    return np.asarray(np.minimum(before, after))
 
 
 def _apart(steps: Real, even: Real) -> Real:
