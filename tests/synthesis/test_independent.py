@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from benchmarks.independent import cam_motion
+from benchmarks.independent.cam_measures import compare_cam
 from benchmarks.independent.cam_motion import LAWS, by_law, law
-from benchmarks.independent.cams import FOLLOWERS, OPTIMIZED, cams
+from benchmarks.independent.cams import FOLLOWERS, OPTIMIZED, cams, moves_of
 from benchmarks.independent.comparison import Measured
 from benchmarks.independent.course import Course
 from benchmarks.independent.drive import Drive
@@ -20,7 +21,9 @@ from benchmarks.independent.linkages import linkages
 from benchmarks.independent.mobility import class_of
 from benchmarks.independent.statements import families
 from benchmarks.independent.transmission import least_angles
+from synthesis.dispatch import solve
 from synthesis.model.linkage_answer import Skeleton
+from synthesis.registry import parse_problem
 from tests.campaign import sampled
 
 
@@ -167,6 +170,57 @@ def test_cams_of_every_follower_agree() -> None:
     assert not result.over, result.report()
     assert not result.left, result.report()
     assert len(result.differences) > 40
+
+
+def optimal_moves(angles: tuple[float, float, float], lift: float, velocity: float, top: float) -> list[dict[str, Any]]:
+    """A rise, a rest, a fall and a rest; the rise by a velocity on the way and below the top of a band."""
+    angle, rest, fall = angles
+    conditions = [{"angle": 0.5 * angle, "s": 0.5 * lift}, {"angle": 0.4 * angle, "v": velocity}]
+    band = {"start": 0.2 * angle, "end": 0.3 * angle, "lower": 0.0, "upper": top}
+    return [
+        {"motion": "rise", "angle": angle, "lift": lift, "law": "optimal", "conditions": conditions, "bands": [band]},
+        {"motion": "dwell", "angle": rest},
+        {"motion": "fall", "angle": fall, "lift": lift, "law": "optimal"},
+        {"motion": "dwell", "angle": 360.0 - sum(angles)},
+    ]
+
+
+FACES: dict[str, dict[str, Any]] = {
+    "points as close as rounding": {
+        "segments": optimal_moves((98.9, 91.603, 66.734), 15.191, 0.2457593528816987, 6.0764),
+        "follower": {"type": "oscillating_flat", "pivot_distance": 180.0, "face_offset": 7.298},
+        "limits": {
+            "min_radius": 3.0,
+            "velocity": 0.5690877214013846,
+            "acceleration": 1.7589749642628668,
+            "jerk": 11.745951345078108,
+        },
+        "minimize": "rms_acceleration",
+    },
+    "a bend beside the sharp end of a plateau": {
+        "segments": optimal_moves((129.183, 77.964, 65.686), 26.574, 18.857936970414375, 10.6296),
+        "follower": {"type": "translating_flat"},
+        "limits": {
+            "min_radius": 3.0,
+            "velocity": 57.94910805881959,
+            "acceleration": 181.96969743848723,
+            "jerk": 1234.5378794988455,
+        },
+        "minimize": "peak_velocity",
+    },
+}
+
+
+@pytest.mark.parametrize("name", FACES)
+def test_radius_and_width_under_a_face_agree(name: str) -> None:
+    """The motion's jerk steps so often that its stretches are some thousandths of a radian."""
+    stated, result = {"kind": "cam", **FACES[name]}, Measured()
+    (design,) = solve(parse_problem(stated)).designs
+    beside = result.beside("cam", design, name)
+    compare_cam(beside, stated, moves_of(stated, design.mechanism.program))
+    beside.finish()
+    assert not result.over, result.report()
+    assert result.differences["cam metrics.face_width"]
 
 
 QUICK = (

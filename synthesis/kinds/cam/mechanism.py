@@ -59,8 +59,9 @@ curvature to be measured."""
 MIN_STEPS = 2 * FEWEST_STEPS
 """Steps of the profile between two sharp bends of the motion, at least; every second point is enough for a curve."""
 
-SHORT = 2e-3
-"""Radians of a stretch that half as many steps show, because more would leave the curvature fewer digits."""
+RESOLVED = 1e-7
+"""Sagitta of two neighbouring points, as a share of their distance from the centre, from which six points give the
+curvature with a millionth of it; a stretch has half as many steps where it is less."""
 
 
 def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
@@ -69,23 +70,64 @@ def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_ra
     A small roller asks for close points too: its radius spans five chords of the curve that it touches.
     """
     breaks = np.union1d(np.union1d(program.joints[:-1], program.bends), _just_before(program))
-    stretches = pairwise(np.append(np.union1d(program.joints[:-1], program.sharp_bends), TURN))
-    closer = [
-        np.linspace(start, end, (MIN_STEPS if end - start > SHORT else FEWEST_STEPS) + 1)[1:-1]
-        for start, end in stretches
-        if SHORTEST < end - start < MIN_STEPS * TURN / count
-    ]
+    closer, step = _closer(breaks, np.append(np.union1d(program.joints[:-1], program.sharp_bends), TURN), count, curve)
     while True:
         even = even_angles(count)
         even = even[_nearest(even, breaks) > BESIDE_BREAK * TURN / count]
-        between = [_apart(steps, even) for steps in closer]
-        others = np.unique(np.concatenate([even, *between]))
+        others = np.union1d(even, _apart(closer, step, even))
         # A step beside a break would be a chord of no length.
         angle: Real = np.union1d(others[_nearest(others, breaks) > SAME_ANGLE_TOLERANCE], breaks)
         chord = np.abs(np.diff(curve(np.append(angle, TURN)))).max()
         if chord * MIN_CHORDS_OF_ROLLER <= roller_radius or roller_radius <= 0.0 or count >= MAX_EQUAL_STEPS:
             return angle
         count = min(math.ceil(count * max(chord * MIN_CHORDS_OF_ROLLER / roller_radius, CLOSER)), MAX_EQUAL_STEPS)
+
+
+def _closer(breaks: Real, sharp: Real, count: int, curve: Callable[[Real], Complex]) -> tuple[Real, Real]:
+    """Cam angles that divide each short stretch between sharp bends, and those from a sharp bend to another one.
+
+    Parameters
+    ----------
+    breaks, sharp : float, shapes (b,) and (k,)
+        All bends, and the sharp ones with the turn's end.
+    count : int
+        Equal steps of the turn; a stretch that has enough of them needs no others.
+
+    Returns
+    -------
+    angle, step : float, shape (m,)
+        And how far each is from the next one of its stretch.
+    """
+    divided = [
+        _steps(start, end, curve) for start, end in pairwise(sharp) if SHORTEST < end - start < MIN_STEPS * TURN / count
+    ]
+    angle, step = _with_step(divided)
+    ends = np.append(breaks, TURN)
+    span = np.diff(ends)
+    beside = np.isin(ends[:-1], sharp) | np.isin(ends[1:], sharp)
+    few = np.diff(np.searchsorted(angle, ends)) < FEWEST_STEPS - 1
+    # No curve has to run over a sharp bend because another one is near.
+    own = beside & few & (span > SHORTEST) & (span < FEWEST_STEPS * TURN / count)
+    others = ~own[np.searchsorted(ends, angle, side="right") - 1]
+    shortest = [np.linspace(ends[k], ends[k + 1], FEWEST_STEPS + 1)[1:-1] for k in np.flatnonzero(own)]
+    added, added_step = _with_step(shortest)
+    return np.append(angle[others], added), np.append(step[others], added_step)
+
+
+def _with_step(divided: list[Real]) -> tuple[Real, Real]:
+    """Equal divisions one after the other, and the step of each of their angles."""
+    steps = [np.full(len(angles), angles[1] - angles[0]) for angles in divided]
+    return np.concatenate([np.empty(0), *divided]), np.concatenate([np.empty(0), *steps])
+
+
+def _steps(start: float, end: float, curve: Callable[[Real], Complex]) -> Real:
+    """Cam angles that divide a stretch; fewer where more would leave the curvature too few digits."""
+    steps = np.linspace(start, end, MIN_STEPS + 1)
+    points = curve(steps[1:-1])
+    chords = np.diff(points)
+    turn = np.abs(np.angle(np.conj(chords[:-1]) * chords[1:])).max()
+    shown = turn * np.abs(chords).min() > RESOLVED * np.abs(points).max()
+    return steps[1:-1] if shown else steps[2:-1:2]
 
 
 def _nearest(angle: Real, breaks: Real) -> Real:
@@ -95,12 +137,10 @@ def _nearest(angle: Real, breaks: Real) -> Real:
     return np.asarray(np.minimum(before, after))
 
 
-def _apart(steps: Real, even: Real) -> Real:
-    """Those of some steps that are not almost at one of the equal ones, which stands for them."""
-    nearest = np.abs(
-        steps[:, None] - even[np.clip(np.searchsorted(even, steps)[:, None] - [1, 0], 0, None) % len(even)]
-    )
-    return np.asarray(steps[nearest.min(axis=1) > 0.4 * (steps[1] - steps[0])])
+def _apart(angle: Real, step: Real, even: Real) -> Real:
+    """Those of some angles that are not almost at one of the equal ones, which stands for them."""
+    around = np.clip(np.searchsorted(even, angle)[:, None] - [1, 0], 0, None) % len(even)
+    return np.asarray(angle[np.abs(angle[:, None] - even[around]).min(axis=1) > 0.4 * step])
 
 
 def _just_before(program: Program) -> Real:
