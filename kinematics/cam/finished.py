@@ -260,9 +260,19 @@ def doubt(near: Real, wide: Real, room: NDArray[np.bool_], stretches: Stretches)
     above, below = error
     hidden = (near > near.max() - HIDDEN * np.abs(near.max())) | (near < near.min() + HIDDEN * np.abs(near.min()))
     unsettled[measured] = np.where(hidden.any(axis=1) & stretches.blurred[measured], WIDELY, np.minimum(factor, FEW))
-    # The curve of a chord runs through the points of its neighbours.
-    unsettled = np.max([np.roll(unsettled, k) for k in range(-REACH, REACH + 1)], axis=0)
-    return above, below, np.where(divisible, unsettled, 0.0)
+    return above, below, np.where(divisible, _spread(unsettled, stretches), 0.0)
+
+
+def _spread(unsettled: Real, stretches: Stretches) -> Real:
+    """To the neighbours of each chord too, since its curve runs through their points, but over no break."""
+    ends = np.zeros(len(unsettled), np.bool_)
+    ends[stretches.breaks] = True
+    ends &= ~(stretches.blurred | np.roll(stretches.blurred, 1))
+    for _ in range(REACH):
+        before = np.where(ends, 0.0, np.roll(unsettled, 1))
+        after = np.roll(np.where(ends, 0.0, unsettled), -1)
+        unsettled = np.maximum(unsettled, np.maximum(before, after))
+    return unsettled
 
 
 def _bends(curvature: Callable[[Real], Real], near: Real, stretches: Stretches) -> tuple[float, float]:

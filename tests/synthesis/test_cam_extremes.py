@@ -16,7 +16,7 @@ from kinematics.cam.profile import Cam
 from kinematics.cam.program import TURN, Program
 from kinematics.cam.segments import dwell, law_segment
 from synthesis.dispatch import solve
-from synthesis.kinds.cam.mechanism import cam_mechanism, points_of, profile_angles, stretches_of
+from synthesis.kinds.cam.mechanism import cam_mechanism, points_of, profile_angles, refined, stretches_of
 from synthesis.registry import parse_problem
 from tests.oracles.cam_formulas import pressure_angle_extremes
 from tests.synthesis.cam_sampling import dense_motion, oscillating, translating
@@ -152,15 +152,33 @@ def test_curvature_is_measured_where_a_step_is_almost_a_break() -> None:
     assert steps.min() > 0.01
 
 
-def test_chords_that_are_too_short_are_not_divided() -> None:
-    """Beside a chord whose curvature is not settled there is one of which rounding leaves none."""
+def unsettled_beside(breaks: list[int]) -> set[int]:
+    """Chords of 40 to be divided where the curvatures of the twentieth differ; the one after it is too short for it."""
     near = np.ones((40, 2))
     wide = near.copy()
     near[20] += 0.01
-    room = np.arange(40) != 21
-    whole = Stretches(np.empty(0, np.int64), np.zeros(40, np.bool_), np.zeros(40, np.bool_))
-    unsettled = doubt(near, wide, room, whole)[2]
-    assert set(np.flatnonzero(unsettled).tolist()) == {18, 19, 20, 22}
+    none = np.zeros(40, np.bool_)
+    stretches = Stretches(np.array(breaks, dtype=np.int64), none, none)
+    return set(np.flatnonzero(doubt(near, wide, np.arange(40) != 21, stretches)[2]).tolist())
+
+
+def test_chords_that_are_too_short_are_not_divided() -> None:
+    """Beside a chord whose curvature is not settled there is one of which rounding leaves none."""
+    assert unsettled_beside([]) == {18, 19, 20, 22}
+
+
+def test_chords_beyond_a_break_are_not_divided() -> None:
+    """Their curves run through none of the points."""
+    assert unsettled_beside([3, 20]) == {20, 22}
+    assert unsettled_beside([3, 19]) == {19, 20, 22}
+
+
+def test_short_steps_are_not_divided_beside_long_ones() -> None:
+    """The step before the divided one is half as long, the one after it as long: only that is divided with it."""
+    angle = np.array([0.0, 1.0, 1.4, 2.2, 3.0, 4.0, 5.0])
+    off = np.where(np.arange(7) == 2, 1.0, 0.0)
+    found = refined(angle, off, 1.0)
+    assert np.setdiff1d(found, angle) == pytest.approx([1.8, 2.6])
 
 
 def test_a_profile_without_its_breaks_is_measured_worse_never_better() -> None:

@@ -46,6 +46,9 @@ MIN_CHORDS_OF_ROLLER = 5.0
 CLOSER = 1.1
 """By which the number of equal steps is at least multiplied where the roller's radius spans too few chords."""
 
+GRADED = 1.5
+"""How many times as long as its neighbour a step may be without being divided with it."""
+
 MAX_PARTS = 8
 """Parts that a step is divided in at once, at most."""
 
@@ -156,10 +159,13 @@ def refined(angle: Real, off: Real, allowed: float) -> Real:
     """
     closed = np.append(angle, TURN + angle[0])
     parts = np.clip(np.ceil((off / (0.5 * allowed)) ** 0.25), 1.0, MAX_PARTS).astype(np.int64)
-    parts = np.maximum(parts, np.minimum(np.roll(parts, -1), 2))
-    parts = np.maximum(parts, np.minimum(np.roll(parts, 1), 2))
-    parts[np.diff(closed) < 2.0 * BESIDE] = 1
-    low, step = np.repeat(closed[:-1], parts), np.repeat(np.diff(closed) / parts, parts)
+    whole = np.diff(closed)
+    for beside in (-1, 1):
+        # A step that is as short as its neighbour's parts stays as it is.
+        longer = whole > GRADED * np.roll(whole / parts, beside)
+        parts = np.where(longer, np.maximum(parts, np.minimum(np.roll(parts, beside), 2)), parts)
+    parts[whole < 2.0 * BESIDE] = 1
+    low, step = np.repeat(closed[:-1], parts), np.repeat(whole / parts, parts)
     within = np.arange(len(low)) - np.repeat(np.cumsum(parts) - parts, parts)
     return np.unique(np.mod(low + step * within, TURN))
 
