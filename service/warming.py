@@ -23,7 +23,7 @@ def warm() -> None:
     warm_up()
     dispatch.warm_up()
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
-        tasks = [processes.submit(dispatch.warm_up_kind, name) for name in KINDS]
+        tasks = [processes.submit(dispatch.compile_kind, name) for name in KINDS]
         tasks.append(processes.submit(analyst.warm_up))
         for task in tasks:
             task.result()

@@ -14,7 +14,7 @@ from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
 
-__all__ = ["Progress", "solve", "warm_up", "warm_up_kind", "warm_up_rest"]
+__all__ = ["Progress", "compile_kind", "solve", "warm_up", "warm_up_rest"]
 
 SEARCH_SHARE = 0.9
 """Share of the progress that the search counts for; the rest is that for the nearest miss where nothing passed."""
@@ -82,14 +82,23 @@ def warm_up() -> None:
 
 
 def warm_up_rest() -> None:
-    """Compile or load everything else: the analysis core, and what the solvers of all kinds need."""
+    """Load everything else that the first jobs may need: the analysis core, and the solvers of all kinds."""
     warm.warm_up()
     for name in KINDS:
-        warm_up_kind(name)
+        _load(name)
 
 
-def warm_up_kind(name: str) -> None:
-    """Compile or load what the solver of one kind needs: by its own ``warm_up``, or by solving its examples."""
+def compile_kind(name: str) -> None:
+    """Compile what the solver of a kind may need, that is, whatever its examples call besides what a worker loads."""
+    kind = KINDS[name]
+    _load(name)
+    if kind.warm_up is not None:
+        for statement in kind.examples:
+            solve(kind.problem.model_validate(statement))
+
+
+def _load(name: str) -> None:
+    """Have the solver of a kind load its kernels: by its own ``warm_up``, or by solving its examples."""
     kind = KINDS[name]
     if kind.warm_up is not None:
         kind.warm_up()

@@ -47,8 +47,9 @@ class Kind(Generic[P, R]):
         From a consistent statement to its answer. It imports the solver when it is called: whoever only needs the
         models does not wait for the compiled kernels.
     warm_up : callable, optional
-        Compiles the kernels that ``solve`` needs, or loads them from their cache. Where it is left out the examples of
-        the kind are solved instead.
+        Loads what most jobs need, in the time of one brief job; every new worker calls it beside its first jobs. Where
+        it is left out the examples of the kind are solved instead. All examples are solved where the kernels are
+        compiled ahead of time.
     verify : callable, optional
         Measures a finished mechanism against a statement: the design, or None where it cannot be driven. It tells how
         far the answers to a statement that asks for less are from the one that was asked.

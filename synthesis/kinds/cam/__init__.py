@@ -16,9 +16,15 @@ def _solve(problem: CamProblem, progress: Progress) -> CamResult:
     return solve_cam(problem, progress)
 
 
+def _warm_up() -> None:
+    """Load the kernels and the convex optimizer by the first examples: a motion by stated laws, and one sought."""
+    for example in KIND.examples[:2]:
+        _solve(CamProblem.model_validate(example), lambda fraction, message: None)
+
+
 def _brief(problem: CamProblem) -> bool:
     """A motion whose laws are stated is drawn and measured; others are sought."""
     return not any(isinstance(segment, Move) and segment.law in ("auto", "optimal") for segment in problem.segments)
 
 
-KIND = Kind("cam", CamProblem, CamResult, _solve, brief=_brief)
+KIND = Kind("cam", CamProblem, CamResult, _solve, _warm_up, brief=_brief)
