@@ -21,7 +21,8 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test fuzz test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean
+.PHONY: serve test fuzz test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean \
+    cluster-rabbitmq cluster-redis
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -32,13 +33,16 @@ demo: $(STAMP)
 test: check
 	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
 
-# The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis: the real servers, on free ports.
+# The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
+# on free ports.
 CONTRACT := $(addprefix tests/service/test_,store.py turns.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
     tests/cluster
 
 test-cluster: $(STAMP) engines
-	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+rabbitmq $(CONTRACT)
-	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+redis $(CONTRACT)
+	@$(MAKE) --no-print-directory -j2 --output-sync=target cluster-rabbitmq cluster-redis
+
+cluster-rabbitmq cluster-redis: cluster-%:
+	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(CONTRACT)
 
 engines:
 	@{ ls /usr/lib/postgresql/*/bin/postgres && test -x /usr/sbin/rabbitmq-server && test -x /usr/bin/redis-server; } \

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
+from scipy.optimize import brentq
 
 from synthesis.proof.closer import REFINEMENTS, SAMPLES, least_near
 
@@ -35,8 +36,8 @@ CANDIDATES = 3
 WIDER = 5.0
 """Steps of the grid by which a width may differ from that by the grid: one at each end, and where the middle lies."""
 
-HALVINGS = 26
-"""Of the range in which the width lies: a step of the grid by 2⁻²² is far below what any output can be measured to."""
+EXACT = 1e-7
+"""Share of a step of the grid to which the width is found, far below what any output can be measured to."""
 
 PANELS, NODES = 8, 12
 """Panels of a rest over which the output's mean is taken, and nodes of Gauss's quadrature in each."""
@@ -201,14 +202,16 @@ def _width(turn: Turn, middle: float, allowed: float) -> float:
     begin = turn.first + turn.step * (at - shortest + 1 + int(starts(shortest).argmin()))
     low = max((shortest - 1 - WIDER) * turn.step, 0.0)
     high = min((shortest - 1 + WIDER) * turn.step, 2.0 * math.pi)
-    for _ in range(HALVINGS):
-        wide = 0.5 * (low + high)
-        aside = 1.5 * WIDER * turn.step
-        begins = np.clip(begin + aside * np.linspace(-1.0, 1.0, 2 * PLACES - 1), middle - wide, middle)
-        begins = np.unique(begins)
+    aside = 1.5 * WIDER * turn.step * np.linspace(-1.0, 1.0, 2 * PLACES - 1)
+
+    def beyond(wide: float) -> float:
+        begins = np.unique(np.clip(begin + aside, middle - wide, middle))
         spreads = turn.spread(begins, wide)
-        least = float(spreads.min())
-        if least > allowed and len(begins) > 1:
-            _, least = least_near(partial(turn.spread, wide=wide), begins, spreads)
-        low, high = (wide, high) if least <= allowed else (low, wide)
-    return low
+        if len(begins) == 1:
+            return float(spreads[0]) - allowed
+        return least_near(partial(turn.spread, wide=wide), begins, spreads)[1] - allowed
+
+    # What is wider moves no less.
+    if beyond(high) <= 0.0:
+        return high
+    return float(brentq(beyond, low, high, xtol=EXACT * turn.step)) if beyond(low) < 0.0 else low
