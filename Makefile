@@ -22,7 +22,7 @@ SPREAD := -n 2 --dist loadfile
 export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: serve test fuzz test-cluster engines test-faults test-browser campaign demo check quick bench openapi lock clean \
-    cluster-rabbitmq cluster-redis
+    suite cluster-rabbitmq cluster-redis
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -30,7 +30,10 @@ serve: $(STAMP)
 demo: $(STAMP)
 	@$(BIN)/mechsynth demo --output var/demo.svg
 
-test: check
+test: $(STAMP)
+	@$(MAKE) --no-print-directory -j2 check suite
+
+suite: $(STAMP)
 	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import Any
+
+import pytest
 
 DEFAULT_SHARE = 0.25
 """With this the whole check ends in about half an hour on two cores. The cases left out are of the same sorts."""
@@ -16,6 +20,12 @@ def choose(share: float) -> None:
     if not 0.0 < share <= 1.0:
         raise ValueError(f"a share of a campaign lies between 0 and 1, not at {share}")
     _share = share
+
+
+def further(values: Iterable[Any], always: Iterable[Any]) -> list[Any]:
+    """Parameters of a test: it is tried with those of ``always`` in every run, with the others in the campaign."""
+    kept = list(always)
+    return [value if value in kept else pytest.param(value, marks=pytest.mark.campaign) for value in values]
 
 
 def sampled(cases: int) -> int:

@@ -65,7 +65,7 @@ def test_count_of_circuits_and_branches() -> None:
     assert seen == {(1, 2), (2, 1), (2, 2)}
 
 
-@pytest.mark.parametrize("n", [1500, pytest.param(10_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("n", [1500, pytest.param(10_000, marks=pytest.mark.campaign)])
 def test_same_circuit_and_branch(n: int) -> None:
     rng = np.random.default_rng(22)
     linkage, theta = settled(rng, n, 3)

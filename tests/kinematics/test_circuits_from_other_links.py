@@ -118,6 +118,7 @@ def test_circuits_are_those_by_elimination_from_another_link(name: str) -> None:
     assert sum(same_circuits(name, take(mechanism, k)) for k in range(6)) > 12
 
 
+@pytest.mark.campaign
 def test_toggles_that_lie_close_together() -> None:
     """The input goes back by 1.2e-4 rad. Newton from random starts finds four configurations there, and two beside."""
     name = "stephenson_2 driven by its input"

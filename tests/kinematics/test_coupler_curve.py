@@ -101,6 +101,7 @@ def test_symmetrical_curve(case: Case) -> None:
 # -- the sextic --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.campaign
 def test_sextic_vanishes_on_the_curve() -> None:
     _, linkage, theta, sign = sample(31, margin=0.0, m=8)
     found = sextic(linkage, positions(linkage, theta, sign).p)
@@ -285,6 +286,7 @@ def polished(linkage: Fourbar, point: complex) -> complex:
     return point
 
 
+@pytest.mark.campaign
 def test_crunodes_are_all_self_crossings_of_the_sampled_curve() -> None:
     batch = random_fourbars(np.random.default_rng(44), 40, gap=2e-2)
     found = double_points(batch)

@@ -298,6 +298,7 @@ def test_transmission_angle_is_between_coupler_and_output() -> None:
         assert np.abs(sine - np.sin(found))[ok & (cosine < 0.99)].max() < 1e-9
 
 
+@pytest.mark.campaign
 def test_extremes_bound_dense_samples_and_are_attained() -> None:
     rng, linkage = batch(12)
     start = rng.uniform(-10.0, 10.0, BATCH)

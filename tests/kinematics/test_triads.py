@@ -59,6 +59,7 @@ def batch(name: str, seed: int, n: int) -> Mechanism:
     return CLASS_THREE[name](np.random.default_rng([seed, NAMES.index(name)]), n)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", NAMES)
 def test_continuation_agrees_with_small_steps(name: str) -> None:
     compared, refused = agrees(batch(name, 31, 4))

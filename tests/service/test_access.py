@@ -284,6 +284,7 @@ def test_without_keys_it_listens_on_this_machine_only(tmp_path):
         assert server.stop() == 0
 
 
+@pytest.mark.campaign
 def test_with_keys_it_listens_where_it_is_told_even_when_all_are_revoked(tmp_path):
     made(tmp_path, "acme")
     key_id = keys(tmp_path, "list").stdout.split()[0]

@@ -17,6 +17,7 @@ from service.render.page.animation import FRAMES, PIXELS, Stroke, animated, ring
 from service.render.page.svg import Box
 from synthesis.dispatch import solve
 from synthesis.registry import examples, parse_problem
+from tests.campaign import further
 
 CAM = examples("cam")[0]
 ARM = {"type": "oscillating_roller", "roller_radius": 8.0, "arm": 120.0, "pivot_distance": 150.0}
@@ -41,7 +42,7 @@ def designed(name):
     return solve(problem, lambda fraction, message: None).designs[0], problem
 
 
-@pytest.mark.parametrize("name", STATED)
+@pytest.mark.parametrize("name", further(STATED, ("groove", "motion", "gear train")))
 def test_a_cycle_in_bounded_frames(name):
     design, problem = designed(name)
     file = exported(design, problem, "title", "gif")

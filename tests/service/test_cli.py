@@ -92,6 +92,7 @@ def test_a_database_that_cannot_be(tmp_path, url):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.campaign
 def test_the_demo_prints_and_draws(tmp_path):
     done = mechsynth(tmp_path, "demo", "--output", "out/demo.svg")
     assert done.returncode == 0, done.stderr

@@ -106,6 +106,7 @@ def test_lists_are_read_page_by_page(ours):
     assert listed == created[::-1]
 
 
+@pytest.mark.campaign
 def test_a_restart_of_the_service_is_survived(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1)
     port = server.url.rpartition(":")[2]

@@ -176,6 +176,7 @@ def test_listeners_that_leave_are_no_defect(scripted, gate):
     assert scripted.log().count("Traceback") == before
 
 
+@pytest.mark.campaign
 def test_a_stopping_server_ends_the_streams_and_the_next_one_resumes_them(tmp_path):
     server = RunningServer(tmp_path, SCRIPTED, workers=1)
     job = server.post(GATED)

@@ -247,6 +247,7 @@ def test_cancelling_at_any_moment_leaves_one_end(server):
     assert server.post(INSTANT, wait=20)["status"] == "succeeded"
 
 
+@pytest.mark.campaign
 def test_a_killed_server_leaves_no_worker_and_loses_no_job(restarting, tmp_path):
     server = restarting()
     running, queued = server.post(GATED), server.post(INSTANT)

@@ -21,6 +21,7 @@ from synthesis.dispatch import solve
 from synthesis.kinds.gear_train.design import GearTrainDesign, GearTrainResult
 from synthesis.kinds.gear_train.problem import GearTrainProblem
 from synthesis.registry import parse_problem
+from tests.campaign import further
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -43,9 +44,10 @@ TASKS: dict[str, dict[str, Any]] = {
     },
     "one_stage": {"ratio": 3, "max_stages": 1, "length_unit": "in"},
 }
+QUICK = [TASKS["idler"], TASKS["reverted"], TASKS["one_stage"]]
 
 
-@pytest.fixture(scope="module", params=TASKS.values(), ids=TASKS.keys())
+@pytest.fixture(scope="module", params=further(TASKS.values(), QUICK), ids=TASKS.keys())
 def task(request: pytest.FixtureRequest) -> tuple[GearTrainDesign, GearTrainProblem]:
     problem = parse_problem({"kind": "gear_train", **request.param})
     assert isinstance(problem, GearTrainProblem)

@@ -15,6 +15,7 @@ from service.render import exported
 from service.render.gears.gearbox_layout import BoxGear, BoxLayout, gearbox_layout, layshaft_layout
 from synthesis.dispatch import solve
 from synthesis.registry import example, parse_problem
+from tests.campaign import further
 from tests.service.test_gear_drawing import assert_involute
 
 TASKS: dict[str, dict[str, Any]] = {
@@ -40,9 +41,10 @@ TASKS: dict[str, dict[str, Any]] = {
     },
     "no_reverse": {"kind": "layshaft_gearbox", "ratios": [3.0, 1.7, 1.0], "tooth_sum": {"min": 60, "max": 70}},
 }
+QUICK = [TASKS["six_speeds"], TASKS["inches"], TASKS["no_reverse"]]
 
 
-@pytest.fixture(scope="module", params=TASKS.values(), ids=TASKS.keys())
+@pytest.fixture(scope="module", params=further(TASKS.values(), QUICK), ids=TASKS.keys())
 def task(request: pytest.FixtureRequest) -> tuple[Any, Any]:
     problem = parse_problem(request.param)
     return solve(problem, lambda fraction, message: None).designs[0], problem

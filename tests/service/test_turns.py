@@ -268,6 +268,7 @@ def test_a_cancelled_job_that_reports_progress_costs_no_worker(server, gate):
     assert server.workers() == workers
 
 
+@pytest.mark.campaign
 def test_a_short_job_is_done_while_workers_are_killed_by_cancels(server, gate):
     """Two clients post what cannot be stopped but by killing its worker, and cancel it as soon as it runs."""
     done = threading.Event()

@@ -173,7 +173,7 @@ def solved(kind, n):
 
 
 EXAMPLES = [
-    pytest.param(kind, n, marks=[] if n == QUICK.get(kind, 0) and kind != "dwell" else pytest.mark.slow)
+    pytest.param(kind, n, marks=[] if n == QUICK.get(kind, 0) else pytest.mark.campaign if n else pytest.mark.slow)
     for kind in KINDS
     for n in range(len(examples(kind)))
 ]

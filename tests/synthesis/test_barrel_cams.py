@@ -95,6 +95,7 @@ def test_tampering_is_found():
     assert {"pressure_angle", "pressure_angle_fall"} <= {c.name for c in verdict.checks if not c.passed}
 
 
+@pytest.mark.campaign
 def test_an_optimal_motion_makes_a_smaller_barrel():
     segments = [s | ({"law": "optimal"} if "law" in s else {}) for s in copy.deepcopy(BARREL["segments"])]
     limits = {"pressure_angle": 35.0, "curvature_ratio": 1.5, "acceleration": 60.0, "jerk": 300.0}

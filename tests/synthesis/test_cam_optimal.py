@@ -273,6 +273,7 @@ def test_limits_that_no_motion_keeps():
     assert own.factor > 1.0
 
 
+@pytest.mark.campaign
 def test_the_bound_is_not_above_any_of_many_feasible_motions():
     """Laws whose own peaks are the limits never do better than the bound."""
     for name in ("cycloidal", "modified_sine", "modified_trapezoid", "polynomial_345", "polynomial_4567"):

@@ -177,6 +177,7 @@ def test_flat_example_of_rao():
     assert face_sweep(program) == pytest.approx(8.0, rel=1e-12)
 
 
+@pytest.mark.campaign
 def test_the_best_offset_beats_its_neighbours():
     """Against a grid of offsets: by pressure angle alone proven, with curvature at least as good as the grid."""
     program = one_rise("modified_sine", 60.0, 1.0, 110.0)
@@ -193,6 +194,7 @@ def test_the_best_offset_beats_its_neighbours():
         assert again.radius == pytest.approx(size.radius, rel=1e-6)
 
 
+@pytest.mark.campaign
 def test_the_best_pivot_beats_its_neighbours():
     program = one_rise("cycloidal", 120.0, math.radians(20.0))
     limits = RollerLimits(math.radians(30.0), math.radians(30.0), 0.5, 0.1)

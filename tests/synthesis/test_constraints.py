@@ -84,8 +84,13 @@ FAR_OFF = {
     "fitted motion",
     "function",
     "function of a fourbar",
+    "function of a slider-crank",
+    "ackermann",
+    "motion by a sixbar",
+    "dwell of a rocker",
+    "dwell of a slider",
 }
-"""Cases that search for five seconds and more for what comes nearest to demands that nothing meets."""
+"""Cases that search for seconds for what comes nearest to demands that nothing meets."""
 
 EVERYWHERE = {"x": [-1e4, 1e4], "y": [-1e4, 1e4]}
 NEAR = {"x": [-300.0, 300.0], "y": [-300.0, 300.0]}

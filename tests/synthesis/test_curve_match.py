@@ -249,6 +249,7 @@ def test_demands_are_kept_and_cost_accuracy():
     assert free.metrics.rms_distance < held.designs[0].metrics.rms_distance < 3.0 * free.metrics.rms_distance
 
 
+@pytest.mark.campaign
 def test_a_demanded_link_ratio_costs_no_more_accuracy_than_it_must():
     """Held by multipliers: differences of a Python function ended at an rms distance of 0.25."""
     result = matched(CASES["ullah67"]["curve"], True, rank_by="accuracy", constraints={"max_link_ratio": 3})
@@ -265,6 +266,7 @@ def place_on_the_coupler(design):
     return point.distance * np.exp(1j * math.radians(point.angle))
 
 
+@pytest.mark.campaign
 def test_a_limit_of_the_coupler_point_steers_the_match():
     """The best linkages and all their cognates have P elsewhere: if the limit only rejected, nothing would be left."""
     case = CASES["yu1_20"]
@@ -316,6 +318,7 @@ def test_a_curve_of_free_size_is_sized_to_its_limit_of_the_coupler_point():
         assert across[0] * (1.0 - 1e-9) <= place_on_the_coupler(design).imag <= across[1] * (1.0 + 1e-9)
 
 
+@pytest.mark.campaign
 def test_given_pivots_are_hit():
     case = CASES["yu1_20"]
     pivots = {"input": [-10.0, -20.0], "output": [50.0, 0.0]}

@@ -52,6 +52,7 @@ def driven_swing(design: LinkageDesign) -> tuple[float, float]:
     return float(np.ptp(turned)), float(between)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("positions", [TWO, THREE])
 def test_the_crank_turns_through_between_the_end_positions(positions: list[dict[str, float]]) -> None:
     problem, result = solved(positions)

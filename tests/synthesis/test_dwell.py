@@ -142,6 +142,7 @@ def test_the_crank_turns_through_by_the_constraints_alone(fields) -> None:
     assert trace.ended in ("limit", "closed")
 
 
+@pytest.mark.campaign
 def test_the_sizes_that_are_asked_for() -> None:
     problem = stated(crank=3.0, pivot=[100.0, -50.0], mechanism="pseudo_arc")
     for design in solved(problem).designs:
@@ -158,6 +159,7 @@ def test_limits_of_the_client_are_kept() -> None:
         assert design.metrics.link_ratio <= 6.0 * (1.0 + 1e-6)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("size", [1e-6, 1e6])
 def test_size_does_not_matter(size: float) -> None:
     one = solved(stated(output=slider(1.0))).designs[0]
@@ -166,6 +168,7 @@ def test_size_does_not_matter(size: float) -> None:
     assert np.isclose(other.metrics.jitter, size * one.metrics.jitter, rtol=1e-3)
 
 
+@pytest.mark.campaign
 def test_the_same_problem_has_the_same_answer() -> None:
     one, other = (solved(stated(mechanism="straight_slot")).model_dump() for _ in range(2))
     assert one == other

@@ -86,7 +86,7 @@ class TestApproximations:
         assert errors[0] > 1.5 * errors[1]
         assert errors[1] > 1.2 * errors[2]
 
-    @pytest.mark.slow
+    @pytest.mark.campaign
     def test_limits_hold(self):
         limits = {"max_link_ratio": 5.0, "min_transmission_angle": 50.0}
         task = {**task_of(CASES[0]), "constraints": limits}
@@ -108,6 +108,7 @@ class TestApproximations:
         assert result.designs[0].structural_error.max <= 0.0081
         assert result.designs[0].metrics.output_range == pytest.approx(50.0)
 
+    @pytest.mark.campaign
     def test_pairs_beyond_what_can_be_met_are_followed(self):
         rng = np.random.default_rng(4)
         lengths, inputs, outputs = planted_fourbar(rng, 12)
@@ -126,6 +127,7 @@ class TestApproximations:
         other = solved(**task_of(CASES[1])).designs[0]
         assert one.structural_error.max == pytest.approx(other.structural_error.max, abs=2e-4)
 
+    @pytest.mark.campaign
     def test_open_ranges_stay_within_their_limits(self):
         result = solved(function={"name": "logarithm", "x": [1.0, 2.0]}, range_limits=[50.0, 100.0])
         for design in result.designs:

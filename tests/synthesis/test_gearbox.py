@@ -317,6 +317,7 @@ def brute_layshaft(problem: LayshaftProblem) -> dict[int, Fraction]:
     return found
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("reverse", [None, 3.1])
 def test_layshaft_against_plain_loops(reverse: float | None) -> None:
     stated: dict[str, Any] = {

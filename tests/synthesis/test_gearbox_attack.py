@@ -237,7 +237,7 @@ def check_layshaft(stated: dict[str, Any]) -> bool:
     return True
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_random_layshaft_gearboxes() -> None:
     rng = np.random.default_rng(12)
     answered = sum(check_layshaft(random_layshaft(rng)) for _ in range(40))

@@ -24,7 +24,7 @@ from benchmarks.independent.transmission import least_angles
 from synthesis.dispatch import solve
 from synthesis.model.linkage_answer import Skeleton
 from synthesis.registry import parse_problem
-from tests.campaign import sampled
+from tests.campaign import further, sampled
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -248,8 +248,14 @@ QUICK = (
 )
 """Families whose answers take a second or two each."""
 
+QUICKEST = [
+    name
+    for name in QUICK
+    if name not in ("functions", "tolerated path", "input is driven", "coupler is driven", "demands of a line")
+]
 
-@pytest.mark.parametrize("name", QUICK)
+
+@pytest.mark.parametrize("name", further(QUICK, QUICKEST))
 def test_a_family_agrees(name: str) -> None:
     result = Measured()
     assert linkages(3, (name,), 3, result, most=3)
@@ -258,6 +264,7 @@ def test_a_family_agrees(name: str) -> None:
     assert len(result.differences) >= 15
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", ["dwell", "two dwells"])
 def test_a_rest_agrees(name: str) -> None:
     """What the output moves, and for how long it keeps within the tolerance, between all steps."""
@@ -268,6 +275,7 @@ def test_a_rest_agrees(name: str) -> None:
     assert not result.left, result.report()
 
 
+@pytest.mark.campaign
 def test_cognates_agree_where_two_points_are_met_at_one_place() -> None:
     """Two of the noisy points are nearest to one place of the curve: the cognate passes them in order all the same."""
     result = Measured()

@@ -143,6 +143,7 @@ def assert_not_above_the_plant(seed: int, noise: float, n: int) -> None:
     assert_sound_by_continuation(best)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("seed", "noise"), [(10, 1e-4), (11, 1e-3), (12, 1e-2)])
 def test_error_is_not_above_that_of_the_planted_linkage(seed: int, noise: float) -> None:
     assert_not_above_the_plant(seed, noise, 20)

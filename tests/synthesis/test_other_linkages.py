@@ -116,7 +116,7 @@ def test_a_slider_cranks_closed_curve_is_recovered():
     assert best.mechanism.links.coupler == pytest.approx(3.2)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 @pytest.mark.parametrize("method", ["curve_match", "least_squares"])
 def test_a_slider_cranks_stroke_with_noise_is_fitted(method):
     rng = np.random.default_rng(5)
@@ -148,6 +148,7 @@ def test_a_slider_crank_stands_on_a_given_pivot():
         assert np.allclose(design.mechanism.fixed_pivot, [1.0, 2.0], atol=1e-8)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("ratio", "turns"),
     [(-1.0, 1), *(pytest.param(*one, marks=pytest.mark.slow) for one in [(2.0, 1), (-2.0, 1), (0.5, 2)])],

@@ -155,6 +155,7 @@ def test_limits_are_hard():
         assert design.metrics.sum_of_squares >= free.metrics.sum_of_squares
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("phase", [None, "free", "absolute", "ground_line"])
 def test_moving_pivots_are_brought_into_their_region(phase):
     rng = np.random.default_rng(5)

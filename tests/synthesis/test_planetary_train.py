@@ -300,6 +300,7 @@ def test_coupled_sets_against_plain_loops(name: str, roles: tuple[str, str, str]
     assert [(abs(t.error), t.size) for t in result.pareto] == [(pytest.approx(float(e)), s) for e, s in front]
 
 
+@pytest.mark.campaign
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(st.sampled_from(["simple", "stepped", "stepped_suns", "stepped_rings", "wolfrom"]), st.data())
 def test_planted_trains_are_found_again(name: str, data: st.DataObject) -> None:

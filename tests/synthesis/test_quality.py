@@ -11,6 +11,7 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.campaign import further
 from tests.synthesis.test_screening import excess_of
 
 CURVE = {
@@ -119,7 +120,10 @@ def restated(design: Any, task: float) -> float:
     return sine / ((1.0 + (longest / task / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
 
 
-@pytest.mark.parametrize("name", CASES)
+QUICK = [name for name in CASES if name not in ("motion by a sixbar", "path of a slider-crank")]
+
+
+@pytest.mark.parametrize("name", further(CASES, QUICK))
 def test_quality_is_the_documented_one(name: str) -> None:
     statement, task = CASES[name]
     designs = solve(parse_problem(statement)).designs

@@ -173,6 +173,7 @@ def test_a_tolerated_first_position_is_said_where_the_body_stands_otherwise() ->
     assert any(design.mechanism.reference_body_angle is not None for design in result.designs)
 
 
+@pytest.mark.campaign
 def test_what_is_stated_of_a_side_is_kept() -> None:
     stated, regions = off_planted(3, 0)
     box = regions["fixed_pivot_region"]
@@ -189,6 +190,7 @@ def test_what_is_stated_of_a_side_is_kept() -> None:
         assert {check.name for check in design.verification.checks if check.passed} >= {"ground_line"}
 
 
+@pytest.mark.campaign
 def test_limits_hold_in_steered_linkages() -> None:
     stated, _ = off_planted(4, 2)
     free = run(positions=stated)

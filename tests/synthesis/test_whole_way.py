@@ -106,6 +106,7 @@ def test_a_sound_curve_that_bulges_between_its_points_is_within_their_tolerance(
     assert design.metrics.curve_distance > 0.05 or count == 30
 
 
+@pytest.mark.campaign
 def test_tolerances_are_kept_by_every_design_and_weigh_the_points():
     exact = curve(EGG, np.linspace(0.0, math.tau, 24, endpoint=False))
     off = exact + 0.1 * np.exp(1j * np.arange(24))
