@@ -23,9 +23,16 @@ def choose(share: float) -> None:
 
 
 def further(values: Iterable[Any], always: Iterable[Any]) -> list[Any]:
-    """Parameters of a test: it is tried with those of ``always`` in every run, with the others in the campaign."""
+    """Parameters of a test: it is tried with those of ``always`` in every run, with the others in the campaign.
+
+    A tuple is the values of several parameters.
+    """
     kept = list(always)
-    return [value if value in kept else pytest.param(value, marks=pytest.mark.campaign) for value in values]
+    later = pytest.mark.campaign
+    return [
+        value if value in kept else pytest.param(*(value if isinstance(value, tuple) else (value,)), marks=later)
+        for value in values
+    ]
 
 
 def sampled(cases: int) -> int:

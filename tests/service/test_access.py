@@ -219,6 +219,7 @@ def test_a_tenant_has_a_plain_name(tmp_path, tenant):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.campaign
 def test_a_key_has_its_rate(tmp_path):
     key, other = made(tmp_path, "acme"), made(tmp_path, "globex")
     server = RunningServer(tmp_path, SCRIPTED, workers=1, rate_limit="5/hour")

@@ -139,6 +139,7 @@ def test_head_does_not_wait_for_the_end(scripted, gate):
     assert answer.headers["content-type"].startswith("text/event-stream")
 
 
+@pytest.mark.campaign
 def test_two_hundred_listeners_see_one_end_each(scripted, gate):
     job = scripted.post(STEPS)
     listeners = 200

@@ -13,6 +13,7 @@ import pytest
 
 from service.jobs.notifier import ChangeNotifier
 from service.jobs.progress import PERIOD_S
+from tests.campaign import further
 from tests.service.running import (
     REACHED_S,
     SCRIPTED,
@@ -89,7 +90,11 @@ def test_a_job_in_native_code_is_cancelled(server):
     assert server.client.get(f"/v1/jobs/{job['id']}").status_code == 404
 
 
-@pytest.mark.parametrize("seed", [PYTHON, NUMBA, LAPACK, CONVEX], ids=["python", "numba", "lapack", "convex solver"])
+@pytest.mark.parametrize(
+    "seed",
+    further([PYTHON, NUMBA, LAPACK, CONVEX], [PYTHON, CONVEX]),
+    ids=["python", "numba", "lapack", "convex solver"],
+)
 def test_a_job_is_cancelled_whatever_it_computes(patient, seed):
     begun = patient.folder / "begun"
     begun.unlink(missing_ok=True)
@@ -285,6 +290,7 @@ def test_a_server_that_is_killed_leaves_no_worker_that_was_starting(tmp_path, be
         until(lambda: not alive(worker), SOON_S, "the end of the worker")
 
 
+@pytest.mark.campaign
 def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
     server = restarting()
     job = server.post(NATIVE)
@@ -298,6 +304,7 @@ def test_a_stopped_server_puts_its_running_job_back(restarting, tmp_path):
     assert stored(tmp_path, job["id"], "crashes") == 0
 
 
+@pytest.mark.campaign
 def test_a_stopping_server_answers_those_who_wait(restarting):
     server = restarting()
     answers = []
@@ -310,6 +317,7 @@ def test_a_stopping_server_answers_those_who_wait(restarting):
     assert server.process.wait(5.0) == 0
 
 
+@pytest.mark.campaign
 @pytest.mark.embedded
 def test_a_service_whose_workers_cannot_start_is_not_ready(tmp_path):
     (tmp_path / "cannot-start").touch()

@@ -47,6 +47,7 @@ def test_a_full_queue_refuses_until_it_has_room(server):
     assert 'rejections_total{reason="queue-full"} 1.0' in server.client.get("/metrics").text
 
 
+@pytest.mark.campaign
 def test_finished_jobs_are_removed_when_their_time_is_over(tmp_path):
     kept_s = 2.0
     server = RunningServer(tmp_path, SCRIPTED, workers=1, retention_days=kept_s / 86_400)

@@ -223,6 +223,7 @@ def test_the_log_leads_from_a_request_to_its_job(server):
     assert all("request" not in line for line in of_job[1:])
 
 
+@pytest.mark.campaign
 def test_concurrent_requests_keep_their_ids(server):
     def ask(n):
         for _ in range(20):

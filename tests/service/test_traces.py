@@ -115,12 +115,14 @@ def test_a_collector_gets_each_request_with_its_route(tmp_path, monkeypatch, col
     assert SECRET.encode() not in sent
 
 
+@pytest.mark.campaign
 def test_nothing_is_sent_unless_it_is_asked_for(tmp_path, monkeypatch, collector):
     with running(tmp_path, monkeypatch, OTEL_EXPORTER_OTLP_ENDPOINT=collector.url) as server:
         server.post(INSTANT, wait=20)
     assert not collector.received
 
 
+@pytest.mark.campaign
 def test_a_collector_that_is_not_there_holds_nobody_up(tmp_path, monkeypatch):
     with running(
         tmp_path,

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from synthesis.analyses import families, parse_request
 from synthesis.dispatch import solve
 from synthesis.registry import KINDS, parse_problem
+from tests.campaign import further
 from tests.statements import Schema, choices, fields
 
 CASES = [(kind, number) for kind in KINDS for number in range(len(KINDS[kind].examples))]
@@ -19,7 +20,7 @@ CASES = [(kind, number) for kind in KINDS for number in range(len(KINDS[kind].ex
 SLOW = {("path", 0), ("path", 3), ("motion", 2), ("motion", 4), ("motion", 5)}
 """Examples whose search takes more than a second."""
 
-EXAMPLES = [pytest.param(*case, marks=[pytest.mark.campaign] if case in SLOW else []) for case in CASES]
+EXAMPLES = further(CASES, [case for case in CASES if case not in SLOW])
 
 
 def mechanisms_in(value: Any) -> Iterator[dict[str, Any]]:

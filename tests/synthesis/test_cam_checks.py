@@ -10,6 +10,7 @@ import pytest
 
 from synthesis.dispatch import solve
 from synthesis.registry import parse_problem
+from tests.campaign import further
 
 Statement = dict[str, Any]
 
@@ -87,7 +88,7 @@ def missing(follower: Statement, *names: str) -> set[str]:
     return wanted - {check.name for check in design.verification.checks}
 
 
-@pytest.mark.parametrize("name", DEMANDS)
+@pytest.mark.parametrize("name", further(DEMANDS, ("least force", "hub", "rate", "jumps")))
 def test_a_demand_alone_is_checked(name: str) -> None:
     assert not missing(FACE if name in ONLY_FACES else ROLLER, name)
 

@@ -133,6 +133,7 @@ def test_a_condition_that_is_not_met_is_found(which, name, off, check):
     assert failed(problem(conditions=others), mechanism) == {check}
 
 
+@pytest.mark.campaign
 def test_a_band_that_is_left_is_found():
     band = {"start": 40.1, "end": 44.9, "lower": 10.0, "upper": 16.0}
     stated = problem(bands=[band])
@@ -150,6 +151,7 @@ def test_a_stated_jerk_is_a_condition_like_others(continuity):
     assert float(composed.program.motion(math.radians(130.0)).j) == pytest.approx(3.0, abs=1e-6)
 
 
+@pytest.mark.campaign
 def test_an_acceleration_of_an_instant_is_not_called_met():
     """Without a limit on jerk the cheapest motion meets it in a spike that no profile shows."""
     statement = copy.deepcopy(BASE) | {"limits": {"pressure_angle": 30.0}, "minimize": "peak_velocity"}

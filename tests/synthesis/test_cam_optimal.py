@@ -177,6 +177,7 @@ def test_motion_and_prime_radius_together():
     assert np.max(law.v / angle / tangent - law.s) == pytest.approx(4.142, abs=5e-4)
 
 
+@pytest.mark.campaign
 def test_offset_and_prime_radius_together():
     angle, tangent = math.pi / 3.0, math.tan(math.radians(20.0))
     run = dwell_to_dwell(angle, j=100.0 / angle**3)

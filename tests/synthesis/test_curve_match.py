@@ -305,6 +305,7 @@ def test_starts_that_are_wanted_somewhere_stand_nearer_to_it():
     assert np.all(np.diff(np.hypot(nearest.unlike, away[1])) >= 0.0)
 
 
+@pytest.mark.campaign
 def test_a_curve_of_free_size_is_sized_to_its_limit_of_the_coupler_point():
     """As with lengths: the shape is kept, and the size nearest to the drawn one is taken that has P within limits."""
     curve = curve_of(EGG, 40)

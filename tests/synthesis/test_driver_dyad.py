@@ -159,6 +159,7 @@ def test_the_coupler_can_be_driven(positions: list[dict[str, float]]) -> None:
         assert design.metrics.min_transmission_angle > 5.0
 
 
+@pytest.mark.campaign
 def test_the_coupler_is_driven_where_no_link_of_the_ground_can_be() -> None:
     """All fourbars found for this task turn their links by more than a rocker's driver can, or can well."""
     problem, result = solved(WIDE, driver_dyad={"link": "any"})
@@ -205,6 +206,7 @@ def test_designs_are_taken_as_they_are_by_an_analysis() -> None:
     assert len(answer["circuits"]) >= 1
 
 
+@pytest.mark.campaign
 def test_fitted_positions_are_driven_too() -> None:
     positions = [{"x": 10.0 * k, "y": 3.0 * k - 0.3 * k * k, "angle": -9.0 * k} for k in range(7)]
     _, result = solved(positions, max_designs=1)

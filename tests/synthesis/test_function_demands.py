@@ -21,7 +21,7 @@ def test_all_constraints_a_little_looser_than_a_planted_linkage(task):
     assert task.answered(solve_function(parse_problem(task.statement), silent))
 
 
-@pytest.mark.parametrize("number", [54, 84])
+@pytest.mark.parametrize("number", further([54, 84], [54]))
 def test_members_of_a_family_are_moved_into_narrow_limits(number):
     # Of eight thousand members that are drawn none lies there.
     task = list(function_constraints.tasks(number + 1, 0))[number]
@@ -29,7 +29,7 @@ def test_members_of_a_family_are_moved_into_narrow_limits(number):
 
 
 @pytest.mark.parametrize("mechanism", ["fourbar", "slider_crank"])
-@pytest.mark.parametrize("criterion", ["minimax", "least_squares"])
+@pytest.mark.parametrize("criterion", further(["minimax", "least_squares"], ["minimax"]))
 def test_an_approximation_keeps_regions_of_its_own_place_without_loss(mechanism, criterion):
     limits = {"min_transmission_angle": 30.0, "max_link_ratio": 8.0}
     statement = {

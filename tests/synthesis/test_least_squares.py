@@ -209,6 +209,7 @@ def test_too_narrow_tolerances_find_nothing_and_say_so() -> None:
     assert "tolerance" in result.summary
 
 
+@pytest.mark.campaign
 def test_points_with_rough_angles_are_met_exactly() -> None:
     """Eight points exactly, their angles within ten degrees: each such position leaves one number free."""
     planted = plant_many(np.random.default_rng(5), 7)

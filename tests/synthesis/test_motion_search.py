@@ -135,6 +135,7 @@ def test_two_positions_alone() -> None:
     confirm(result, ORDINARY[:2], 30.0)
 
 
+@pytest.mark.campaign
 def test_one_side_given_the_other_searched() -> None:
     rng = np.random.default_rng(7)
     for _ in range(10):

@@ -139,7 +139,7 @@ def test_slider_cranks_meet_up_to_eight_points_exactly(n):
         assert design.metrics.max_distance < 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_slider_crank_stands_on_a_given_pivot():
     points = sliders.coupler_points(SLIDER, np.linspace(0.4, 4.0, 5), 1).p
     result = answer(points, "slider_crank", fixed_pivots={"input": [1.0, 2.0]})

@@ -254,6 +254,7 @@ def test_a_thousand_points_take_seconds():
     assert best.metrics.max_distance < 1e-8
 
 
+@pytest.mark.campaign
 def test_the_same_statement_has_the_same_answer_and_progress_rises():
     points = positions(CRANK_ROCKER, np.linspace(0.0, 5.0, 12), OPEN).p + 0.05
     problem = parse_problem({"kind": "path", "points": listed(points), "max_designs": 3})

@@ -120,10 +120,10 @@ def restated(design: Any, task: float) -> float:
     return sine / ((1.0 + (longest / task / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
 
 
-QUICK = [name for name in CASES if name not in ("motion by a sixbar", "path of a slider-crank")]
+SLOW = {"motion by a sixbar", "path of a slider-crank", "path of a geared fivebar", "dwell of a rocker"}
 
 
-@pytest.mark.parametrize("name", further(CASES, QUICK))
+@pytest.mark.parametrize("name", further(CASES, CASES.keys() - SLOW))
 def test_quality_is_the_documented_one(name: str) -> None:
     statement, task = CASES[name]
     designs = solve(parse_problem(statement)).designs

@@ -26,6 +26,7 @@ CLOSED = {
 }
 
 
+@pytest.mark.campaign
 def test_a_usable_fit_stands_before_a_nearer_one_that_nobody_would_build() -> None:
     result = solve(parse_problem(CLOSED))
     near = [design for design in result.designs if error_of(design) <= BAND * min(map(error_of, result.designs))]
