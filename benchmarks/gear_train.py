@@ -14,7 +14,7 @@ import statistics
 import time
 from typing import Any
 
-from synthesis.dispatch import solve, warm_up_kind
+from synthesis.dispatch import compile_kind, solve
 from synthesis.kinds.gear_train.design import GearTrainResult
 from synthesis.registry import parse_problem
 
@@ -73,7 +73,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--repeats", type=int, default=5)
     repeats = parser.parse_args().repeats
-    warm_up_kind("gear_train")
+    compile_kind("gear_train")
     print(f"{'task':38} {'CPU s':>8} {'limit':>6} {'covered':>9} {'ties':>7} {'pareto':>6} {'error':>9}  best")
     for name, (limit, statement) in TASKS.items():
         seconds, result = timed(statement, repeats)

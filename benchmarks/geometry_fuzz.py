@@ -167,9 +167,9 @@ def _moved(stored: str) -> str:
 
 def _begin(kind: str) -> None:
     """Have the kernels compiled before the first case, which is not to be blamed for it."""
-    from synthesis.dispatch import warm_up_kind
+    from synthesis.dispatch import compile_kind
 
-    warm_up_kind(kind)
+    compile_kind(kind)
 
 
 def tally(kind: str, numbers: Iterable[int], workers: int = 1) -> Tally:

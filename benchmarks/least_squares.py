@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from synthesis.dispatch import solve, warm_up_kind
+from synthesis.dispatch import compile_kind, solve
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
 from synthesis.registry import parse_problem
@@ -60,7 +60,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--tasks", type=int, default=20, help="planted linkages per row")
     tasks = parser.parse_args().tasks
-    warm_up_kind("motion")
+    compile_kind("motion")
     print(f"{'positions':>9}{'noise':>9}{'median CPU s':>13}{'worst':>9}{'error : plant':>15}{'worse':>9}")
     for n in (8, 12, 20, 40):
         for noise in (1e-4, 1e-3, 1e-2):

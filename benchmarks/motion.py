@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.four_positions import brute_force
-from synthesis.dispatch import solve, warm_up_kind
+from synthesis.dispatch import compile_kind, solve
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.registry import parse_problem
@@ -138,7 +138,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0] if __doc__ else None)
     parser.add_argument("--tasks", type=int, default=100, help="random tasks per row")
     tasks = parser.parse_args().tasks
-    warm_up_kind("motion")
+    compile_kind("motion")
     exact_table()
     print(f"\n{'search over free choices':<50}{'median s':>11}{'worst s':>9}{'≥ 1, %':>10}{'≥ 5, %':>10}")
     search_row("4 positions, the tasks of tests/cases", stated(4))

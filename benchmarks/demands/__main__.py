@@ -18,7 +18,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.demands.task import Task
-from synthesis.dispatch import solve, warm_up_kind
+from synthesis.dispatch import compile_kind, solve
 from synthesis.registry import parse_problem
 
 NO_ROWS = {"__main__", "task", "planted"}
@@ -46,7 +46,7 @@ def main() -> None:
     for task in tasks:
         problem = parse_problem(task.statement)
         if not walls:
-            warm_up_kind(problem.kind)
+            compile_kind(problem.kind)
         clock, begun = time.perf_counter(), time.process_time()
         result = solve(problem, lambda share, message: None)
         walls.append(time.perf_counter() - clock)
