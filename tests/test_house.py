@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import importlib.util
 import re
 import subprocess
 import sys
@@ -24,6 +26,7 @@ MOST_EDITED = 4
 """Files outside its own folder that a new kind may take, documentation apart."""
 
 
+OURS = {"benchmarks", "kinematics", "service", "synthesis", "tests", "tools"}
 HEAVY = {"numba", "scipy", "cvxpy", "highspy", "ezdxf", "PIL"}
 
 
@@ -108,3 +111,13 @@ def test_who_parses_problems_waits_for_no_solver(module: str) -> None:
     program = f"import sys, {module}; print(*({HEAVY} & set(sys.modules)))"
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
     assert run.stdout.split() == []
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "benchmarks").rglob("*.py")), ids=lambda path: path.stem)
+def test_what_a_benchmark_imports_is_there(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in OURS:
+            module = importlib.import_module(node.module)
+            for alias in node.names:
+                known = hasattr(module, alias.name) or importlib.util.find_spec(f"{node.module}.{alias.name}")
+                assert known, f"{path}: no {alias.name} in {node.module}"
