@@ -276,13 +276,13 @@ def _spread(unsettled: Real, stretches: Stretches) -> Real:
 
 
 def _bends(curvature: Callable[[Real], Real], near: Real, stretches: Stretches) -> tuple[float, float]:
-    """Least and greatest curvature: exact on chords with curves of their own, else of what is known at the chords."""
-    known = near[~stretches.narrow]
-    least, greatest = float(known.min()), float(known.max())
-    if stretches.blurred.all():
-        return least, greatest
-    exact = range_of(curvature, chords(len(near))[~stretches.blurred])
-    return min(least, exact[0]), max(greatest, exact[1])
+    """Least and greatest curvature on chords whose curvature can be measured, the shares of ``near`` among its places.
+
+    A curve over breaks is smooth on its chord too: what it has between those places may be more than at them.
+    """
+    measured = ~stretches.narrow
+    exact = range_of(curvature, chords(len(near))[measured])
+    return min(float(near[measured].min()), exact[0]), max(float(near[measured].max()), exact[1])
 
 
 def coarser_places(at: Real, coarser: Real, share: Real) -> tuple[NDArray[np.int64], Real]:

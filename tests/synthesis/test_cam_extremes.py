@@ -192,6 +192,17 @@ def test_a_profile_without_its_breaks_is_measured_worse_never_better() -> None:
     assert 1.0 / found.convex <= cam.radius_extremes.least * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("first", [0.1, 0.35, 0.6, 0.85])
+def test_curvature_between_the_places_of_a_chord_is_measured(first: float) -> None:
+    """Where curves run over breaks, as here at each point, it was stated up to 6e-5 too flat."""
+    cam = Cam(stated_program("polynomial_4567", 20.0), TranslatingFlat(83.0), "cw")
+    angle = np.radians(0.125 * (np.arange(2880) + first))
+    blurred = Stretches(np.empty(0, np.int64), np.ones(2880, np.bool_), np.zeros(2880, np.bool_))
+    found = worst(Contour(cam.profile(angle), angle), cam.follower, "cw", blurred)
+    assert 1.0 / found.convex <= cam.radius_extremes.least * (1.0 + 1e-9)
+    assert 1.0 / found.convex == pytest.approx(cam.radius_extremes.least, rel=1e-4)
+
+
 def test_stencils_stay_between_breaks() -> None:
     first = stencils(40, np.array([3, 20]))
     assert first[3] == 3
