@@ -24,6 +24,10 @@ SHORTEST = 1e-5
 PIECES = 200
 """Pieces of a move by a law."""
 
+SLOPE = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
+BEND = np.array([35.0, -104.0, 114.0, -56.0, 11.0]) / 12.0
+"""First and second derivative at the first of five points a step of one apart (Abramowitz & Stegun, table 25.2)."""
+
 
 def law(name: str, u: Real) -> tuple[Real, Real, Real, Real]:
     """s, s′, s″, s‴ of unit lift over unit angle (Norton, §8.3)."""
@@ -98,15 +102,25 @@ def by_table(program: Any, start: float, angle: float, unit: float) -> Move:
 
 
 def greatest(values: Real) -> float:
-    """The greatest of pieces, between their points by the parabola through neighbours; −∞ where nothing counts."""
+    """The greatest of pieces, between their points by parabolas; −∞ where nothing counts.
+
+    A piece that is greatest at a point within has the top of the parabola through it and its neighbours. One that is
+    greatest at an end but rises from there has its top by the slope and the bend that the curve through five points
+    has at the end.
+    """
     rows = np.arange(len(values))
     k = np.clip(values.argmax(axis=1), 1, values.shape[1] - 2)
     before, at, after = values[rows, k - 1], values[rows, k], values[rows, k + 1]
+    ends = np.concatenate([values[:, :5], values[:, :-6:-1]])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = before - 2.0 * at + after
         top = at - 0.125 * (after - before) ** 2 / bend
+        slope_there, bend_there = ends @ SLOPE, ends @ BEND
+        top_there = ends[:, 0] - 0.5 * slope_there**2 / bend_there
+        beside = (bend_there < 0.0) & (slope_there > 0.0) & (slope_there <= -bend_there) & np.isfinite(top_there)
     peaked = (at >= before) & (at >= after) & (bend < 0.0) & np.isfinite(top)
-    return float(max(values.max(), np.where(peaked, top, -np.inf).max()))
+    tops = np.append(np.where(peaked, top, -np.inf), np.where(beside, top_there, -np.inf))
+    return float(max(values.max(), tops.max()))
 
 
 def least(values: Real) -> float:

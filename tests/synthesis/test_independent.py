@@ -46,6 +46,15 @@ def test_peaks_and_means_of_pieces_are_exact() -> None:
     assert cam_motion.mean([move], [move.v**2]) == pytest.approx(1.5 / math.pi**2, rel=1e-12)
 
 
+@pytest.mark.parametrize("end", [0.02, 0.98])
+def test_a_peak_beside_the_end_of_a_piece_is_found(end: float) -> None:
+    """Between the first two points, or the last two; the next piece begins lower, or the one before ends so."""
+    at = np.linspace(0.0, 1.0, cam_motion.POINTS)
+    peak = end + math.copysign(0.015, end - 0.5)
+    assert cam_motion.greatest((5.0 - (at - peak) ** 2)[None]) == pytest.approx(5.0, abs=1e-14)
+    assert cam_motion.greatest((5.0 - (at + 0.1) ** 2)[None]) == 5.0 - 0.1**2
+
+
 PARALLELOGRAM: dict[str, Any] = {
     "joints": {"O2": [0.0, 0.0], "O4": [4.0, 0.0], "A": [0.0, 2.0], "B": [4.0, 2.0], "P": [2.0, 3.0]},
     "links": [
