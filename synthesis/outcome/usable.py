@@ -77,12 +77,12 @@ def usable_first(problem: LinkageProblem, designs: Sequence[Any]) -> Ordered:
         return Ordered(
             _before(first, designs), f" First stand those that have {practice} and {compact}, then the others."
         )
-    first = [design for design in near if even(design)]
-    if not first:
-        return Ordered(list(designs), f" {missing} has {practice}.")
     told = f" {missing} has {practice} and {compact}"
     if even(passed[0]):
         return Ordered(list(designs), f"{told}.")
+    first = [design for design in near if even(design)]
+    if not first:
+        return Ordered(list(designs), f" {missing} has {practice}.")
     return Ordered(_before(first, designs), f"{told}; first stand those with such an angle and ratio.")
 
 

@@ -74,6 +74,16 @@ def test_a_link_far_longer_than_the_task_gives_way_or_is_told() -> None:
     assert usable_first(problem, [made(40.0, 3.0, None), long]).remark == ""
 
 
+def test_what_the_first_design_lacks_is_told_where_it_is_not_among_the_nearest() -> None:
+    first, nearest = made(40.0, 4.5, 5.9, error=5.0), made(29.0, 6.5, 7.6)
+    found = usable_first(parse_problem(CLOSED), [first, nearest])
+    assert found.designs == [first, nearest]
+    assert found.remark == (
+        " No design within 2 times the least error has a least transmission angle of 30° and a link ratio of 10 or less"
+        " and no link longer than 5 times the task's size."
+    )
+
+
 def test_reach_is_the_longest_side_of_a_link_in_sizes_of_the_task() -> None:
     result = solve(parse_problem({"kind": "quick_return", "time_ratio": 1.3, "stroke": 80.0, "mechanism": "whitworth"}))
     for design in result.designs:
