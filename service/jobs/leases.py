@@ -7,7 +7,7 @@ go by the clock of the database, in ``due_at``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from sqlalchemy import Engine, delete, func, insert, select, update
@@ -19,6 +19,8 @@ from service.jobs.store import MAX_KILLS
 
 _HOST_FORGOTTEN_S = 3600.0
 """Rows of hosts that vanished are removed after this: long after their lease, so that the clocks do not matter."""
+
+_EXPIRED = (jobs.c.status == Status.RUNNING, jobs.c.due_at < StoreClock())
 
 
 class LeaseStore:
@@ -45,20 +47,22 @@ class LeaseStore:
             rows = {row.id: row for row in connection.execute(query)}
         return {claim for claim, job_id in claims.items() if _useless(rows.get(job_id), claim)}
 
-    def abandoned(self) -> list[tuple[str, Status]]:
-        """Take the running jobs whose leases are over back into the queue: whoever ran them is gone with its workers.
+    def expired(self) -> list[str]:
+        """The running jobs whose leases are over."""
+        with self._engine.connect() as connection:
+            return list(connection.execute(select(jobs.c.id).where(*_EXPIRED)).scalars())
+
+    def take_back(self, job_ids: Iterable[str]) -> list[tuple[str, Status]]:
+        """Take those of these jobs whose leases are over back into the queue: whoever ran them is gone.
 
         Returns
         -------
         list
-            These jobs, and what they are now; like :meth:`crashed`.
+            These jobs, and what they are now; like :meth:`service.jobs.store.JobStore.crashed`.
         """
-        expired = (jobs.c.status == Status.RUNNING, jobs.c.due_at < StoreClock())
         moves = []
-        with self._engine.connect() as connection:
-            job_ids = connection.execute(select(jobs.c.id).where(*expired)).scalars().all()
         for job_id in job_ids:
-            change = died(job_id, MAX_KILLS).where(*expired)
+            change = died(job_id, MAX_KILLS).where(*_EXPIRED)
             with self._engine.begin() as connection:
                 status = connection.execute(change).scalar_one_or_none()
             if status is not None:

@@ -55,9 +55,11 @@ class Recovery(threading.Thread):
                 log.exception("jobs could not be recovered")
 
     def _take_up_abandoned(self) -> None:
+        # Asked even where the answer is not to be trusted yet: the question shows that the store is there again.
+        expired = self._leases.expired()
         if time.monotonic() < self._trusted_from:
             return
-        for job_id, status in self._leases.abandoned():
+        for job_id, status in self._leases.take_back(expired):
             log.warning("job abandoned by its worker host", job=job_id, job_is_now=status)
             if status == Status.FAILED:
                 log.warning("job failed", job=job_id, reason="its workers died too often")

@@ -40,6 +40,8 @@ from tests.service.scripted_server import (
     STEPS,
 )
 
+pytestmark = pytest.mark.slow
+
 TIMEOUT_S = 8.0
 LATE = (str(Path(__file__).with_name("late_server.py")),)
 
