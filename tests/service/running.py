@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+from prometheus_client.parser import text_string_to_metric_families
 
 from tests.cluster.backend import CHOSEN
 
@@ -100,6 +101,16 @@ class RunningServer:
             return job if job["status"] == status else None
 
         return until(there, seconds, f"job {status}")
+
+    def samples(self):
+        """What the service measures of itself, by name and labels."""
+        families = text_string_to_metric_families(self.client.get("/metrics").text)
+        samples = [sample for family in families for sample in family.samples]
+        return {(sample.name, *sorted(sample.labels.items())): sample.value for sample in samples}
+
+    def sample(self, name, **labels):
+        """One sample; 0 where there is none. Tests that share a server compare it with what it was before."""
+        return self.samples().get((name, *sorted(labels.items())), 0.0)
 
     def workers(self):
         return workers_of(self.host.pid)

@@ -7,7 +7,6 @@ import threading
 
 import httpx
 import pytest
-from prometheus_client.parser import text_string_to_metric_families
 
 from service.jobs import host
 from service.jobs.host import HostError, show
@@ -15,6 +14,8 @@ from service.metrics import HostMetrics, Metrics
 from service.settings import Settings
 from tests.service.running import PROBLEM, SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import BROKEN, DIES_ONCE, GATED, INSTANT, NATIVE
+
+pytestmark = pytest.mark.slow
 
 SECRET = "a-word-that-nobody-must-log"
 
@@ -28,18 +29,11 @@ def server(tmp_path_factory):
     assert running.stop() == 0
 
 
-def measured(server):
-    """The samples by name and labels."""
-    text = server.client.get("/metrics").text
-    samples = [sample for family in text_string_to_metric_families(text) for sample in family.samples]
-    return {(sample.name, *sorted(sample.labels.items())): sample.value for sample in samples}
-
-
 def grown(server, act):
     """By how much the samples have grown over an act; those that have not are left out."""
-    before = measured(server)
+    before = server.samples()
     act()
-    after = measured(server)
+    after = server.samples()
     return {key: value - before.get(key, 0.0) for key, value in after.items() if value != before.get(key, 0.0)}
 
 
@@ -104,9 +98,9 @@ def test_the_queue_and_the_workers_are_seen(server):
     server.reaches(running["id"], "running")
     server.post(INSTANT)
     server.post(INSTANT)
-    seen = measured(server)
+    seen = server.samples()
     gate.touch()
-    until(lambda: measured(server)[("mechsynth_jobs_unfinished", ("status", "queued"))] == 0)
+    until(lambda: server.samples()[("mechsynth_jobs_unfinished", ("status", "queued"))] == 0)
     assert seen[("mechsynth_jobs_unfinished", ("status", "queued"))] == 2
     assert seen[("mechsynth_jobs_unfinished", ("status", "running"))] == 1
     assert seen[("mechsynth_workers_ready",)] == 1
@@ -121,8 +115,8 @@ def test_listeners_are_counted_until_they_leave(server):
         with other.stream("GET", f"/v1/jobs/{job['id']}/events") as stream:
             texts = stream.iter_text()
             next(texts)
-            assert measured(server)[("mechsynth_event_listeners",)] == 1
-        until(lambda: measured(server)[("mechsynth_event_listeners",)] == 0, what="the end of the listening")
+            assert server.samples()[("mechsynth_event_listeners",)] == 1
+        until(lambda: server.samples()[("mechsynth_event_listeners",)] == 0, what="the end of the listening")
     gate.touch()
 
 
