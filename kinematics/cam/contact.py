@@ -145,19 +145,44 @@ class Contour:
     @cached_property
     def tangents(self) -> Complex:
         """Unit tangents of the profile at its points, in the order of the points."""
-        return unit_tangents(self._curves)
+        return unit_tangents(self.curves)
+
+    @property
+    def given_at(self) -> Real:
+        """The cam angles of the points.
+
+        Raises
+        ------
+        DimensionError
+            Where the profile has none.
+        """
+        if self.at is None:
+            raise DimensionError("angles of the points", "given with them", None)
+        return self.at
 
     @cached_property
-    def _curves(self) -> Complex:
+    def curves(self) -> Complex:
         """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
-        n = len(self.points)
-        first = stencils(n, self.breaks)
-        index = first[:, None] + np.arange(STENCIL)
-        points = self.points[index % n]
         if self.at is None:
-            return local_curves(points, chord_lengths(points), np.arange(n) - first)
-        curves = local_curves(points, self.at[index % n] + TURN * (index // n), np.arange(n) - first)
-        return straightened(curves, self.at, self.breaks)
+            first, index = self._stencils
+            points = self.points[index % len(self.points)]
+            return local_curves(points, chord_lengths(points), np.arange(len(points)) - first)
+        return straightened(self._through(self.points, self.at), self.at, self.breaks)
+
+    def fitted(self, values: Real) -> Real:
+        """Curves of values at the points over the cam angle, like those through the points themselves; shape (n, 6)."""
+        return np.ascontiguousarray(self._through(values.astype(np.complex128), self.given_at).real)
+
+    @cached_property
+    def _stencils(self) -> tuple[Indices, Indices]:
+        """The first point of each chord's curve, and all six; beyond the last point those of the next turn."""
+        first = stencils(len(self.points), self.breaks)
+        return first, first[:, None] + np.arange(STENCIL)
+
+    def _through(self, values: Complex, at: Real) -> Complex:
+        """Local curves over the cam angle."""
+        (first, index), n = self._stencils, len(self.points)
+        return local_curves(values[index % n], at[index % n] + TURN * (index // n), np.arange(n) - first)
 
     @cached_property
     def coarser(self) -> Contour:
@@ -178,7 +203,7 @@ class Contour:
 
     def along(self, chord: ArrayLike, share: ArrayLike) -> CurvePoint:
         """Points of the profile at shares of its chords, 0 to 1; both of any shape that go together."""
-        curves = self._curves[np.asarray(chord, dtype=np.int64)]
+        curves = self.curves[np.asarray(chord, dtype=np.int64)]
         tau = np.asarray(share, dtype=np.float64)
         first, second = curve_derivatives(curves, tau)
         sign = 1.0 if self.turns_ccw else -1.0
@@ -224,7 +249,7 @@ class Contour:
         theta = np.asarray(angle, dtype=np.float64)
         kind, sizes, zero = dimensions(follower)
         mirrored = rotation == "ccw"
-        curves = np.conj(self._curves) if mirrored else self._curves
+        curves = np.conj(self.curves) if mirrored else self.curves
         flipped = getattr(follower, "sense", 1) == -1
         roller = isinstance(follower, TranslatingRoller | OscillatingRoller)
         if roller and 0.0 < sizes[2] < NARROW * self.chords.max():
@@ -272,7 +297,7 @@ class Contour:
         kinds = {TRANSLATING_ROLLER: TRANSLATING_WITHIN, OSCILLATING_ROLLER: OSCILLATING_WITHIN}
         if kind not in kinds or not sizes[2] >= NARROW * self.chords.max():
             raise DimensionError("roller radius", f"at least {NARROW * self.chords.max()}", sizes[2])
-        curves = np.ascontiguousarray(np.conj(self._curves) if rotation == "ccw" else self._curves)
+        curves = np.ascontiguousarray(np.conj(self.curves) if rotation == "ccw" else self.curves)
         flat = np.ascontiguousarray(theta.reshape(-1))
         values: Real = np.empty(flat.size)
         flipped = getattr(follower, "sense", 1) == -1

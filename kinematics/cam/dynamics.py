@@ -37,8 +37,9 @@ SAME = 1e-10
 """Radians within which joints of several cams are one; share of the lift that is rounding."""
 
 
-PRESSED = 1e-12
-"""Share of the greatest force from which a force presses the follower to a wall; less is rounding."""
+PRESSED = 1e-6
+"""Share of the greatest force from which a force presses the follower to a wall; less is what a motion that was found
+by a convex program has instead of none, and no play would show it."""
 
 
 @dataclass(frozen=True)

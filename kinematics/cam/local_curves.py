@@ -8,6 +8,8 @@ between breaks: two on each side where there are as many, else more on the other
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,9 @@ from kinematics.cam.program import TURN
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
+
+Values = TypeVar("Values", Real, Complex)
+"""Of curves of points, or of one number."""
 
 STENCIL = 6
 """Points that a local curve runs through."""
@@ -26,6 +31,10 @@ FEWEST_STEPS = STENCIL - 1
 EDGE = 1e-6
 """Cam angle, radians, between two neighbouring breaks up to which the curve is straight: an edge under a face whose
 velocity jumps, or too short a stretch to show that it bends."""
+
+FEWEST_FOR_TWO = 7
+"""Chords between two breaks that have a second curve too, through six of their points: the error of its derivative
+goes with the fifth power of what it spans, so that it is (7/5)⁵ = 5 times as large."""
 
 AHEAD = 2
 """Of them before the chord's own first point, where no break is near."""
@@ -118,20 +127,23 @@ def chord_lengths(points: Complex) -> Real:
     return np.asarray(np.concatenate([np.zeros((len(points), 1)), np.cumsum(chords, axis=1)], axis=1))
 
 
-def curve_value(curves: Complex, share: Real) -> Complex:
-    """Points of local curves at τ."""
-    result = curves[..., STENCIL - 1]
-    for k in range(STENCIL - 2, -1, -1):
+def curve_value(curves: Values, share: Real) -> Values:
+    """Points of local curves at τ, or of their derivatives."""
+    result = curves[..., -1]
+    for k in range(curves.shape[-1] - 2, -1, -1):
         result = result * share + curves[..., k]
     return result
 
 
 def curve_derivatives(curves: Complex, share: Real) -> tuple[Complex, Complex]:
     """First and second derivative of the local curves by τ."""
-    powers = np.arange(STENCIL)
-    first = np.concatenate([curves[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    second = np.concatenate([first[..., 1:] * powers[1:], np.zeros_like(curves[..., :1])], axis=-1)
-    return curve_value(first, share), curve_value(second, share)
+    first = differentiated(curves)
+    return curve_value(first, share), curve_value(differentiated(first), share)
+
+
+def differentiated(curves: Values) -> Values:
+    """Coefficients of the derivatives by τ, one fewer."""
+    return curves[..., 1:] * np.arange(1.0, curves.shape[-1])
 
 
 def unit_tangents(curves: Complex) -> Complex:
@@ -140,7 +152,9 @@ def unit_tangents(curves: Complex) -> Complex:
 
 
 def halved(count: int, breaks: Indices) -> tuple[Indices, Indices]:
-    """Every second point of each stretch between breaks that leaves it curves of its own, and the breaks among them.
+    """Every second point of each stretch between breaks, or six of fewer than eleven, and the breaks among them.
+
+    Of a stretch of fewer than seven chords all points.
 
     Returns
     -------
@@ -154,6 +168,9 @@ def halved(count: int, breaks: Indices) -> tuple[Indices, Indices]:
         keep[::2] = True
     else:
         for low, high in zip(breaks, np.append(breaks[1:], breaks[0] + count), strict=True):
-            keep[np.arange(low, high, 2 if high - low >= 2 * FEWEST_STEPS else 1) % count] = True
+            if FEWEST_FOR_TWO <= high - low < 2 * FEWEST_STEPS:
+                keep[(low + np.arange(STENCIL) * (high - low) // FEWEST_STEPS) % count] = True
+            else:
+                keep[np.arange(low, high, 2 if high - low >= 2 * FEWEST_STEPS else 1) % count] = True
     kept = np.flatnonzero(keep)
     return kept, np.searchsorted(kept, breaks)

@@ -25,6 +25,7 @@ from kinematics.cam.local_curves import (
     STENCIL,
     chord_lengths,
     curve_derivatives,
+    curve_value,
     halved,
     local_curves,
     no_breaks,
@@ -88,14 +89,41 @@ class UnrolledWall:
         """From each point to the next, shape (n,)."""
         return np.asarray(np.diff(np.append(self.points, self.points[0] + self.period)))
 
+    @property
+    def given_at(self) -> Real:
+        """The cam angles of the points.
+
+        Raises
+        ------
+        DimensionError
+            Where the wall has none.
+        """
+        if self.at is None:
+            raise DimensionError("angles of the points", "given with them", None)
+        return self.at
+
     @cached_property
-    def _curves(self) -> Complex:
-        n = len(self.points)
-        first = stencils(n, self.breaks)
+    def curves(self) -> Complex:
+        """Coefficients of each local curve in the share τ of its own chord, constant first; shape (n, 6)."""
+        first, index, turn = self._stencils
+        points = self.points[index % len(self.points)] + self.period * turn
+        at = chord_lengths(points) if self.at is None else self.at[index % len(self.points)] + TURN * turn
+        return local_curves(points, at, np.arange(len(points)) - first)
+
+    def fitted(self, values: Real) -> Real:
+        """Curves of values at the points over the cam angle, like those through the points themselves; shape (n, 6)."""
+        (first, index, turn), n = self._stencils, len(self.points)
+        curves = local_curves(
+            values[index % n].astype(np.complex128), self.given_at[index % n] + TURN * turn, np.arange(n) - first
+        )
+        return np.ascontiguousarray(curves.real)
+
+    @cached_property
+    def _stencils(self) -> tuple[Indices, Indices, Indices]:
+        """The first point of each chord's curve, all six, and in which turn they are."""
+        first = stencils(len(self.points), self.breaks)
         index = first[:, None] + np.arange(STENCIL)
-        points = self.points[index % n] + self.period * (index // n)
-        at = chord_lengths(points) if self.at is None else self.at[index % n] + TURN * (index // n)
-        return local_curves(points, at, np.arange(n) - first)
+        return first, index, index // len(self.points)
 
     @cached_property
     def coarser(self) -> UnrolledWall:
@@ -106,7 +134,7 @@ class UnrolledWall:
     @cached_property
     def tangents(self) -> Complex:
         """Unit tangents at the points."""
-        return unit_tangents(self._curves)
+        return unit_tangents(self.curves)
 
     @property
     def cusped(self) -> bool:
@@ -117,10 +145,15 @@ class UnrolledWall:
     def along(self, chord: ArrayLike, share: ArrayLike) -> tuple[Complex, Real]:
         """Unit tangents, and curvatures positive where the wall bends toward +y, at shares of its chords."""
         first, second = curve_derivatives(
-            self._curves[np.asarray(chord, dtype=np.int64)], np.asarray(share, dtype=np.float64)
+            self.curves[np.asarray(chord, dtype=np.int64)], np.asarray(share, dtype=np.float64)
         )
         length = np.abs(first)
         return np.asarray(first / length), np.asarray((np.conj(first) * second).imag / length**3)
+
+    def heights(self, chord: ArrayLike, share: ArrayLike) -> Real:
+        """Places on the axis, at shares of its chords."""
+        curves = self.curves[np.asarray(chord, dtype=np.int64)]
+        return np.asarray(curve_value(curves, np.asarray(share, dtype=np.float64)).imag)
 
     def follow(self, x: ArrayLike, roller_radius: float, side: Literal[1, -1]) -> Touch:
         """Lay a roller on a lower wall (side 1) or under an upper one (side −1).
@@ -138,9 +171,9 @@ class UnrolledWall:
         flat = np.ascontiguousarray(at.reshape(-1))
         values, shares = np.empty(flat.size), np.empty(flat.size)
         pieces = np.empty(flat.size, dtype=np.int64)
-        curves = np.ascontiguousarray(self._curves if side == 1 else np.conj(self._curves))
+        curves = np.ascontiguousarray(self.curves if side == 1 else np.conj(self.curves))
         _lay(curves, self.period, flat, roller_radius, values, pieces, shares)
-        first, second = curve_derivatives(self._curves[pieces], shares)
+        first, second = curve_derivatives(self.curves[pieces], shares)
         touches = np.isfinite(values)
         tangent = np.where(touches, first / np.abs(first), np.nan)
         curvature = np.where(touches, (np.conj(first) * second).imag / np.abs(first) ** 3, np.nan)

@@ -31,6 +31,27 @@ def test_examples_run_and_are_drawn(client, example):
     assert motion.status_code == 200, motion.text
 
 
+@pytest.mark.parametrize("law", ["simple_harmonic", "constant_acceleration", "cycloidal"])
+def test_of_a_jerk_without_bound_no_peak_is_told(client, law):
+    """Both laws that jump: at their ends, and within."""
+    moves = [{"motion": motion, "angle": 90, "lift": 20, "law": law} for motion in ("rise", "fall")]
+    dwell = {"motion": "dwell", "angle": 90}
+    problem = {**EXAMPLES[0], "segments": [moves[0], dwell, moves[1], dwell], "accept_discontinuity": True}
+    job = client.post("/v1/jobs", json={"problem": problem}, headers={"Prefer": "wait=30"})
+    assert job.status_code == 200, job.text
+    result = job.json()["result"]
+    (design,) = result["designs"]
+    jumps = [joint["jump"]["a"] for joint in design["joints"] if "a" not in joint["continuous"]]
+    if law == "cycloidal":
+        assert not jumps
+        assert design["metrics"]["peak_jerk"] > 0.0
+    else:
+        assert max(map(abs, jumps)) > 1.0
+        assert design["metrics"]["peak_jerk"] is None
+    assert ("the jerk has no bound" in result["summary"]) is bool(jumps)
+    assert design["segments"][0]["peak_jerk"] >= 0.0
+
+
 def test_a_broken_joint_is_refused_with_its_place(client):
     example = copy.deepcopy(EXAMPLES[0])
     example["segments"][1]["law"] = "simple_harmonic"

@@ -55,6 +55,41 @@ def test_the_smallest_cylinder_by_brute_force(seed):
         assert not sound(radius)
 
 
+def test_the_groove_is_as_long_as_it_goes_between_its_points():
+    """Its highest point lies between two of 180 points: the follower turns back there."""
+    rest = {"s": 0.0, "v": 0.0, "a": 0.0}
+    conditions = [{"angle": 0.0} | rest, {"angle": 97.3, "s": 25.0, "v": 0.0}, {"angle": 206.281} | rest]
+    segments = [
+        {"motion": "polynomial", "angle": 206.281, "conditions": conditions},
+        {"motion": "dwell", "angle": 153.719},
+    ]
+    design = only(stated(segments=segments, profile_points=180))
+    assert design.metrics.lift == pytest.approx(25.0, rel=1e-12)
+    assert design.metrics.length == pytest.approx(25.0 + design.metrics.groove_width, rel=1e-7)
+
+
+def test_what_a_convex_program_has_instead_of_no_force_changes_no_walls():
+    """The return goes at a constant velocity for most of its way, but for accelerations of a billionth of the peak."""
+    segments = [
+        {"motion": "constant_velocity", "angle": 151.163, "lift": 28.5},
+        {"motion": "return", "angle": 208.837, "law": "optimal"},
+    ]
+    design = only(
+        stated(
+            segments=segments,
+            follower={"type": "barrel_roller", "roller_radius": 5.5},
+            limits={"jerk": 177.0},
+            minimize="peak_velocity",
+            continuity="jerk",
+            speed_rpm=396.0,
+            dynamics={"mass": 1.0},
+        )
+    )
+    changes = design.metrics.forces.wall_changes
+    assert 2 <= len(changes) <= 8
+    assert not [angle for angle in changes if 210.0 < angle < 300.0]
+
+
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 def test_both_walls_are_verified(rotation, size):
@@ -91,6 +126,8 @@ def test_tampering_is_found():
     assert broken(lower_wall=bumped(mechanism.lower_wall)) - {"curvature_ratio"} == {"lower_wall_reproduces_program"}
     assert broken(upper_wall=bumped(mechanism.upper_wall)) - {"curvature_ratio"} == {"upper_wall_reproduces_program"}
     assert "lower_wall_reproduces_program" in broken(cylinder_radius=mechanism.cylinder_radius * 1.0001)
+    beyond = mechanism.upper_wall.model_copy(update={"x": [x + 100.0 for x in mechanism.upper_wall.x]})
+    assert {"upper_wall_reproduces_program", "follower_can_be_laid_on"} <= broken(upper_wall=beyond)
     verdict, _ = verify_barrel(stated(limits={"pressure_angle": 30.0}), mechanism)
     assert {"pressure_angle", "pressure_angle_fall"} <= {c.name for c in verdict.checks if not c.passed}
 

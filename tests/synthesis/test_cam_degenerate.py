@@ -129,6 +129,7 @@ NOT_FOUND = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NOT_FOUND)
 def test_what_is_not_found_is_not_said_not_to_exist(name):
     result = solve(parse_problem(NOT_FOUND[name]), lambda fraction, message: None)

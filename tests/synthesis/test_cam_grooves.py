@@ -34,6 +34,7 @@ def points(curve):
     return np.array(curve.x) + 1j * np.array(curve.y)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 @pytest.mark.parametrize("follower", FOLLOWERS, ids=["slide", "arm with", "arm against"])
 def test_both_walls_carry_the_roller(follower, rotation):

@@ -162,6 +162,59 @@ def test_an_acceleration_of_an_instant_is_not_called_met():
     assert "state one" in result.summary
 
 
+SHARP = {
+    "barrel": ({"type": "barrel_roller", "roller_radius": 5.0}, (53.66, 37.14)),
+    "slide": ({"type": "translating_roller", "roller_radius": 5.0}, (42.13, 44.34)),
+}
+
+
+@pytest.mark.parametrize("name", SHARP)
+def test_the_greatest_slope_beside_a_sharp_bend_is_measured(name):
+    """The velocity bends into its plateau: points stand as close as the pressure angle there asks for."""
+    follower, (rise, fall) = SHARP[name]
+    rest = 0.5 * (360.0 - rise - fall)
+    move = {"lift": 10.0, "law": "modified_constant_velocity"}
+    segments = [
+        {"motion": "rise", "angle": rise} | move,
+        {"motion": "dwell", "angle": rest},
+        {"motion": "fall", "angle": fall} | move,
+        {"motion": "dwell", "angle": 360.0 - rise - fall - rest},
+    ]
+    limits = {"pressure_angle": 30.0, "curvature_ratio": 0.0}
+    stated = {"kind": "cam", "segments": segments, "follower": follower, "limits": limits, "profile_points": 180}
+    (design,) = solve(parse_problem(stated), lambda fraction, message: None).designs
+    metrics = design.metrics
+    steepest = max(metrics.max_pressure_angle_rise, metrics.max_pressure_angle_fall)
+    assert steepest == pytest.approx(30.0, rel=1e-6)
+
+
+def test_a_short_chord_beside_a_long_one_is_measured_where_the_curvature_is_greatest():
+    """A bend of the motion is a fiftieth of a degree from a point: the chord between is too short to be divided."""
+    move = {"lift": 8.441, "law": "trapezoidal"}
+    segments = [
+        {"motion": "rise", "angle": 103.526} | move,
+        {"motion": "dwell", "angle": 83.426},
+        {"motion": "fall", "angle": 68.538} | move,
+        {"motion": "dwell", "angle": 104.51},
+    ]
+    follower = {"type": "oscillating_flat", "pivot_distance": 180.0, "face_offset": -3.658}
+    stated = {"kind": "cam", "segments": segments, "follower": follower, "limits": {"min_radius": 5.864}}
+    (design,) = solve(parse_problem(stated), lambda fraction, message: None).designs
+    assert design.metrics.min_convex_radius == pytest.approx(5.864, rel=2e-6)
+
+
+def test_an_acceleration_that_is_left_as_fast_as_a_jerk_allows_is_met():
+    """The cheapest motion comes to it for two degrees only, which is as abrupt as the client has allowed."""
+    conditions = [{"angle": 45.0, "a": 0.0}, {"angle": 22.5, "a": 40.5}]
+    stated = problem({"jerk": 1006.0}, conditions, minimize="rms_acceleration")
+    mechanism, program = made(stated)
+    assert float(program.motion(math.radians(112.5)).a) == pytest.approx(40.5)
+    assert abs(float(program.motion(math.radians(114.5)).a) - 40.5) > 8.0
+    assert values(stated, mechanism)["meets_accelerations"] <= 1e-2
+    conditions[1]["a"] += 1.5
+    assert "meets_accelerations" in failed(problem({"jerk": 1006.0}, conditions), mechanism)
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize(
     ("count", "lift"),

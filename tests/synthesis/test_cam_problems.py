@@ -68,6 +68,30 @@ def test_ends_of_polynomials_are_the_analysis_cores():
     assert polynomial_ends(1.0, [(0.5, 1, 1.0), (0.5, 1, 1.0)]) is None
 
 
+def up_and_down(lift, **fields):
+    """A polynomial that rises, turns and falls between two rests of the same height, and a dwell."""
+    rest = {"s": 0.0, "v": 0.0, "a": 0.0}
+    conditions = [{"angle": 0.0} | rest, {"angle": 97.3, "s": lift, "v": 0.0}, {"angle": 206.281} | rest]
+    segments = [
+        {"motion": "polynomial", "angle": 206.281, "conditions": conditions},
+        {"motion": "dwell", "angle": 153.719},
+    ]
+    return {"kind": "cam", "segments": segments, "follower": {"type": "translating_flat"}} | fields
+
+
+@pytest.mark.parametrize("lift", [1e-6, 0.0257, 25.7, 1e6])
+def test_a_polynomial_that_comes_back_joins_a_dwell(lift):
+    """Rounding of its ends is small beside what it travels between them."""
+    problem = parse_problem(up_and_down(lift, length_unit="m"))
+    assert problem.contradictions() == []
+    assert problem.program.travel == pytest.approx(lift, rel=0.02)
+
+
+def test_the_least_radius_under_a_face_is_a_share_of_what_a_polynomial_travels():
+    (design,) = solve(parse_problem(up_and_down(25.0)), lambda fraction, message: None).designs
+    assert design.metrics.min_convex_radius == pytest.approx(0.02 * design.metrics.lift, rel=0.01)
+
+
 FAULTS = [
     ({"segments__0__angle": 80.0}, "/segments", "350"),
     ({"segments__1__law": "simple_harmonic"}, "/segments/1", "acceleration jumps"),
@@ -169,6 +193,7 @@ def jumping(law, follower, **fields):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("follower", FOLLOWERS)
 @pytest.mark.parametrize("law", ["simple_harmonic", "constant_acceleration"])
 def test_jumps_of_acceleration_that_are_accepted_give_a_cam(law, follower):
@@ -264,3 +289,35 @@ def test_ill_formed_statements_are_refused(changes, where):
     with pytest.raises(ValidationError) as fault:
         stated(**changes)
     assert where in str(fault.value.errors()[0]["loc"]) + str(fault.value.errors()[0]["msg"])
+
+
+@pytest.mark.parametrize("law", ["simple_harmonic", "auto", "optimal"])
+def test_a_spring_that_holds_more_than_is_asked_for_has_no_negative_preload(law):
+    """The stiff spring alone keeps the follower on the cam: the value is the greatest force, the bound below it."""
+    segments = [{"motion": motion, "angle": 180.0, "lift": 20.0, "law": law} for motion in ("rise", "fall")]
+    statement = {
+        "kind": "cam",
+        "segments": segments,
+        "follower": FOLLOWERS["translating_roller"] | {"type": "translating_roller"},
+        "limits": {"jerk": 200.0},
+        "minimize": "peak_contact_force",
+        "speed_rpm": 60.0,
+        "dynamics": {"mass": 2.0, "spring_rate": 10.0},
+    }
+    (design,) = solve(parse_problem(statement), lambda fraction, message: None).designs
+    forces, optimality = design.metrics.forces, design.optimality
+    assert forces.preload == pytest.approx(0.0, abs=1e-9)
+    assert optimality.value == pytest.approx(forces.max_contact_force, rel=1e-12)
+    assert optimality.gap is None or 0.0 <= optimality.gap < 1e-3
+
+
+@pytest.mark.parametrize("follower", ["translating_flat", "oscillating_flat"])
+def test_a_face_has_a_base_circle_that_is_no_point(follower):
+    """A circle that turns about a point beside its middle has curvature enough with any base circle."""
+    segments = [
+        {"motion": motion, "angle": 180.0, "lift": 10.0, "law": "simple_harmonic"} for motion in ("rise", "fall")
+    ]
+    statement = {"kind": "cam", "segments": segments, "follower": FOLLOWERS[follower] | {"type": follower}}
+    (design,) = solve(parse_problem(statement), lambda fraction, message: None).designs
+    travel = math.radians(10.0) * 120.0 if follower == "oscillating_flat" else 10.0
+    assert design.mechanism.base_radius == pytest.approx(1e-3 * travel, rel=1e-3)

@@ -152,7 +152,7 @@ def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:
     return {
         "peak_velocity": v.largest,
         "peak_acceleration": a.largest,
-        "peak_jerk": j.largest,
+        "peak_jerk": j.largest if program.obeys_fundamental_law else None,
         "rms_acceleration": root_mean_square(program, lambda motion: motion.a),
         "peak_inertia_torque": torque.largest,
         "forces": forces_of(problem, program),
@@ -176,9 +176,11 @@ def result_of(
         summary = f"A cam of {name} radius {length:.6g} {problem.length_unit} carries the program."
         if design.optimality.bound is not None and design.optimality.gap is not None:
             gap = 100.0 * design.optimality.gap
-            summary += f" Its {problem.minimize} {design.optimality.value:.6g} is within {gap:.2g} % of the bound."
+            summary += f" Its {problem.minimize.replace('_', ' ')} is within {gap:.2g} % of the least possible."
         if design.optimality.warning is not None:
             summary += f" {design.optimality.warning}"
+        if design.metrics.peak_jerk is None:
+            summary += " Where its acceleration jumps the jerk has no bound, so that no peak of it is told."
     else:
         summary = (
             f"The smallest cam found, of {name} radius {length:.6g} {problem.length_unit}, fails: {', '.join(failed)}."

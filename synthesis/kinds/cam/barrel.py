@@ -20,7 +20,7 @@ from synthesis.kinds.cam.answer import joints_of, motion_metrics, none_of, optim
 from synthesis.kinds.cam.barrel_verification import MeasuredBarrel, verify_barrel
 from synthesis.kinds.cam.composition import Composition, least_pitch_radius
 from synthesis.kinds.cam.critical import smallest_allowed
-from synthesis.kinds.cam.design import BarrelCamDesign, BarrelCamMechanism, BarrelMetrics, CamResult
+from synthesis.kinds.cam.design import BarrelCamDesign, BarrelMetrics, CamResult
 from synthesis.kinds.cam.followers import BarrelRoller
 from synthesis.kinds.cam.mechanism import barrel_mechanism, profile_angles, refined
 from synthesis.kinds.cam.problem import CamProblem
@@ -59,7 +59,7 @@ def solve_barrel(problem: CamProblem, follower: BarrelRoller, composed: Composit
         joints=joints_of(problem, program),
         optimality=optimality_of(problem, composed, size.radius),
         verification=verification,
-        metrics=_metrics(problem, program, mechanism, measured),
+        metrics=_metrics(problem, program, follower.roller_radius, measured),
     )
     progress(1.0, "verified")
     return result_of(problem, composed, design, size, ("cylinder", size.radius))
@@ -71,7 +71,8 @@ def _closer(angle: Real, measured: MeasuredBarrel, failed: set[str]) -> Real | N
         return None
     if any("reproduces" in name for name in failed):
         return refined(angle, measured.off, REPRODUCED)
-    return refined(angle, measured.unsettled, 1.0) if (measured.unsettled > 0.0).any() else None
+    doubtful = measured.unsettled if measured.unsettled.any() else measured.unsteady
+    return refined(angle, doubtful, 1.0) if doubtful.any() else None
 
 
 def smallest_barrel(problem: CamProblem, follower: BarrelRoller, program: Program) -> Size | None:
@@ -97,16 +98,13 @@ def _curvature(rho: float) -> Callable[[Motion, Real], Real]:
     return excess
 
 
-def _metrics(
-    problem: CamProblem, program: Program, mechanism: BarrelCamMechanism, measured: MeasuredBarrel
-) -> BarrelMetrics:
+def _metrics(problem: CamProblem, program: Program, roller: float, measured: MeasuredBarrel) -> BarrelMetrics:
     """The measured groove as the answer has it."""
-    roller = mechanism.follower.roller_radius
     least = reported(measured.least_radius)
     return BarrelMetrics(
         lift=program.lift,
         groove_width=2.0 * roller,
-        length=max(mechanism.upper_wall.y) - min(mechanism.lower_wall.y),
+        length=measured.length,
         max_pressure_angle_rise=measured.rising,
         max_pressure_angle_fall=measured.falling,
         min_radius=least,

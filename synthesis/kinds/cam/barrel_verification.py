@@ -21,7 +21,7 @@ from synthesis.kinds.cam.measured_rates import Measure, rate_checks
 from synthesis.kinds.cam.mechanism import points_of, stretches_of
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import Reproduction
-from synthesis.kinds.cam.verification import curvature_slack, roller_checks, size_checks
+from synthesis.kinds.cam.verification import NOT_LAID_ON, curvature_slack, roller_checks, size_checks
 from synthesis.model.answer import Check, Verification
 
 Real = NDArray[np.float64]
@@ -29,18 +29,21 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MeasuredBarrel:
-    """What the finished groove does: greatest pressure angles (degrees), least radius of its pitch curve.
+    """What the finished groove does: greatest pressure angles (degrees), least radius of its pitch curve, its length.
 
     ``off`` is the greatest deviation of either wall from the program, from each angle of the table to the next, as a
     share of the lift; NaN where the roller touches nothing. ``unsettled`` says, by how many times what is allowed, how
-    far the curvature from each angle to the next depends on how close points stand, where it may be the greatest.
+    far the curvature from each angle to the next depends on how close points stand, where it may be the greatest;
+    ``unsteady`` the same of the pressure angle.
     """
 
     rising: float
     falling: float
     least_radius: float
+    length: float
     off: Real
     unsettled: Real
+    unsteady: Real
 
 
 def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[Verification, MeasuredBarrel | None]:
@@ -55,7 +58,7 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         )
         touches = lower.follow(radius * demanded.angle, roller, 1), upper.follow(radius * demanded.angle, roller, -1)
     except (DimensionError, ShapeError):
-        return Verification.of([Check(name="follower_can_be_laid_on", passed=False)]), None
+        return Verification.of([NOT_LAID_ON]), None
     off = [demanded.deviation(touch.y) for touch in touches]
     touched = [bool(np.isfinite(touch.y).all()) for touch in touches]
     checks = [
@@ -64,13 +67,22 @@ def verify_barrel(problem: CamProblem, mechanism: BarrelCamMechanism) -> tuple[V
         demanded.check("upper_wall_reproduces_program", off[1], touched[1]),
         Check(name="no_cusp", passed=not (lower.cusped or upper.cusped)),
     ]
-    walls = worst_of_wall(lower, stretches), worst_of_wall(upper, stretches)
+    try:
+        walls = worst_of_wall(lower, roller, 1, stretches), worst_of_wall(upper, roller, -1, stretches)
+    except DimensionError:
+        return Verification.of([*checks, NOT_LAID_ON]), None
     rising, falling = (math.degrees(max(getattr(wall, name) for wall in walls)) for name in ("rising", "falling"))
-    unsettled = np.maximum(walls[0].unsettled, walls[1].unsettled)
-    measured = MeasuredBarrel(rising, falling, _pitch_radius(*walls, roller), np.maximum(*off), unsettled)
+    unsettled, unsteady = (
+        np.maximum(getattr(walls[0], name), getattr(walls[1], name)) for name in ("unsettled", "unsteady")
+    )
+    length = walls[1].highest - walls[0].lowest
+    measured = MeasuredBarrel(
+        rising, falling, _pitch_radius(*walls, roller), length, np.maximum(*off), unsettled, unsteady
+    )
     if all(touched):
-        checks += rate_checks(problem, _measure(lower, radius, roller), demanded.lift, demanded.tolerance)
-        slack = curvature_slack(unsettled)
+        worst = float(measured.off.max())
+        checks += rate_checks(problem, _measure(lower, radius, roller), demanded.lift, demanded.tolerance, worst)
+        slack = curvature_slack(unsettled, max(wall.rounded for wall in walls))
         checks += roller_checks(problem.limits, rising, falling, measured.least_radius / roller, slack)
         checks += size_checks(problem.limits, radius, radius)
     return Verification.of(checks), measured

@@ -160,8 +160,7 @@ def criterion(problem: CamProblem, program: Program) -> float:
     if name == "peak_contact_force":
         load, speed = follower_load(problem)
         force = extremes(lambda at: load.force(program.pieces.motion(at), speed), program.breaks)
-        lowest = _floor(problem) - force.least if _preload(problem) is None else 0.0
-        return force.greatest + lowest
+        return force.greatest + _added_preload(problem, force.least)
     if kind == "peak":
         if of == "torque":
             return extremes(lambda at: _product(program.pieces.motion(at)), program.breaks).largest
@@ -217,6 +216,11 @@ def _floor(problem: CamProblem) -> float:
 def _preload(problem: CamProblem) -> float | None:
     assert problem.dynamics is not None
     return None if problem.dynamics.preload is None else problem.dynamics.preload * arm_length(problem)
+
+
+def _added_preload(problem: CamProblem, least: float) -> float:
+    """What a free preload adds to a force that is ``least`` somewhere; a spring pushes, and takes nothing away."""
+    return max(_floor(problem) - least, 0.0) if _preload(problem) is None else 0.0
 
 
 def _product(motion: Motion) -> np.ndarray:
@@ -330,7 +334,8 @@ def _joined_cost(problem: CamProblem, cost: float, segment: Segment) -> float:
         return max(cost, _need(problem, motion))
     if name == "peak_contact_force":
         load, speed = follower_load(problem)
-        return max(cost, float(np.ptp(load.force(motion, speed))))
+        force = load.force(motion, speed)
+        return max(cost, float(force.max()) + _added_preload(problem, float(force.min())))
     if of == "torque":
         values = np.abs(motion.v * motion.a)
         return max(cost, float(values.max())) if kind == "peak" else cost + float(np.mean(values**2)) * segment.angle
@@ -575,10 +580,8 @@ def roller_radius_range(problem: CamProblem) -> tuple[float, float] | None:
 
 def least_face_radius(problem: CamProblem) -> float:
     """Least radius of curvature of a cam under a flat face: the client's, or as little as is not an edge."""
-    heights = [height for pair in problem.program.heights() for height in pair]
-    travel = max(heights) - min(heights)
     reach = getattr(problem.follower, "pivot_distance", 1.0)
-    return max(problem.limits.min_radius, EDGE * travel * reach)
+    return max(problem.limits.min_radius, EDGE * problem.program.travel * reach)
 
 
 def least_pitch_radius(limits: CamLimits, roller_radius: float) -> float:

@@ -104,7 +104,7 @@ class CamSegment(Answer):
     displacement: tuple[Displacement, Displacement] = Field(description="At its start and its end.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk
+    peak_jerk: Jerk = Field(description="Between jumps of the acceleration, which `joints` tell.")
 
 
 class CamJump(Answer):
@@ -170,7 +170,7 @@ class CamMetrics(Answer):
     face_width: Length | None = optional("Length that the contact sweeps.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk
+    peak_jerk: Jerk | None = Field(description="Null where the acceleration jumps: the jerk has no bound there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = optional()
@@ -188,7 +188,7 @@ class BarrelMetrics(Answer):
     curvature_ratio: float = Field(description="That over the roller's radius.")
     peak_velocity: Velocity
     peak_acceleration: Acceleration
-    peak_jerk: Jerk
+    peak_jerk: Jerk | None = Field(description="Null where the acceleration jumps: the jerk has no bound there.")
     rms_acceleration: Acceleration
     peak_inertia_torque: AccelerationSquared = Field(description="Greatest |v a|: torque by unit mass at unit speed.")
     forces: CamForces | None = optional()

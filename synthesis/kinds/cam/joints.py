@@ -43,6 +43,9 @@ MIRRORED = {"eighth_power": "eighth_power_reversed", "double_harmonic": "double_
 SINGULAR = 1e-11
 """Pivot, relative to its column, below which conditions do not determine a polynomial."""
 
+SAMPLES = 32
+"""Steps of a polynomial at which its range is measured, which only scales what counts as rounding, or as an edge."""
+
 Conditions = Sequence[tuple[float, int, float]]
 """(angle in radians from the segment's start, order, value)."""
 
@@ -64,6 +67,15 @@ def polynomial_ends(angle: float, conditions: Conditions) -> tuple[State, State]
         for u in (0.0, 1.0)
     )
     return (first[0], first[1], first[2]), (last[0], last[1], last[2])
+
+
+def polynomial_range(angle: float, conditions: Conditions) -> tuple[float, float] | None:
+    """Least and greatest s of the polynomial of least degree through conditions, by samples; None as for its ends."""
+    coefficients = _coefficients(angle, conditions)
+    if coefficients is None:
+        return None
+    heights = [sum(c * (n / SAMPLES) ** k for k, c in enumerate(coefficients)) for n in range(SAMPLES + 1)]
+    return min(heights), max(heights)
 
 
 def _coefficients(angle: float, conditions: Conditions) -> list[float] | None:

@@ -44,12 +44,21 @@ PEAK_SLACK = 2e-3
 CONDITION_SLACK = {1: 1e-3, 2: 1e-2}
 """Deviation of a measured velocity or acceleration from a condition, as a share of the segment's peak."""
 
-FINE, NEAR = 2, 2
-"""Steps between the angles of a difference at a condition on the acceleration, and around it: the value that is stated
-must lie among the means there and what both sides lead to, because an acceleration may bend at its condition."""
+FINE, NEAR = 2.0, 2
+"""Steps between the angles of a difference at a condition on the acceleration, and how many halves of that around it:
+the value that is stated must lie among the means there and what both sides lead to, because an acceleration may bend at
+its condition."""
+
+FINEST = 0.25
+"""Of those steps at least, where a limit on jerk says how fast an acceleration may be left again. Without one it may be
+met for an instant, which no cam shows."""
+
+HIDDEN = 0.2
+"""Share of the slack of a condition that the profile's deviation may add to a difference: the steps are as small as
+that allows."""
 
 ONE_SIDED = (2.0, -5.0, 4.0, -1.0)
-"""Second derivative at the first of four equally spaced values, exact for a cubic."""
+"""Second derivative at the first of four equally spaced values, exact for a cubic; 12 deviations add to it at most."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +88,7 @@ class _Open:
         return float(np.abs(self.v if name == "velocity" else self.means(name)).max())
 
 
-def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: float) -> list[Check]:
+def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: float, off: float) -> list[Check]:
     """Limits, positions, conditions and bands of the automatic and optimal segments.
 
     Parameters
@@ -92,6 +101,8 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
         The program's travel, in radians for an arm.
     reproduced : float
         Share of the lift by which a displacement may be off.
+    off : float
+        Share of the lift by which the displacement is off the program somewhere.
     """
     parts = list(_open_segments(problem, measure))
     if not parts:
@@ -110,10 +121,10 @@ def rate_checks(problem: CamProblem, measure: Measure, lift: float, reproduced: 
                     dimension=Dimension(name),
                 )
             )
-    off = max(_displacement_deviation(problem, measure, part) for part in parts) / lift
-    checks.append(Check(name="meets_positions", passed=off <= reproduced, value=reported(off), limit=reproduced))
+    missed = max(_displacement_deviation(problem, measure, part) for part in parts) / lift
+    checks.append(Check(name="meets_positions", passed=missed <= reproduced, value=reported(missed), limit=reproduced))
     for order, name in ((1, "meets_velocities"), (2, "meets_accelerations")):
-        worst = [_rate_deviation(problem, measure, part, order) for part in parts]
+        worst = [_rate_deviation(problem, measure, part, order, off * lift) for part in parts]
         stated = [value for value in worst if value is not None]
         if stated:
             slack = CONDITION_SLACK[order]
@@ -151,20 +162,28 @@ def _displacement_deviation(problem: CamProblem, measure: Measure, part: _Open) 
     return off
 
 
-def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: int) -> float | None:
-    """How far a measured rate is from its conditions, as a share of the segment's peak; None without a condition."""
+def _rate_deviation(problem: CamProblem, measure: Measure, part: _Open, order: int, off: float) -> float | None:
+    """How far a measured rate is from its conditions, as a share of the segment's peak; None without a condition.
+
+    ``off`` is by how much the displacement is off the program.
+    """
     stated = [(t, x) for t, of, x in problem.program.polynomial_conditions(part.segment) if of == order]
     if not stated:
         return None
     at, value = (np.array(column) for column in zip(*stated, strict=True))
     if order == 1:
         return float(np.abs(measure(part.start + at)[1] - value).max()) / part.peak("velocity")
-    step = part.span / GRID
-    reach = FINE * (len(ONE_SIDED) - 1)
-    s = {k: measure(part.start + at + k * step)[0] for k in range(-reach, reach + 1)}
-    means = [s[k - FINE] - 2.0 * s[k] + s[k + FINE] for k in range(-NEAR, NEAR + 1)]
-    for side in (-FINE, FINE):
+    peak = part.peak("acceleration")
+    step = FINE * part.span / GRID
+    if problem.limits.jerk is not None:
+        shown = math.sqrt(sum(map(abs, ONE_SIDED)) * off / (HIDDEN * CONDITION_SLACK[2] * peak))
+        step = min(max(shown, FINEST / FINE * step), step)
+    # Half steps around the condition, whole ones to either side.
+    reach = 2 * (len(ONE_SIDED) - 1)
+    s = {k: measure(part.start + at + 0.5 * k * step)[0] for k in range(-reach, reach + 1)}
+    means = [s[k - 2] - 2.0 * s[k] + s[k + 2] for k in range(-NEAR, NEAR + 1)]
+    for side in (-2, 2):
         means.append(np.sum([weight * s[side * k] for k, weight in enumerate(ONE_SIDED)], axis=0))
-    measured = np.array(means) / (FINE * step) ** 2
-    off = np.maximum(np.maximum(measured.min(axis=0) - value, value - measured.max(axis=0)), 0.0)
-    return float(off.max()) / part.peak("acceleration")
+    measured = np.array(means) / step**2
+    missed = np.maximum(np.maximum(measured.min(axis=0) - value, value - measured.max(axis=0)), 0.0)
+    return float(missed.max()) / peak

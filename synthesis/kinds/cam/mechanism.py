@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from kinematics.cam import follower as core
 from kinematics.cam.barrel import BarrelCam
-from kinematics.cam.finished import Stretches
-from kinematics.cam.local_curves import FEWEST_STEPS
+from kinematics.cam.local_curves import FEWEST_FOR_TWO, FEWEST_STEPS
 from kinematics.cam.profile import Cam, even_angles
 from kinematics.cam.program import TURN, Program
+from kinematics.cam.settled import Stretches
 from synthesis.kinds.cam.design import (
     BarrelCamMechanism,
     BarrelFollower,
@@ -37,7 +37,10 @@ MAX_EQUAL_STEPS = 5760
 
 BESIDE_BREAK = 0.02
 """Share of an equal step by which it has to be away from a break. Of a chord much shorter than its neighbours, and of
-those into which it is divided, rounding leaves no curvature."""
+those into which it is divided, rounding leaves the curvature fewer digits."""
+
+CROWDED = 0.1
+"""Share of an equal step: between points that stand closer there is none of the equal ones, for the same reason."""
 
 MIN_CHORDS_OF_ROLLER = 5.0
 """Chords of the profile that the roller's radius spans at least, so that its contact is resolved."""
@@ -55,16 +58,13 @@ MAX_PARTS = 8
 BESIDE = 1e-7
 """Radians before a jump of the velocity at which the profile has a point of the side that ends there."""
 
-SHORTEST = 1e-4
-"""Radians of a stretch between breaks that is not divided: some micrometres, on which rounding of the points leaves no
-curvature to be measured."""
+SHORTEST = 1.5e-7
+"""Radians of a stretch between breaks that is not divided: that beside a jump of the velocity, and what is no longer.
+On longer ones what rounding does to the curvature is stated with it."""
 
 MIN_STEPS = 2 * FEWEST_STEPS
-"""Steps of the profile between two sharp bends of the motion, at least; every second point is enough for a curve."""
-
-RESOLVED = 1e-7
-"""Sagitta of two neighbouring points, as a share of their distance from the centre, from which six points give the
-curvature with a millionth of it; a stretch has half as many steps where it is less."""
+"""Steps of the profile between two sharp bends of the motion, at least; every second point is enough for a curve, so
+that there are two."""
 
 
 def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_radius: float, count: int) -> Real:
@@ -73,10 +73,11 @@ def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_ra
     A small roller asks for close points too: its radius spans five chords of the curve that it touches.
     """
     breaks = np.union1d(np.union1d(program.joints[:-1], program.bends), _just_before(program))
-    closer, step = _closer(breaks, np.append(np.union1d(program.joints[:-1], program.sharp_bends), TURN), count, curve)
+    closer, step = _closer(breaks, np.append(np.union1d(program.joints[:-1], program.sharp_bends), TURN), count)
     while True:
         even = even_angles(count)
         even = even[_nearest(even, breaks) > BESIDE_BREAK * TURN / count]
+        even = even[_gap(even, np.union1d(breaks, closer)) > CROWDED * TURN / count]
         others = np.union1d(even, _apart(closer, step, even))
         # A step beside a break would be a chord of no length.
         angle: Real = np.union1d(others[_nearest(others, breaks) > SAME_ANGLE_TOLERANCE], breaks)
@@ -86,7 +87,7 @@ def profile_angles(program: Program, curve: Callable[[Real], Complex], roller_ra
         count = min(math.ceil(count * max(chord * MIN_CHORDS_OF_ROLLER / roller_radius, CLOSER)), MAX_EQUAL_STEPS)
 
 
-def _closer(breaks: Real, sharp: Real, count: int, curve: Callable[[Real], Complex]) -> tuple[Real, Real]:
+def _closer(breaks: Real, sharp: Real, count: int) -> tuple[Real, Real]:
     """Cam angles that divide each short stretch between sharp bends, and those from a sharp bend to another one.
 
     Parameters
@@ -102,7 +103,9 @@ def _closer(breaks: Real, sharp: Real, count: int, curve: Callable[[Real], Compl
         And how far each is from the next one of its stretch.
     """
     divided = [
-        _steps(start, end, curve) for start, end in pairwise(sharp) if SHORTEST < end - start < MIN_STEPS * TURN / count
+        np.linspace(start, end, MIN_STEPS + 1)[1:-1]
+        for start, end in pairwise(sharp)
+        if SHORTEST < end - start < MIN_STEPS * TURN / count
     ]
     angle, step = _with_step(divided)
     ends = np.append(breaks, TURN)
@@ -123,16 +126,6 @@ def _with_step(divided: list[Real]) -> tuple[Real, Real]:
     return np.concatenate([np.empty(0), *divided]), np.concatenate([np.empty(0), *steps])
 
 
-def _steps(start: float, end: float, curve: Callable[[Real], Complex]) -> Real:
-    """Cam angles that divide a stretch; fewer where more would leave the curvature too few digits."""
-    steps = np.linspace(start, end, MIN_STEPS + 1)
-    points = curve(steps[1:-1])
-    chords = np.diff(points)
-    turn = np.abs(np.angle(np.conj(chords[:-1]) * chords[1:])).max()
-    shown = turn * np.abs(chords).min() > RESOLVED * np.abs(points).max()
-    return steps[1:-1] if shown else steps[2:-1:2]
-
-
 def _nearest(angle: Real, breaks: Real) -> Real:
     """How far each angle is from the nearest break, the first of which is 0."""
     before = angle - breaks[np.searchsorted(breaks, angle, side="right") - 1]
@@ -140,8 +133,16 @@ def _nearest(angle: Real, breaks: Real) -> Real:
     return np.asarray(np.minimum(before, after))
 
 
+def _gap(angle: Real, others: Real) -> Real:
+    """How far the two others are apart between which each angle lies; the first of them is 0."""
+    after = np.searchsorted(others, angle, side="right")
+    return np.asarray(np.append(others, TURN)[after] - others[after - 1])
+
+
 def _apart(angle: Real, step: Real, even: Real) -> Real:
     """Those of some angles that are not almost at one of the equal ones, which stands for them."""
+    if not len(even):
+        return angle
     around = np.clip(np.searchsorted(even, angle)[:, None] - [1, 0], 0, None) % len(even)
     return np.asarray(angle[np.abs(angle[:, None] - even[around]).min(axis=1) > 0.4 * step])
 
@@ -247,13 +248,15 @@ def stretches_of(program: ProgramTable) -> Stretches:
     breaks = np.flatnonzero(np.isin(program.angle, program.breaks))
     if not len(breaks):
         none = np.zeros(count, np.bool_)
-        return Stretches(breaks, none, none)
+        return Stretches(breaks, none, none, none)
     steps = np.append(breaks[1:], breaks[:1] + count) - breaks
     at = np.radians(program.angle)
     span = np.append(at[breaks[1:]], at[breaks[:1]] + TURN) - at[breaks]
-    crossed = steps < FEWEST_STEPS
-    blurred, narrow = (np.roll(np.repeat(some, steps), breaks[0]) for some in (crossed, crossed & (span < SHORTEST)))
-    return Stretches(breaks[~crossed | ~np.roll(crossed, 1)], blurred, narrow)
+    crossed, few = steps < FEWEST_STEPS, steps < FEWEST_FOR_TWO
+    blurred, narrow, single = (
+        np.roll(np.repeat(some, steps), breaks[0]) for some in (crossed, crossed & (span < SHORTEST), few & ~crossed)
+    )
+    return Stretches(breaks[~crossed | ~np.roll(crossed, 1)], blurred, narrow, single)
 
 
 def table_angles(program: ProgramTable) -> Real:

@@ -169,7 +169,7 @@ def best_force(
     floor : float
         Least contact force allowed.
     preload : float or None
-        None leaves it free: then it is the least that keeps the floor, and ``scalars`` holds it.
+        None leaves it free: then it is the least that keeps the floor and is not negative, and ``scalars`` holds it.
     rest : tuple of two floats or None
         Least and greatest Σ weights[i] s⁽ⁱ⁾ on the parts that are given, if there are any.
     """
@@ -187,10 +187,11 @@ def best_force(
             below = Demand(tuple(-w for w in shares), (known - floor) / unit, (0.0, *(-f for f in free)))
             block = _block(run, lift, size, steps)
             blocks.append(replace(block, demands=(*block.demands, above, below)))
-        rows, right = [], []
+        # A spring pushes: its preload is nowhere negative.
+        rows, right = [[0.0, *(-f for f in free)] for _ in free], [0.0 for _ in free]
         if rest is not None:
-            rows = [[-1.0, *free], [0.0, *(-f for f in free)]]
-            right = [-(rest[1] + known) / unit, (rest[0] + known - floor) / unit]
+            rows += [[-1.0, *free], [0.0, *(-f for f in free)]]
+            right += [-(rest[1] + known) / unit, (rest[0] + known - floor) / unit]
         box = np.array([1.0, *(1e3 * f for f in free)])
         return ConvexProgram(tuple(blocks), "scalar", rows=np.array(rows), right=np.array(right), box=box)
 
@@ -203,7 +204,7 @@ def best_force(
         if rest is not None:
             lows.append(rest[0] / unit)
             highs.append(rest[1] / unit)
-        return max(highs) + (known / unit if preload is not None else floor / unit - min(lows))
+        return max(highs) + (known / unit if preload is not None else max(floor / unit - min(lows), 0.0))
 
     return _solved(runs, program, value, unit, lift, unit, on_grid=on_grid)
 

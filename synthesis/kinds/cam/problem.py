@@ -141,7 +141,8 @@ class CamProblem(StatedProblem):
     profile_points: Annotated[Count, Field(ge=180, le=7200)] = Field(
         default=720,
         description="Points of the profile at equal cam angles; more where the motion needs them. An angle within "
-        "2 % of a step of one where a derivative of the motion jumps gives way to it.",
+        "2 % of a step of one where a derivative of the motion jumps gives way to it, and so does one between others "
+        "that are closer than a tenth of a step.",
     )
 
     @property

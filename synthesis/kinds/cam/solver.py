@@ -26,6 +26,7 @@ from synthesis.kinds.cam.barrel import solve_barrel
 from synthesis.kinds.cam.composition import (
     Composition,
     NoProgram,
+    arm_length,
     compose,
     least_face_radius,
     least_pitch_radius,
@@ -84,7 +85,7 @@ NOT_ZERO = 1e-300
 """Stands for the curvature of a straight pitch curve, which allows a roller of any radius."""
 
 MIN_BASE = 1e-3
-"""Base radius of a roller's cam at least, as a share of the lift, where the client asks for no hub."""
+"""Base radius of a cam at least, as a share of the travel, where the client asks for no hub."""
 
 
 MEASURED_SHORT = 1e-3
@@ -219,8 +220,9 @@ def _closer(angle: Real, measured: Measured, failed: set[str]) -> Real | None:
         return None
     if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
         return refined(angle, measured.off, REPRODUCED)
-    if measured.unsettled.any():
-        return refined(angle, measured.unsettled, 1.0)
+    for doubtful in (measured.unsettled, measured.unsteady):
+        if doubtful.any():
+            return refined(angle, doubtful, 1.0)
     if failed & PEAKS and not failed & {f"table_{peak[5:]}" for peak in PEAKS}:
         return refined(angle, np.full_like(angle, HALVED), 1.0)
     return None
@@ -233,7 +235,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     try:
         if rollers is None:
             return _flat_cam(problem, program)
-        least = rollers[0] + max(limits.hub_radius, MIN_BASE * program.lift)
+        least = rollers[0] + _least_base(problem, program)
         rise = math.radians(limits.pressure_angle)
         fall = math.radians(limits.falling_pressure_angle)
         roller_limits = RollerLimits(rise, fall, least_pitch_radius(limits, rollers[0]), least)
@@ -271,10 +273,21 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
         return None
 
 
+def _least_base(problem: CamProblem, program: Program) -> float:
+    """Least radius of the base circle: the hub's, or as little as leaves a cam around its centre.
+
+    The travel of an arm is that of its roller, or of a face at the pivot's distance.
+    """
+    follower = problem.follower
+    reach = arm_length(problem) if isinstance(follower, OscillatingRoller) else 1.0
+    reach = follower.pivot_distance if isinstance(follower, OscillatingFlat) else reach
+    return max(problem.limits.hub_radius, MIN_BASE * program.lift * reach)
+
+
 def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     """The smallest cam under a flat face, or the one whose radius is stated; None where no radius is sound."""
     follower, limits = problem.follower, problem.limits
-    least = max(limits.hub_radius, MIN_BASE * (program.lift if isinstance(follower, TranslatingFlat) else 0.0))
+    least = _least_base(problem, program)
     size: Size | None
     core_follower: core.Flat
     if isinstance(follower, TranslatingFlat):
@@ -302,8 +315,8 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
         return cam
     curvature = max(cam.pitch_curvature_extremes.largest, NOT_ZERO)
     allowed = 1.0 / curvature / least_pitch_radius(problem.limits, 1.0)
-    hub = max(problem.limits.hub_radius, MIN_BASE * cam.program.lift)
-    radius = max(min(largest, allowed, follower.prime_radius - hub), follower.roller_radius)
+    fits = follower.prime_radius - _least_base(problem, cam.program)
+    radius = max(min(largest, allowed, fits), follower.roller_radius)
     return replace(cam, follower=replace(follower, roller_radius=radius))
 
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synthesis.kinds.cam.joints import MIRRORED, Conditions, State, law_ends, polynomial_ends
+from synthesis.kinds.cam.joints import MIRRORED, Conditions, State, law_ends, polynomial_ends, polynomial_range
 from synthesis.kinds.cam.segments import ConstantVelocity, DisplacementBand, Dwell, Move, Polynomial, Segment
 from synthesis.model.statement import Contradiction
 
@@ -59,6 +59,21 @@ class StatedProgram:
             heights.append((at, end))
             at = end
         return heights
+
+    def _ranges(self) -> list[tuple[float, float]]:
+        """Least and greatest displacement of each segment; a polynomial may rise and fall between two equal ends."""
+        ranges = [(min(pair), max(pair)) for pair in self.heights()]
+        for k, segment in enumerate(self.segments):
+            if isinstance(segment, Polynomial):
+                conditions = self.polynomial_conditions(segment)
+                ranges[k] = polynomial_range(math.radians(segment.angle), conditions) or ranges[k]
+        return ranges
+
+    @property
+    def travel(self) -> float:
+        """From the lowest to the highest displacement, in the solver's unit."""
+        ranges = self._ranges()
+        return max(high for _, high in ranges) - min(low for low, _ in ranges)
 
     def laws(self) -> list[str]:
         """The law by which each segment runs, or what else it is.
@@ -145,8 +160,8 @@ class StatedProgram:
 
     def _travel(self) -> float:
         """The size of displacements, by which jumps are measured."""
-        heights = self.heights()
-        return max(abs(b - a) for a, b in heights) or max(abs(a) for a, _ in heights) or 1.0
+        longest = max(high - low for low, high in self._ranges())
+        return longest or max(abs(a) for a, _ in self.heights()) or 1.0
 
     def _jumps(self, joint: int, ends: Sequence[tuple[State, State] | None]) -> tuple[float, float]:
         """Steps of v and a from a segment to the next; 0 where they are rounding, or where one follows the other."""

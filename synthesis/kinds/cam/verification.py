@@ -36,8 +36,15 @@ MEASURED_SLACK = 1e-5
 """Relative slack of limits on pressure angle, curvature and width, which are measured on a curve through points and
 made worse by as much as that curve may be off."""
 
+NOT_LAID_ON = Check(name="follower_can_be_laid_on", passed=False)
+"""Of a profile that the follower cannot be laid against at all, or not where its points are said to be touched."""
+
 UNSETTLED_SLACK = 2e-3
 """The same of limits on curvature where a profile of very many short moves can have no more points."""
+
+ROUNDED_SLACK = 2e-2
+"""The same at most where the profile has spikes of a motion without a limit on its acceleration, a millionth of a turn
+long, of which rounding of the points leaves the curvature few digits."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +66,13 @@ class Measured:
     off : float64, shape (n,)
         Greatest deviation of the displacement from the program, from each of the n angles of its table to the next, as
         a share of the lift; NaN where the follower touches nothing.
+    rounded : float
+        Share of the greatest curvature by which it is made worse for the rounding of the points.
     unsettled : float64, shape (n,)
         By how many times what is allowed the curvature from each angle to the next depends on how close points stand,
         where it may be the greatest; 0 elsewhere.
+    unsteady : float, shape (n,)
+        The same of the pressure angle, or of the width of a face.
     """
 
     rising: float
@@ -72,7 +83,9 @@ class Measured:
     sweep: float
     radius: float
     off: Real
+    rounded: float
     unsettled: Real
+    unsteady: Real
 
 
 def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, Measured | None]:
@@ -97,7 +110,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         follower = core_follower(mechanism)
         contact = contour.follow(follower, demanded.angle, mechanism.rotation)
     except (DimensionError, ShapeError):
-        return Verification.of([Check(name="follower_can_be_laid_on", passed=False)]), None
+        return Verification.of([NOT_LAID_ON]), None
     touches = bool(contact.valid.all())
     off = demanded.deviation(contact.s)
     checks = [
@@ -111,7 +124,11 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         wall_checks, wall_off = _groove_checks(mechanism, contour, follower, demanded)
         checks += wall_checks
         off = np.maximum(off, wall_off)
-    found = worst(contour, follower, mechanism.rotation, stretches)
+    try:
+        found = worst(contour, follower, mechanism.rotation, stretches)
+    except DimensionError:
+        # Where points are out of the follower's reach at their own angles, the profile has no contacts to be measured.
+        return Verification.of([*checks, NOT_LAID_ON]), None
     convex = 1.0 / found.convex if found.convex > 0.0 else math.inf
     concave = 1.0 / found.concave if found.concave > 0.0 else math.inf
     roller = mechanism.follower.roller_radius or 0.0
@@ -125,7 +142,9 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         found.sweep,
         found.radius,
         off,
+        found.rounded,
         found.unsettled,
+        found.unsteady,
     )
     if touches:
 
@@ -133,7 +152,7 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
             along = contour.follow(follower, angle, mechanism.rotation)
             return along.s, along.v
 
-        checks += rate_checks(problem, measure, demanded.lift, demanded.tolerance)
+        checks += rate_checks(problem, measure, demanded.lift, demanded.tolerance, float(off.max()))
         checks += _limit_checks(problem, mechanism, measured)
     return Verification.of(checks), measured
 
@@ -160,7 +179,7 @@ def _groove_checks(
 
 def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measured) -> list[Check]:
     """The client's limits; which of them count is for the stated follower to say, not for the answer."""
-    limits, slack = problem.limits, curvature_slack(measured.unsettled)
+    limits, slack = problem.limits, curvature_slack(measured.unsettled, measured.rounded)
     if isinstance(problem.follower, TranslatingRoller | OscillatingRoller):
         checks = roller_checks(limits, measured.rising, measured.falling, measured.curvature_ratio, slack)
         size = mechanism.prime_radius or 0.0
@@ -180,9 +199,12 @@ def _limit_checks(problem: CamProblem, mechanism: CamMechanism, measured: Measur
     return [*checks, *size_checks(limits, size - (mechanism.follower.roller_radius or 0.0), size)]
 
 
-def curvature_slack(unsettled: Real) -> float:
-    """Relative slack of limits on curvature, by whether it depends on how close points stand."""
-    return UNSETTLED_SLACK if unsettled.any() else MEASURED_SLACK
+def curvature_slack(unsettled: Real, rounded: float) -> float:
+    """Relative slack of limits on curvature: whether it depends on how close points stand, and what rounding does.
+
+    Rounding may have made the curvature as much worse as is added for it.
+    """
+    return UNSETTLED_SLACK if unsettled.any() else MEASURED_SLACK + min(2.0 * rounded, ROUNDED_SLACK)
 
 
 def roller_checks(

@@ -1,0 +1,106 @@
+"""The outward normals that a follower asks for where it touches a finished cam, from the points alone.
+
+The cam angle of a point of the profile is given with it, and so the follower's path is known in the cam's frame. A
+roller that touches at a point q (in the ground's frame) has its centre on its path at a distance r from q, and a face
+lies at its distance f from its pivot C: the direction n = e^{iλ} of the normal follows from q without a derivative.
+With D = |C − q|, β the angle of q at the pivot, and σ the sense in which the arm swings outward,
+
+    translating roller    sin λ = (e − q_y)/r
+    oscillating roller    λ = arg(C − q) + σ arccos(((D − L)(D + L) + r²)/(2 D r))
+    translating face      λ = 0
+    oscillating face      λ = σ (π/2 − β − arcsin(f/D))
+    roller in a groove    sin λ = ±(q_x − R θ)/r, λ from the axis
+
+(the relations of :mod:`contact`, solved for the normal instead of the displacement). In the cam's frame, turned
+clockwise, the normal stands at θ + λ. Nothing here says that the profile really is touched there:
+:mod:`bends` holds the normals against the chords.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.follower import Follower, OscillatingFlat, TranslatingFlat, TranslatingRoller
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+Side = Literal[1, -1]
+"""1: the roller lies on a wall; −1: under it."""
+
+
+class Normals(NamedTuple):
+    """Normals at points of a profile.
+
+    Attributes
+    ----------
+    lean : float, shape (n,)
+        λ, radians; NaN where the follower cannot touch the point at its angle.
+    arm : float, shape (n,)
+        By how far a point has to move to turn its normal, length by radian: a point that is ε off has a normal that is
+        ε/arm off at most.
+    """
+
+    lean: Real
+    arm: Real
+
+
+def contact_normals(follower: Follower, points: Complex, at: Real) -> Normals:
+    """Normals at the points of a cam that turns clockwise, touched at cam angles ``at`` (radians); shapes (n,).
+
+    Raises
+    ------
+    DimensionError
+        A knife edge, which asks for no normal.
+    """
+    q = points * np.exp(-1j * at)
+    if isinstance(follower, TranslatingFlat):
+        return Normals(np.zeros(len(q)), np.full(len(q), math.inf))
+    if isinstance(follower, OscillatingFlat):
+        sense, to_pivot = follower.sense, follower.pivot_distance - q
+        distance = np.abs(to_pivot)
+        with np.errstate(invalid="ignore"):
+            beyond = np.arcsin(follower.face_offset / distance)
+        beta = np.arctan2(-sense * to_pivot.imag, to_pivot.real)
+        return Normals(sense * (0.5 * math.pi - beta - beyond), distance * np.cos(beyond))
+    radius = _rolling(follower.roller_radius)
+    if isinstance(follower, TranslatingRoller):
+        return _across((follower.offset - q.imag) / radius, radius)
+    to_pivot = follower.pivot_distance - q
+    distance = np.abs(to_pivot)
+    square = (distance - follower.arm) * (distance + follower.arm) + radius**2
+    with np.errstate(invalid="ignore"):
+        inner = np.arccos(square / (2.0 * distance * radius))
+    lean = np.angle(to_pivot) + follower.sense * inner
+    return Normals(np.angle(np.exp(1j * lean)), radius * np.sin(inner))
+
+
+def wall_normals(radius: float, roller_radius: float, side: Side, points: Complex, at: Real) -> Normals:
+    """Normals toward +y at the points of a wall of a groove, unrolled; as :func:`contact_normals`.
+
+    Parameters
+    ----------
+    radius : float
+        Of the cylinder.
+    side : {1, -1}
+        1: the roller lies on the wall; −1: under it.
+    """
+    rolling = _rolling(roller_radius)
+    return _across(side * (points.real - radius * at) / rolling, rolling)
+
+
+def _across(sine: Real, radius: float) -> Normals:
+    with np.errstate(invalid="ignore"):
+        lean = np.arcsin(sine)
+    return Normals(lean, radius * np.cos(lean))
+
+
+def _rolling(radius: float) -> float:
+    if not radius > 0.0:
+        raise DimensionError("roller radius", "positive, since a knife edge asks for no normal", radius)
+    return radius
