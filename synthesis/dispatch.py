@@ -10,6 +10,7 @@ from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.front import front_of
+from synthesis.outcome.layout import all_laid_out
 from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
@@ -46,8 +47,9 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
         rest = part_of(told, SEARCH_SHARE, 1.0)
-        result = _relaxed(problem, result, relaxation(problem, kind.solve, rest, kind.verify))
+        result = _relaxed(problem, result, relaxation(problem, kind.solve, rest, kind.verify, kind.nearer))
     if isinstance(problem, LinkageProblem):
+        result = result if problem.layout is None else all_laid_out(problem.layout, result)
         designs, remark = usable_first(problem, result.designs)
         update = {"designs": designs, "summary": result.summary + remark, "front": front_of(designs)}
         result = result.model_copy(update=update)

@@ -1,11 +1,15 @@
 """What there is of a task that no design was found for: the design that breaks its demands least, and what is in reach.
 
-One constraint after another is left out and the task is solved again: what the designs then have of it is what can be
+The room that is stated is left out first, as what does not fit into it is most easily looked at. Then one constraint
+after another is left out and the task is solved again: what the designs then have of it is what can be
 reached beside all other demands. Where that gives none, all constraints are left out together. A limit that alone is
-out of reach is then approached: the task is solved with limits between what was reached and what is demanded, by
-bisection. A design that satisfies all demands although it was found without one is an answer: no demand hides what the
-task without it shows. Of gears it is the tolerance that is left out, and a dwell is made shorter. Everything else has
-its nearest miss among the designs that were driven and failed.
+out of reach is then approached: designs are looked for with limits between what was reached and what is demanded, by
+bisection; by continuation from those at hand where the kind can, and by a whole search otherwise. A design that
+satisfies all demands although it was found without one is an answer: no demand hides what the task without it shows. Of
+gears it is the tolerance that is left out, and a dwell is made shorter. Everything else has its nearest miss among the
+designs that were driven and failed.
+
+All of this may take no longer than :mod:`synthesis.outcome.allowance` says; what was found by then is told.
 """
 
 from __future__ import annotations
@@ -15,17 +19,24 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
+from synthesis.model.dimension import LENGTH
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_statement import Constraints
+from synthesis.model.linkage_statement import Constraints, Region
 from synthesis.model.statement import StatedProblem
-from synthesis.proof.constraints import constraint_checks
+from synthesis.outcome.allowance import Allowance, Metered
+from synthesis.proof.constraints import constraint_checks, within_zone
 from synthesis.proof.measures import Measures, link_lengths
+from synthesis.proof.room import judged_by_room
 
 Solve = Callable[[Any, Progress], Result[Any]]
 Verify = Callable[[Any, Any], Any]
+Continue = Callable[[Any, Sequence[Any], Progress], Sequence[Any] | None]
 
 MAX_DESIGNS = 20
-"""Designs of each relaxed task that are looked at."""
+"""Designs of each relaxed task that are looked at, those first that are likely to come nearest."""
+
+MAX_DRIVEN = 10
+"""The same of linkages with a driver, which take several times as long to find and to verify."""
 
 UNMEASURED = 1.0
 """Relative gap of a broken demand that has no measure, such as a class of linkage: as much as all of a limit."""
@@ -34,7 +45,13 @@ RANK_BY = {"min_transmission_angle": "transmission_angle", "link_length": "size"
 """How designs are ordered when a constraint is left out, so that those near to it come first; others by quality."""
 
 APPROACHES = 4
-"""Steps of the bisection: a gap is known to a sixteenth of what it was."""
+"""Steps of the bisection at most: a gap is known to a sixteenth of what it was."""
+
+KNOWN = 0.005
+"""Share of a limit, or for a zone of the task's size, to which it suffices to know what can be reached."""
+
+NEAR = 0.05
+"""A single demand broken by no more than this is the trouble: the others are not left out as well."""
 
 FEW = 2
 """Constraints up to which each is left out in turn, whatever the others do."""
@@ -46,6 +63,9 @@ REACHABLE: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
 """By the constraint: the measure whose best value beside all other demands is told."""
 
 
+DRIVER_PIVOT_REGION = "driver_pivot_region"
+"""What the zone of a driver's pivot is called among the constraints."""
+
 CONSTRAINT_OF = {
     "transmission_angle": "min_transmission_angle",
     "grashof": "grashof",
@@ -55,8 +75,12 @@ CONSTRAINT_OF = {
     "link_ratio": "max_link_ratio",
     "fixed_pivot_region": "fixed_pivot_region",
     "moving_pivot_region": "moving_pivot_region",
+    "driver_pivot_region": DRIVER_PIVOT_REGION,
 }
-"""The constraint that a check is of."""
+"""The constraint that a check is of; the zone of a driver's pivot counts as one."""
+
+DRIVER_JOINTS = "O6", "C", "D"
+"""Joints of a driver dyad, which zones of the linkage's pivots are not for."""
 
 RATIO_ERRORS = {
     "gear_train": ("ratio_error", "relative_error"),
@@ -68,15 +92,16 @@ RATIO_ERRORS = {
 
 
 class _Miss(NamedTuple):
-    """A design and the checks that it breaks."""
+    """A design, the checks that it breaks, and the size of the task, which gaps of zones are measured by."""
 
     design: Any
     broken: list[Check]
+    size: float = 1.0
 
     @property
     def distance(self) -> float:
         """Sum of the relative gaps: what misses are compared by."""
-        return math.fsum(map(_relative_gap, self.broken))
+        return math.fsum(_relative_gap(check, self.size) for check in self.broken)
 
 
 class Relaxation(NamedTuple):
@@ -86,7 +111,14 @@ class Relaxation(NamedTuple):
     nearest_miss: NearestMiss[Any] | None
 
 
-def relaxation(problem: StatedProblem, solve: Solve, progress: Progress, verify: Verify | None = None) -> Relaxation:
+def relaxation(
+    problem: StatedProblem,
+    solve: Solve,
+    progress: Progress,
+    verify: Verify | None = None,
+    nearer: Continue | None = None,
+    allowance: Allowance | None = None,
+) -> Relaxation:
     """What there is of a problem that no design was found for.
 
     Parameters
@@ -99,6 +131,11 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress, verify:
         Told how far the work is.
     verify : callable, optional
         Measures a finished mechanism against a statement of the kind, where the kind has one.
+    nearer : callable, optional
+        Designs of a statement by continuation from designs of a looser one, where the kind has one; None for
+        statements that it has none for.
+    allowance : Allowance, optional
+        What may be spent.
 
     Returns
     -------
@@ -107,15 +144,19 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress, verify:
         which is None where nothing is found without the demands either.
     """
     reachable: dict[str, float] = {}
-    sound, misses = _without_constraints(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+    purse = Allowance() if allowance is None else allowance
+    search, onward = purse.sort(solve), purse.sort(_nothing if nearer is None else nearer)
+    sound, misses = _without_room(problem, search, part_of(progress, 0.0, 0.4))
+    if not sound and not misses:
+        sound, misses = _without_constraints(problem, search, onward, part_of(progress, 0.0, 0.8), reachable)
     if sound:
         return Relaxation(sound, None)
-    misses = misses or _without_tolerance(problem, solve, part_of(progress, 0.0, 0.8), reachable)
+    misses = misses or _without_tolerance(problem, search, part_of(progress, 0.0, 0.8), reachable)
     if not misses:
-        sound, misses = _with_shorter_dwells(problem, solve, verify, part_of(progress, 0.0, 0.8), reachable)
+        sound, misses = _with_shorter_dwells(problem, search, verify, part_of(progress, 0.0, 0.8), reachable)
         if sound:
             return Relaxation(sound, None)
-    misses = misses or _failed(problem, solve, part_of(progress, 0.8, 1.0))
+    misses = misses or _failed(problem, search, part_of(progress, 0.8, 1.0))
     progress(1.0, "verified")
     if not misses:
         return Relaxation([], None)
@@ -127,8 +168,25 @@ def relaxation(problem: StatedProblem, solve: Solve, progress: Progress, verify:
     return Relaxation([], NearestMiss(design=nearest.design, gaps=gaps, reachable=Reachable(**reachable)))
 
 
+def _nothing(_problem: Any, _designs: Sequence[Any], _progress: Progress) -> None:
+    """The continuation of kinds that have none."""
+
+
+def _without_room(problem: Any, solve: Metered, progress: Progress) -> tuple[list[Any], list[_Miss]]:
+    """Designs of the task without the room that is stated: those that fit into it all the same, and the others."""
+    if getattr(problem, "space", None) is None:
+        return [], []
+    asked = problem.model_copy(update={"space": None, "include_failed": False, "max_designs": _most(problem)})
+    judged = [judged_by_room(problem, design) for design in solve(asked, progress).designs]
+    verdicts = [design for design in judged if design is not None]
+    broken = [[check for check in design.verification.checks if not check.passed] for design in verdicts]
+    sound = [design for design, lacks in zip(verdicts, broken, strict=True) if not lacks]
+    size = _size_of(problem)
+    return sound, [_Miss(design, lacks, size) for design, lacks in zip(verdicts, broken, strict=True) if lacks]
+
+
 def _without_constraints(
-    problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]
+    problem: Any, solve: Metered, nearer: Metered, progress: Progress, reachable: dict[str, float]
 ) -> tuple[list[Any], list[_Miss]]:
     """Designs of the task without one of its constraints; without all where that gives none.
 
@@ -144,34 +202,42 @@ def _without_constraints(
         free = relaxed.misses
         stated = _constraints_of(min(free, key=lambda miss: miss.distance))
     misses: list[_Miss] = []
-    exhaustive = True
+    exhaustive = searched = True
     for n, name in enumerate(stated):
+        if n and not (solve.fits and all(miss.distance > NEAR for miss in misses)):
+            break
         span = part_of(progress, n / (len(stated) + 1), (n + 1) / (len(stated) + 1))
         relaxed = _relaxed(problem, [name], solve, span)
         if relaxed.sound:
             return relaxed.sound, []
-        misses += relaxed.misses
         exhaustive &= relaxed.complete
+        continued = _approached(problem, relaxed.misses, nearer, nearer)
+        searched = searched and continued is None
+        reached = continued or []
+        if reached and not reached[0].broken:
+            return [miss.design for miss in reached], []
+        misses += [*relaxed.misses, *reached]
         if name in REACHABLE and relaxed.designs:
             measure, best = REACHABLE[name]
-            reachable[name] = best([getattr(design.metrics, measure) for design in relaxed.designs])
+            designs = [*relaxed.designs, *(miss.design for miss in reached)]
+            reachable[name] = best([getattr(design.metrics, measure) for design in designs])
     if not misses and not free and len(stated) > 1:
         relaxed = _relaxed(problem, stated, solve, progress)
         return relaxed.sound, relaxed.misses
-    single = [miss for miss in misses if len(miss.broken) == 1]
-    if single and not exhaustive:  # where all designs are known none is nearer
-        nearest = _approached(problem, min(single, key=lambda miss: miss.distance), solve)
-        if not nearest.broken:
-            return [nearest.design], []
-        (check,) = nearest.broken
-        name = CONSTRAINT_OF[check.name]
-        if name in REACHABLE and check.value is not None:
-            reachable[name] = check.value
-        misses.append(nearest)
+    if searched and not exhaustive:  # where all designs are known none is nearer
+        reached = _approached(problem, misses, lambda eased, _, told: solve(eased, told).designs, solve) or []
+        if reached and not reached[0].broken:
+            return [miss.design for miss in reached], []
+        for miss in reached:
+            name = CONSTRAINT_OF[miss.broken[0].name]
+            if name in REACHABLE:
+                measure, best = REACHABLE[name]
+                reachable[name] = best([reachable[name], getattr(miss.design.metrics, measure)])
+        misses += reached
     return [], misses or free
 
 
-def _without_tolerance(problem: Any, solve: Solve, progress: Progress, reachable: dict[str, float]) -> list[_Miss]:
+def _without_tolerance(problem: Any, solve: Metered, progress: Progress, reachable: dict[str, float]) -> list[_Miss]:
     """The most exact gears where none are within the tolerance."""
     if problem.kind not in RATIO_ERRORS or problem.tolerance is None:
         return []
@@ -191,7 +257,7 @@ def _without_tolerance(problem: Any, solve: Solve, progress: Progress, reachable
 
 
 def _with_shorter_dwells(
-    problem: Any, solve: Solve, verify: Verify | None, progress: Progress, reachable: dict[str, float]
+    problem: Any, solve: Metered, verify: Verify | None, progress: Progress, reachable: dict[str, float]
 ) -> tuple[list[Any], list[_Miss]]:
     """What rests for longest where nothing rests for as long as is demanded, approached by bisection.
 
@@ -202,8 +268,10 @@ def _with_shorter_dwells(
     reached, unreached = 0.0, problem.dwell_angle
     misses: list[_Miss] = []
     for n in range(APPROACHES):
+        if misses and not solve.fits:
+            break
         tried = 0.5 * (reached + unreached)
-        update = {"dwell_angle": tried, "include_failed": False, "max_designs": MAX_DESIGNS}
+        update = {"dwell_angle": tried, "include_failed": False, "max_designs": _most(problem)}
         span = part_of(progress, n / APPROACHES, (n + 1) / APPROACHES)
         found = solve(problem.model_copy(update=update), span).designs
         if not found:
@@ -218,9 +286,9 @@ def _with_shorter_dwells(
     return [], misses
 
 
-def _failed(problem: StatedProblem, solve: Solve, progress: Progress) -> list[_Miss]:
+def _failed(problem: StatedProblem, solve: Metered, progress: Progress) -> list[_Miss]:
     """Designs that were driven and break a check."""
-    asked = problem.model_copy(update={"include_failed": True, "max_designs": MAX_DESIGNS})
+    asked = problem.model_copy(update={"include_failed": True, "max_designs": _most(problem)})
     return [
         _Miss(design, [check for check in design.verification.checks if not check.passed])
         for design in solve(asked, progress).designs
@@ -233,11 +301,27 @@ def _stated(problem: StatedProblem) -> list[str]:
     if not isinstance(constraints, Constraints):
         return []
     plain = type(constraints)()
-    return [
+    stated = [
         name
         for name in Constraints.model_fields
         if name not in ("same_branch", "in_order") and getattr(constraints, name) != getattr(plain, name)
     ]
+    return stated if _zone_of_driver(problem) is None else [*stated, DRIVER_PIVOT_REGION]
+
+
+def _zone_of_driver(problem: Any) -> Region | None:
+    """Where the pivot of a driver is to lie, if that is stated."""
+    return problem.driver.pivot_region if _driven(problem) else None
+
+
+def _without(problem: Any, names: Sequence[str]) -> dict[str, Any]:
+    """The fields of a statement that change where these constraints are left out."""
+    plain = type(problem.constraints)()
+    left_out = {name: getattr(plain, name) for name in names if name != DRIVER_PIVOT_REGION}
+    fields: dict[str, Any] = {"constraints": problem.constraints.model_copy(update=left_out)}
+    if DRIVER_PIVOT_REGION in names:
+        fields["driver_dyad"] = problem.driver.model_copy(update={"pivot_region": None})
+    return fields
 
 
 class _Relaxed(NamedTuple):
@@ -249,12 +333,10 @@ class _Relaxed(NamedTuple):
     complete: bool
 
 
-def _relaxed(problem: Any, left_out: Sequence[str], solve: Solve, progress: Progress) -> _Relaxed:
+def _relaxed(problem: Any, left_out: Sequence[str], solve: Metered, progress: Progress) -> _Relaxed:
     """Solve the task without these constraints."""
-    plain = type(problem.constraints)()
-    constraints = problem.constraints.model_copy(update={name: getattr(plain, name) for name in left_out})
     rank_by = RANK_BY.get(left_out[0], "quality") if len(left_out) == 1 else problem.rank_by
-    update = {"constraints": constraints, "rank_by": rank_by, "include_failed": False, "max_designs": MAX_DESIGNS}
+    update = _without(problem, left_out) | {"rank_by": rank_by, "include_failed": False, "max_designs": _most(problem)}
     result = solve(problem.model_copy(update=update), progress)
     verdicts = [judged(problem, design) for design in result.designs]
     sound = [verdict.design for verdict in verdicts if verdict.design.verification.passed]
@@ -264,74 +346,121 @@ def _relaxed(problem: Any, left_out: Sequence[str], solve: Solve, progress: Prog
 def _constraints_of(miss: _Miss) -> list[str]:
     """The constraints that a design breaks, in the order in which they are declared."""
     broken = {CONSTRAINT_OF[check.name] for check in miss.broken}
-    return [name for name in Constraints.model_fields if name in broken]
+    return [name for name in (*Constraints.model_fields, DRIVER_PIVOT_REGION) if name in broken]
 
 
-def _approached(problem: Any, miss: _Miss, solve: Solve) -> _Miss:
-    """A miss of one limit, brought nearer to it as long as designs are found."""
-    (check,) = miss.broken
-    if check.value is None or check.limit is None:
-        return miss
-    reached, unreached = check.value, check.limit
-    for _ in range(APPROACHES):
-        limit = 0.5 * (reached + unreached)
-        eased = _eased(problem.constraints, check.name, limit)
-        if eased is None:
+def _approached(problem: Any, misses: Sequence[_Miss], further: Continue, spent: Metered) -> list[_Miss] | None:
+    """The nearest miss of one limit, brought nearer to it as long as designs are found and one more step fits.
+
+    Where designs are met that break nothing these are returned, best first. None where there is no such miss, or none
+    that ``further`` continues.
+    """
+    single = sorted((miss for miss in misses if len(miss.broken) == 1), key=lambda miss: miss.distance)
+    if not single or single[0].broken[0].value is None or single[0].broken[0].limit is None:
+        return None
+    check = single[0].broken[0]
+    at_hand = [miss for miss in single if miss.broken[0].name == check.name]
+    reached, unreached = float(check.value or 0.0), float(check.limit or 0.0)
+    for step in range(APPROACHES):
+        tried = 0.5 * (reached + unreached)
+        eased = _eased(problem, check.name, tried)
+        near = abs(reached - unreached) <= KNOWN * _unit(check, at_hand[0].size)
+        if eased is None or near or not spent.fits:
             break
-        update = {"constraints": eased, "include_failed": False, "max_designs": MAX_DESIGNS}
-        designs = solve(problem.model_copy(update=update), _silent).designs
-        nearer = [other for design in designs if len((other := judged(problem, design)).broken) <= 1]
+        update = eased | {"include_failed": False, "max_designs": _most(problem)}
+        found = further(problem.model_copy(update=update), [miss.design for miss in at_hand], _silent)
+        if found is None and not step:
+            return None
+        verdicts = [judged(problem, design) for design in found or ()]
+        nearer = [miss for miss in verdicts if len(miss.broken) <= 1 and miss.distance < at_hand[0].distance]
         if nearer:
-            miss = min(nearer, key=lambda other: other.distance)
-            if not miss.broken:
-                break
-            reached = miss.broken[0].value or 0.0
+            at_hand = sorted(nearer, key=lambda miss: miss.distance)
+            if not at_hand[0].broken:
+                return [miss for miss in at_hand if not miss.broken]
+            reached = at_hand[0].broken[0].value or 0.0
         else:
-            unreached = limit
-    return miss
+            unreached = tried
+    return at_hand[:1]
 
 
 def _silent(_fraction: float, _message: str) -> None:
     pass
 
 
-def _eased(constraints: Constraints, check: str, limit: float) -> Constraints | None:
-    """The constraints with another limit in place of the one that a check is of; None where it has none."""
+def _eased(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
+    """The fields of a statement that change with another limit for what a check is of; None where it has none."""
+    constraints: Constraints = problem.constraints
     lengths = constraints.link_length
+    update: dict[str, Any]
     match check:
         case "transmission_angle":
-            return constraints.model_copy(update={"min_transmission_angle": limit})
+            update = {"min_transmission_angle": limit}
         case "link_ratio":
-            return constraints.model_copy(update={"max_link_ratio": limit})
+            update = {"max_link_ratio": limit}
         case "shortest_link" if lengths is not None:
-            return constraints.model_copy(update={"link_length": lengths.model_copy(update={"min": limit})})
+            update = {"link_length": lengths.model_copy(update={"min": limit})}
         case "longest_link" if lengths is not None:
-            return constraints.model_copy(update={"link_length": lengths.model_copy(update={"max": limit})})
+            update = {"link_length": lengths.model_copy(update={"max": limit})}
         case "fixed_pivot_region" | "moving_pivot_region":
-            return constraints.model_copy(update={check: getattr(constraints, check).widened(limit)})
-    return None
+            update = {check: getattr(constraints, check).widened(limit)}
+        case "driver_pivot_region":
+            wider = problem.driver.pivot_region.widened(limit)
+            return {"driver_dyad": problem.driver.model_copy(update={"pivot_region": wider})}
+        case _:
+            return None
+    return {"constraints": constraints.model_copy(update=update)}
 
 
 def judged(problem: Any, design: Any) -> _Miss:
     """A design of a relaxed task with the checks of the constraints that were stated, measured on the answer."""
     joints, ground = design.mechanism.skeleton.joints, _ground(design)
-    fixed = [complex(*joints[name]) for name in ground]
-    moving = [complex(*place) for name, place in joints.items() if name not in (*ground, "P")]
+    apart = {"P", *(DRIVER_JOINTS if _driven(problem) else ())}
+    fixed = [complex(*joints[name]) for name in ground if name not in apart]
+    moving = [complex(*place) for name, place in joints.items() if name not in {*ground, *apart}]
     measures: dict[str, Any] = {name: getattr(design.metrics, name, None) for name in Measures._fields}
     measures["lengths"] = link_lengths(design.mechanism)
     stated = problem.constraints.model_copy(update={"same_branch": False, "in_order": False})
     judged = constraint_checks(stated, Measures(**measures), fixed, moving)
+    zone = _zone_of_driver(problem)
+    if zone is not None:
+        judged.append(within_zone("driver_pivot_region", zone, [complex(*joints["O6"])]))
     names = {check.name for check in judged}
     checks = [check for check in design.verification.checks if check.name not in names] + judged
     verified = design.model_copy(update={"verification": Verification.of(checks)})
-    return _Miss(verified, [check for check in judged if not check.passed])
+    return _Miss(verified, [check for check in judged if not check.passed], _size_of(problem))
 
 
 def _ground(design: Any) -> list[str]:
     return next(link.joints for link in design.mechanism.skeleton.links if link.name == "ground")
 
 
-def _relative_gap(check: Check) -> float:
+def _relative_gap(check: Check, size: float) -> float:
+    """A gap as a share of what it is measured by."""
     if check.value is None or check.limit is None:
         return UNMEASURED
-    return abs(check.value - check.limit) / (abs(check.limit) or 1.0)
+    return abs(check.value - check.limit) / _unit(check, size)
+
+
+def _unit(check: Check, size: float) -> float:
+    """What a gap is measured by: its limit, or the size of the task where that is zero, as for zones."""
+    return abs(check.limit or 0.0) or (size if check.dimension == LENGTH else 1.0)
+
+
+def _size_of(problem: Any) -> float:
+    """The size of a task; where it has none by itself, that of its zones. Length units."""
+    size = getattr(problem, "task_size", None)
+    if size is not None:
+        return float(size)
+    zones = problem.constraints.fixed_pivot_region, problem.constraints.moving_pivot_region
+    spans = [math.hypot(zone.x[1] - zone.x[0], zone.y[1] - zone.y[0]) for zone in zones if zone is not None]
+    return max(spans, default=0.0) or 1.0
+
+
+def _driven(problem: Any) -> bool:
+    """Whether a driver is asked for beside the linkage."""
+    return getattr(problem, "driver", None) is not None
+
+
+def _most(problem: Any) -> int:
+    """Designs of a relaxed task that are looked at."""
+    return MAX_DRIVEN if _driven(problem) else MAX_DESIGNS

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 DEFAULT_SHARE = 0.25
-"""With this the whole check ends in about half an hour on two cores. The cases left out are of the same sorts."""
+"""With this the campaign ends in a quarter of an hour on two cores. The cases left out are of the same sorts."""
 
 _share = DEFAULT_SHARE
 

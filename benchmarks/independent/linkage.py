@@ -11,6 +11,7 @@ import numpy as np
 from benchmarks.independent.comparison import Beside
 from benchmarks.independent.drive import Complex, Drive
 from benchmarks.independent.mobility import class_of
+from benchmarks.independent.room import compare_room
 from benchmarks.independent.transmission import least_angles
 
 PINS = {
@@ -119,6 +120,8 @@ def compare_linkage(beside: Beside, stated: dict[str, Any], drive: Drive, used: 
     if not drive.follow(*used.way):
         beside.unmeasured("could not be driven")
         return
+    _compare_used(beside, drive, used.way)
+    compare_room(beside, stated, drive, used.way)
     beside.same("metrics.same_branch", getattr(metrics, "same_branch", None), True)
     beside.same("metrics.visits_in_order", getattr(metrics, "visits_in_order", None), used.in_order)
     beside.check("same_branch", True)
@@ -143,6 +146,21 @@ def compare_linkage(beside: Beside, stated: dict[str, Any], drive: Drive, used: 
         far = 0.0 if used.task is None else reach / used.task
         weighed = math.sin(math.radians(found)) / ((1.0 + (far / 3.0) ** 2) * (1.0 + (ratio / 8.0) ** 2))
         beside.metric("quality", used.ease * weighed, 1.0)
+
+
+def _compare_used(beside: Beside, drive: Drive, way: tuple[float, float]) -> None:
+    """The ends of the verified motion; of a whole turn only that it is one, as it may begin anywhere."""
+    metrics = beside.design.metrics
+    (low, high), stroke, turn = sorted(way), metrics.used_stroke, metrics.used_range
+    if stroke is not None:
+        for stated, found in zip(sorted(stroke), (low, high), strict=True):
+            beside.add("metrics.used_stroke", stated, found, drive.size)
+    if turn is not None:
+        first, last = sorted(turn)
+        beside.add("metrics.used_range", last - first, math.degrees(high - low), 360.0)
+        if high - low < math.tau * (1.0 - 1e-9):
+            off = math.remainder(first - math.degrees(drive.reference + low), 360.0)
+            beside.add("metrics.used_range", first, first - off, 360.0)
 
 
 def _compare_lengths(beside: Beside, drive: Drive) -> list[float]:

@@ -10,8 +10,9 @@ from typing import Any, get_args
 
 from pydantic import BaseModel
 
-SKIPPED = ("mechanism", "placement", "verification")
-"""Fields of a design that are its dimensions, from which all is measured, and the checks, which are listed by name."""
+SKIPPED = ("mechanism", "placement", "verification", "layout")
+"""Fields of a design that are its dimensions, from which all is measured; the checks, which are listed by name; and the
+planes that it is laid out in, which :mod:`benchmarks.layout` compares with solids in motion."""
 
 NOT_MEASURED = {
     "targets.index": "a number in a list",
@@ -44,9 +45,10 @@ NOT_MEASURED = {
 
 _LINKAGE = """
 metrics.grashof metrics.barker metrics.min_transmission_angle metrics.transmission_angles metrics.full_rotation
-metrics.link_ratio metrics.reach metrics.size metrics.quality
+metrics.link_ratio metrics.reach metrics.size metrics.quality metrics.used_range
 checks.same_branch checks.visits_in_order checks.transmission_angle checks.grashof checks.full_rotation
 checks.shortest_link checks.longest_link checks.link_ratio checks.fixed_pivot_region checks.moving_pivot_region
+checks.fixed_pivot_zones checks.moving_pivot_zones checks.box checks.obstacles
 mechanism.links
 """
 """What every kind of linkage states."""
@@ -71,7 +73,7 @@ COMPARED: dict[str, frozenset[str]] = {
             _TARGETS,
             """
             metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio
-            targets.input_place targets.point_residual targets.angle_residual
+            metrics.used_stroke targets.input_place targets.point_residual targets.angle_residual
             checks.within_tolerance checks.input_side checks.output_side checks.ground_line
             checks.crank_turns checks.limits checks.driver_pivot_region
             """,
@@ -139,11 +141,12 @@ COMPARED: dict[str, frozenset[str]] = {
             """
             metrics.steering_error metrics.correct_at metrics.outer_lock metrics.arm_length metrics.arm_angle
             metrics.tie_rod metrics.turning_radius metrics.min_transmission_angle metrics.link_ratio metrics.size
-            metrics.bar_travel mechanism.links
+            metrics.bar_travel metrics.used_range metrics.used_stroke mechanism.links
             targets.input_angle targets.input_place targets.inner targets.outer targets.required targets.error
             checks.same_branch checks.visits_in_order checks.transmission_angle checks.grashof checks.shortest_link
             checks.longest_link checks.link_ratio checks.fixed_pivot_region checks.moving_pivot_region
             checks.reaches_locks checks.steers_correctly checks.steering_error
+            checks.fixed_pivot_zones checks.moving_pivot_zones checks.box checks.obstacles
             """,
         ),
         "cam": (
@@ -165,7 +168,10 @@ COMPARED: dict[str, frozenset[str]] = {
             checks.upper_wall_reproduces_program checks.peak_velocity checks.peak_acceleration checks.peak_jerk
             checks.meets_positions checks.meets_velocities checks.meets_accelerations checks.min_radius checks.convex
             checks.face_width checks.clears_pivot checks.pressure_angle checks.pressure_angle_fall
-            checks.curvature_ratio checks.hub_radius checks.size checks.contact_force
+            checks.curvature_ratio checks.hub_radius checks.size checks.contact_force checks.limit checks.passed
+            mechanism.program mechanism.conditions mechanism.profile mechanism.outer_wall mechanism.lower_wall
+            mechanism.upper_wall mechanism.pitch_curve mechanism.smallest mechanism.roller_radius
+            mechanism.best_law
             """,
         ),
     }.items()
@@ -174,10 +180,14 @@ COMPARED: dict[str, frozenset[str]] = {
 
 NEVER_STATED = {
     "path": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio "
-    "targets.input_place targets.angle_residual",
+    "metrics.used_stroke targets.input_place targets.angle_residual",
     "parallel_motion": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio "
-    "targets.input_place targets.angle_residual",
-    "function": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio",
+    "metrics.used_stroke targets.input_place targets.angle_residual",
+    "function": "metrics.input_stroke metrics.input_travel metrics.body_travel_ratio metrics.body_turn_ratio "
+    "metrics.used_stroke",
+    "dwell": "metrics.used_stroke",
+    "quick_return": "metrics.used_stroke",
+    "straight_line": "metrics.used_stroke",
     "cam": "checks.follower_can_be_laid_on",
 }
 """Fields that a kind's models have from others and never fill in; and a check of which no design is left."""

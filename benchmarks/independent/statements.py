@@ -103,6 +103,36 @@ def _sides(rng: np.random.Generator) -> Statement:
     return {"kind": "motion", "positions": poses, **demands}
 
 
+def _room(rng: np.random.Generator) -> Statement:
+    """Three positions with a zone for each pivot, a box, and a post and a beam beside the way."""
+    poses = _poses(rng, 3)
+    z = np.array([complex(pose["x"], pose["y"]) for pose in poses])
+    size = float(np.abs(z[:, None] - z).max())
+    middle, along = complex(z.mean()), complex(z[-1] - z[0]) / abs(z[-1] - z[0])
+
+    def spot(reach: float) -> list[float]:
+        place = middle + reach * size * along * 1j + 0.3 * size * complex(*rng.uniform(-1.0, 1.0, 2))
+        return [place.real, place.imag]
+
+    zone = {"circle": {"center": spot(-0.6), "radius": 0.8 * size}}
+    at = complex(*spot(2.0))
+    beam = [at + 0.3 * size * along * corner for corner in (-1 - 0.2j, 1 - 0.2j, 1 + 0.2j, -1 + 0.2j)]
+    low, high = middle - 3.0 * size * (1 + 1j), middle + 3.0 * size * (1 + 1j)
+    return {
+        "kind": "motion",
+        "positions": poses,
+        "space": {
+            "fixed_pivots": {"input": zone, "output": [zone, {"circle": {"center": spot(-1.0), "radius": size}}]},
+            "box": [[low.real, low.imag], [high.real, high.imag]],
+            "obstacles": [
+                {"circle": {"center": spot(1.4), "radius": 0.1 * size}},
+                {"polygon": [[corner.real, corner.imag] for corner in beam]},
+            ],
+            "link_width": 0.05 * size,
+        },
+    }
+
+
 def _tolerated_fit(rng: np.random.Generator) -> Statement:
     poses: list[dict[str, Any]] = _poses(rng, 6)
     for pose in poses[1:-1]:
@@ -269,6 +299,7 @@ def _parallel_path(rng: np.random.Generator) -> Statement:
 
 
 MORE: list[tuple[str, Draw]] = [
+    ("room", _room),
     ("output slides in the body", _carried(3, output_side={"dyad": "RP"})),
     (
         "output slides",

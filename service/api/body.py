@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from collections import Counter
 from typing import Any
 
 from fastapi import Request, Response
 from pydantic_core import from_json
 from starlette.requests import ClientDisconnect
 
-from service.api.errors import Refusal, malformed_json
+from service.api.errors import Refusal, invalid_request, malformed_json, pointer
 from service.api.guard import GuardedRoute, Handler
 
 MAX_VALUES = 20_000
@@ -104,6 +106,10 @@ def _parsed(body: bytes) -> Any:
         raise malformed_json(f"The body is not valid JSON: {error}.") from None
     if _has_more_values_than(parsed, MAX_VALUES):
         raise _too_many()
+    if _keys_written(body) != _keys_read(parsed):
+        twice = [(place, "This key is given twice; give it once.") for place in _given_twice(body)]
+        if twice:
+            raise invalid_request(twice)
     return parsed
 
 
@@ -119,12 +125,55 @@ def _surely_has_more_values_than(body: bytes, limit: int) -> bool:
     """
     if len(body) <= limit:
         return False
-    if b'"' in body:
-        # What is between quotes is no punctuation. Behind a backslash a quote does not end its string.
-        body = b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
+    body = _punctuation(body)
     lists = min(body.count(b"["), body.count(b"]"))
     objects = min(body.count(b"{"), body.count(b"}"))
     return body.count(b",") > limit or lists + objects > limit + 1
+
+
+def _punctuation(body: bytes) -> bytes:
+    """What is outside of strings: behind a backslash a quote does not end its string."""
+    return b"".join(body.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2])
+
+
+def _keys_written(body: bytes) -> int:
+    """How many keys a valid body has: a colon outside of strings stands behind each."""
+    return _punctuation(body).count(b":")
+
+
+def _keys_read(parsed: Any) -> int:
+    """How many keys there are; of those given twice the parser keeps the last."""
+    count = 0
+    pending = [parsed]
+    while pending:
+        value = pending.pop()
+        if isinstance(value, dict):
+            count += len(value)
+            pending.extend(value.values())
+        elif isinstance(value, list):
+            pending.extend(value)
+    return count
+
+
+class _Members(list[tuple[str, Any]]):
+    """An object of the body as it is written."""
+
+
+def _given_twice(body: bytes) -> list[str]:
+    """The places of keys that are given more than once, as JSON pointers."""
+    # Numbers are not looked at, and the standard library refuses some that are valid.
+    written = json.loads(body, object_pairs_hook=_Members, parse_int=str, parse_float=str)
+    found: list[str] = []
+    pending: list[tuple[tuple[str | int, ...], Any]] = [((), written)]
+    while pending:
+        place, value = pending.pop()
+        if isinstance(value, _Members):
+            counted = Counter(name for name, _ in value)
+            found += [pointer((*place, name)) for name, times in counted.items() if times > 1]
+            pending += [((*place, name), member) for name, member in value]
+        elif isinstance(value, list):
+            pending += [((*place, k), member) for k, member in enumerate(value)]
+    return list(dict.fromkeys(found))
 
 
 def _has_more_values_than(parsed: Any, limit: int) -> bool:

@@ -6,6 +6,7 @@ assembled ``valid`` is False and the numbers are NaN, which JSON has as null.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -17,10 +18,13 @@ from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MAX_EFFORT, cycle_of, effort
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
+from synthesis.analyses.layout import layout_of
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.mechanisms import GivenMechanism, MechanismError
-from synthesis.model.answer import Answer
+from synthesis.model.answer import Answer, optional
+from synthesis.model.layout import LayoutSizes
+from synthesis.model.linkage_answer import Layout
 from synthesis.model.stated_linkage import StatedCouplerPoint
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
@@ -72,6 +76,10 @@ class LinkageAnalysisRequest(AnalysisRequest):
     points: dict[Annotated[str, Field(min_length=1, max_length=50)], LinkPoint] = Field(
         default={}, max_length=20, description="Further points, by names of the client's; `points` has their motion."
     )
+    layout: LayoutSizes | None = Field(
+        default=None,
+        description="Lay the mechanism out in the fewest planes in which it can be built; over the motion, as used.",
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
@@ -105,10 +113,16 @@ class LinkageAnalysisRequest(AnalysisRequest):
         topics = [topic for topic in self.include if topic != "branches"]
         points = {name: (point.link, point.vector) for name, point in self.points.items()}
         more = fourbar_analysis(mechanism, np.radians(at), topics) if topics else None
+        planes = {}
+        if self.layout is not None:
+            ends = float(at.min()), float(at.max())
+            used = ends if slide else (math.radians(ends[0]), math.radians(ends[1]))
+            planes["layout"] = layout_of(mechanism, self.layout, used).model_dump()
         return {
             "time": None if time is None else time.tolist(),
             **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include, points=points),
             "fourbar": more,
+            **planes,
         }
 
     @classmethod
@@ -216,6 +230,7 @@ class LinkageAnalysis(Answer):
     )
     notes: list[str] = Field(description="What is left out, by the name of the field, and why.")
     fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
+    layout: Layout | None = optional("The planes in which it can be built, if the request states a `layout`.")
 
 
 FAMILY = Family(LinkageAnalysisRequest, LinkageAnalysis)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -53,6 +53,9 @@ class Kind(Generic[P, R]):
     verify : callable, optional
         Measures a finished mechanism against a statement: the design, or None where it cannot be driven. It tells how
         far the answers to a statement that asks for less are from the one that was asked.
+    nearer : callable, optional
+        Designs of a statement by continuation from designs of a looser one, in a fraction of the time of a search: how
+        a limit out of reach is approached. None for statements that it has none for; those are searched.
     brief : callable, optional
         Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
         searches that take long; where it is left out none is brief.
@@ -64,6 +67,7 @@ class Kind(Generic[P, R]):
     solve: Callable[[P, Progress], R]
     warm_up: Callable[[], None] | None = None
     verify: Callable[[P, Any], Any] | None = None
+    nearer: Callable[[P, Sequence[Any], Progress], Sequence[Any] | None] | None = None
     brief: Callable[[P], bool] = never
 
     @property

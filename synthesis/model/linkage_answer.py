@@ -243,7 +243,19 @@ class Target(DrivenTo):
     )
 
 
-class MotionMetrics(Answer):
+class UsedRange(Answer):
+    """The motion that a linkage was verified along, by its input."""
+
+    used_range: tuple[Angle, Angle] | None = optional(
+        "First and last input of the verified motion, absolute, degrees, continuous; left out where the input slides, "
+        "and where no motion leads through the targets."
+    )
+    used_stroke: tuple[Length, Length] | None = optional(
+        "The same of an input that slides: places along its line, length units; left out where it turns."
+    )
+
+
+class MotionMetrics(UsedRange):
     """What is measured of every driven linkage (:class:`synthesis.proof.measures.Measures`), whatever it is for.
 
     Angles are those of the motion that the design was verified along: from the first target to the last, or the whole
@@ -297,6 +309,50 @@ class LinkageMetrics(MotionMetrics):
     )
 
 
+class LayoutClash(Answer):
+    """Two parts that meet in the planes of a layout, and where they come nearest."""
+
+    parts: tuple[str, str] = Field(description="Links and gears by their names, a pin as `pin O2`, by its joint.")
+    distance: Length = Field(description="Of the two, there; less than 0 where they overlap.")
+    input_angle: Angle | None = optional("Degrees; left out where the input slides.")
+    input_place: Length | None = optional("Of an input that slides, length units.")
+
+
+class Layout(Answer):
+    """A linkage laid out in planes (docs/layout.md)."""
+
+    buildable: bool = Field(description="Whether nothing clashes over the whole motion.")
+    planes: dict[str, int] = Field(
+        description="Of each link and gear, from 1; the base is plane 0. Where not all of the motion is free, for the "
+        "free part of it."
+    )
+    count: int = Field(description="The number of planes.")
+    least: bool = Field(description="Whether it is proved that there is no way with fewer.")
+    height: Length = Field(description="Of all planes, each with a gap below it.")
+    pins: dict[str, tuple[int, int]] = Field(
+        description="The lowest and the highest plane that each pin joins, by its joint; 0 is the base, and one more "
+        "than there are planes the second base."
+    )
+    stub_shafts: list[str] = Field(
+        description="Joints at which a shaft cannot pass all planes, because a link meets it."
+    )
+    crossings: list[tuple[str, str]] = Field(
+        description="Links and gears that cross in the motion, and those that pass over pins, as far as no pin joins "
+        "them."
+    )
+    clashes: list[LayoutClash] = Field(description="What these planes do not keep apart; empty where it is buildable.")
+    free_range: tuple[Angle, Angle] | None = optional(
+        "Inputs, degrees, between which nothing clashes, the longest such range: all of the motion where it is "
+        "buildable. Left out where there is none, and where the input slides."
+    )
+    free_stroke: tuple[Length, Length] | None = optional("The same of an input that slides, places along its line.")
+    remark: str | None = optional("Why there is no layout.")
+
+
+LAYOUT = optional("The planes in which it can be built; left out where the problem states no `layout`.")
+"""The same field of every design."""
+
+
 class LinkageDesign(Answer):
     """A mechanism with the proof of what it does."""
 
@@ -304,6 +360,7 @@ class LinkageDesign(Answer):
     targets: list[Target]
     verification: Verification
     metrics: LinkageMetrics
+    layout: Layout | None = LAYOUT
 
 
 class Front(Answer):

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from typing import Annotated, Literal, Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.layout import StatedLayout
+from synthesis.model.space import Space
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -19,9 +22,7 @@ from synthesis.model.statement import (
     StatedProblem,
     Statement,
 )
-
-ON_EDGE = 1e-9
-"""Points this share of a region's size outside it count as inside: they were meant to lie on its edge."""
+from synthesis.model.zones import ON_EDGE, MovingZone
 
 
 class Region(Statement):
@@ -32,10 +33,30 @@ class Region(Statement):
 
     def contains(self, point: complex) -> bool:
         """Whether a point lies in the region, its edges (to rounding) included."""
+        return bool(self.contains_each(np.asarray(point)))
+
+    def contains_each(self, points: NDArray[np.complex128]) -> NDArray[np.bool_]:
+        """The same of points of any shape."""
         (left, right), (low, high) = self.x, self.y
         slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
-        across = left - slack <= point.real <= right + slack
-        return across and low - slack <= point.imag <= high + slack
+        across = (left - slack <= points.real) & (points.real <= right + slack)
+        return np.asarray(across & (low - slack <= points.imag) & (points.imag <= high + slack))
+
+    def distance_each(self, points: NDArray[np.complex128]) -> NDArray[np.float64]:
+        """How far points of any shape lie outside; 0 within."""
+        (left, right), (low, high) = self.x, self.y
+        across = np.maximum(np.maximum(left - points.real, points.real - right), 0.0)
+        along = np.maximum(np.maximum(low - points.imag, points.imag - high), 0.0)
+        return np.where(self.contains_each(points), 0.0, np.hypot(across, along))
+
+    def sampled(self, rng: np.random.Generator, count: int) -> NDArray[np.complex128]:
+        """Points spread evenly over the region, shape (count,)."""
+        return np.asarray(rng.uniform(*self.x, count) + 1j * rng.uniform(*self.y, count))
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The region itself: x from, to, y from, to."""
+        return *self.x, *self.y
 
     def widened(self, margin: float) -> Self:
         """The region with a margin on all sides, in length units."""
@@ -44,9 +65,7 @@ class Region(Statement):
 
     def distance(self, point: complex) -> float:
         """How far a point lies outside the region; 0 within."""
-        (left, right), (low, high) = self.x, self.y
-        across = max(left - point.real, 0.0, point.real - right)
-        return 0.0 if self.contains(point) else math.hypot(across, max(low - point.imag, 0.0, point.imag - high))
+        return float(self.distance_each(np.asarray(point)))
 
 
 class LengthLimits(Statement):
@@ -97,7 +116,30 @@ class LinkageProblem(StatedProblem):
     """Fields that all linkage problems share."""
 
     constraints: Constraints = Constraints()
+    layout: StatedLayout | None = Field(
+        default=None, description="Lay each design out in the fewest planes in which it can be built."
+    )
+    space: Space | None = Field(default=None, description="The room that the linkage must fit into, with its motion.")
     rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "quality"
+
+    @property
+    def first_pose(self) -> tuple[complex, float] | None:
+        """Where a body that is carried is first: its point P, and its angle in degrees. None where none is."""
+        return None
+
+    def contradicting_demands(self) -> list[Contradiction]:
+        """Demands that exclude one another, or that no linkage for the task can be asked for."""
+        listed = self.constraints.contradictions()
+        if self.space is None or self.first_pose is not None:
+            return listed
+        if self.space.body is not None:
+            listed.append(Contradiction("/space/body", "only a body that is carried through positions has an outline"))
+        for side in ("input", "output"):
+            zones = getattr(self.space.moving_pivots, side, None)
+            if any(zone.frame == "body" for zone in ([zones] if isinstance(zones, MovingZone) else zones or [])):
+                detail = "only a body that is carried through positions has places of its own; leave the frame out"
+                listed.append(Contradiction(f"/space/moving_pivots/{side}", detail))
+        return listed
 
     @property
     def error_measure(self) -> str | None:

@@ -10,7 +10,8 @@ from typing import Any, Protocol, Self, TypeVar
 import numpy as np
 
 from synthesis.model.linkage_answer import Skeleton
-from synthesis.model.linkage_statement import ON_EDGE, Constraints, Region
+from synthesis.model.linkage_statement import Constraints, Region
+from synthesis.model.zones import ON_EDGE
 from synthesis.numerics.placing import Boxes, Placing, placed
 
 

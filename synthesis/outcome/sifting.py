@@ -13,6 +13,8 @@ from typing import Generic, Protocol, TypeVar
 from synthesis.model.answer import Search, Verification
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
+from synthesis.outcome.layout import held_to_planes
+from synthesis.proof.room import judged_by_room
 
 DEFECTS = {
     "reaches_targets": "residual",
@@ -134,6 +136,11 @@ class Sifting(Generic[Design]):
         if isinstance(verdict, str):
             return verdict
         if verdict.verification.passed:
+            judged = judged_by_room(self.stated, verdict)
+            if judged is None:
+                return self._undriven
+            verdict = held_to_planes(self.stated, judged)
+        if verdict.verification.passed:
             self.passed.append(verdict)
             return ""
         self.failed.append(verdict)
@@ -181,8 +188,12 @@ class Sifting(Generic[Design]):
         """
         shown = ordered(self.passed)
         if self.stated.include_failed:
-            shown = [*shown, *ordered(self.failed)]
+            shown = [*shown, *ordered(list(map(self._in_full, self.failed)))]
         return (different(shown) if different else shown)[: self.stated.max_designs]
+
+    def _in_full(self, failed: Design) -> Design:
+        """A design that broke a check of its own, with what it has of the demands that are judged after these."""
+        return judged_by_room(self.stated, failed) or failed
 
     def search(self, method: str, *, complete: bool = False) -> Search:
         """The account in the answer."""

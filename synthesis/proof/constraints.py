@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from synthesis.model.answer import Check
 from synthesis.model.dimension import ANGLE, LENGTH
-from synthesis.model.linkage_statement import Constraints
+from synthesis.model.linkage_statement import Constraints, Region
 from synthesis.proof.checks import at_least, at_most
 from synthesis.proof.measures import Measures
 
@@ -58,6 +58,11 @@ def constraint_checks(
         ("moving_pivot_region", constraints.moving_pivot_region, moving_pivots),
     ):
         if region is not None:
-            outside = max(map(region.distance, pivots))
-            checks.append(Check(name=name, passed=outside == 0.0, value=outside, limit=0.0, dimension=LENGTH))
+            checks.append(within_zone(name, region, pivots))
     return checks
+
+
+def within_zone(name: str, region: Region, pivots: Sequence[complex]) -> Check:
+    """The check that pivots lie in a zone; its value is the distance of the farthest from it, in length units."""
+    outside = max(map(region.distance, pivots))
+    return Check(name=name, passed=outside == 0.0, value=outside, limit=0.0, dimension=LENGTH)

@@ -80,6 +80,9 @@ class Measures(NamedTuple):
         Diagonal of the box around all joints: at the targets, or over the motion of a kind that has none.
     quality : float
         Between 0 and 1.
+    used_range, used_stroke : (float, float) or None
+        First and last input of the motion that is measured: absolute, degrees; or places along the line of an input
+        that slides, length units. None for the other kind of input, and where no motion leads through the targets.
     lengths : list of float
         Of the links; no field of an answer.
     """
@@ -95,6 +98,8 @@ class Measures(NamedTuple):
     reach: float | None
     size: float
     quality: float
+    used_range: tuple[float, float] | None
+    used_stroke: tuple[float, float] | None
     lengths: list[float]
 
     def within(self, metrics: type[BaseModel]) -> dict[str, Any]:
@@ -113,6 +118,8 @@ def measured(
     same_branch: bool,
     visits_in_order: bool,
     full_rotation: bool,
+    used: tuple[float, float] | None,
+    slides: bool = False,
     eased: float = 1.0,
 ) -> Measures:
     """The measures of a driven linkage.
@@ -131,6 +138,11 @@ def measured(
         Where the joints stand: at the targets, or along the motion of a kind that has none.
     barker, same_branch, visits_in_order, full_rotation
         As in :class:`Measures`.
+    used : (float, float) or None
+        First and last input of the motion along which all this was measured, radians or length units; None where no
+        motion leads through the targets.
+    slides : bool
+        Whether the input slides.
     eased : float
         Factor of the quality, for a linkage that carries a body: see :func:`synthesis.proof.carried.ease`.
     """
@@ -148,6 +160,8 @@ def measured(
         reach=reach / task if math.isfinite(task) else None,
         size=diagonal(places),
         quality=eased * quality(math.sin(least), reach / task, ratio),
+        used_range=None if used is None or slides else (math.degrees(used[0]), math.degrees(used[1])),
+        used_stroke=used if slides else None,
         lengths=lengths,
     )
 

@@ -15,6 +15,8 @@ from service.jobs.database import connect, upgrade
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import GATED, INSTANT
 
+pytestmark = pytest.mark.slow
+
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 ORIGIN = "https://studio.example"
 QUEUE = 20

@@ -42,6 +42,7 @@ def designed(name):
     return solve(problem, lambda fraction, message: None).designs[0], problem
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(STATED, ("groove", "motion", "gear train")))
 def test_a_cycle_in_bounded_frames(name):
     design, problem = designed(name)

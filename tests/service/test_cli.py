@@ -8,6 +8,8 @@ import pytest
 
 from tests.service.running import REAL, environment
 
+pytestmark = pytest.mark.slow
+
 
 def mechsynth(folder, *arguments, program=REAL, **settings):
     return subprocess.run(

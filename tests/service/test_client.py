@@ -15,6 +15,8 @@ from synthesis.registry import KINDS, example
 from tests.service.running import PROBLEM, REAL, SCRIPTED, RunningServer, environment, until
 from tests.service.scripted_server import BROKEN, GATED, INSTANT, NATIVE, STEPS
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def real(server):

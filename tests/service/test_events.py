@@ -20,6 +20,8 @@ from service.jobs.store import JobStore
 from tests.service.running import SCRIPTED, SOON_S, RunningServer, until
 from tests.service.scripted_server import GATED, INSTANT, NATIVE, STEPS
 
+pytestmark = pytest.mark.slow
+
 NOWHERE = "01K6WM2B7Q3W9Z0V5N8XJ4R1TD"
 
 

@@ -132,6 +132,7 @@ def test_dxf_is_sound_and_true(task: tuple[Any, Any]) -> None:
     assert {f"z={gear.gear.teeth}" for gear in layout.gears} <= named
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["gearbox", "layshaft_gearbox"])
 def test_files_of_gearboxes_through_http(client: Any, kind: str) -> None:
     job = client.post("/v1/jobs", json={"problem": example(kind)}, headers={"Prefer": "wait=30"})

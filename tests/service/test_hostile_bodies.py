@@ -225,8 +225,27 @@ def test_a_compressed_body(client):
     assert refused(client, b"\x1f\x8b", **{"Content-Encoding": "gzip"})[0] == 415
 
 
-def test_the_last_of_equal_names_counts(client):
-    text = json.dumps({"problem": PROBLEM, "label": "first"})[:-1] + ', "label": "last"}'
-    answer = client.post("/v1/jobs", content=text, headers={"Content-Type": "application/json; charset=utf-8"})
-    assert answer.status_code == 202
-    assert answer.json()["label"] == "last"
+GIVEN_TWICE = {
+    "of a position": (with_x('1, "x": 2'), "/problem/positions/0/x"),
+    "with an equal value": (with_x('1, "x": 1'), "/problem/positions/0/x"),
+    "written otherwise": (with_x('1, "\\u0078": 2'), "/problem/positions/0/x"),
+    "at the top": (b'{"problem": {"kind": "motion"}, "label": "a:b", "label": "c"}', "/label"),
+    "an object": (b'{"problem": {"a/b": {"c": 1}, "a/b": {"c": 1}}}', "/problem/a~1b"),
+    "in a member that is lost": (b'{"label": {"a": 1, "a": 2}, "label": "\\":"}', "/label/a"),
+}
+
+
+@pytest.mark.parametrize("route", ["/v1/jobs", "/v1/analyses"])
+@pytest.mark.parametrize("name", GIVEN_TWICE)
+def test_a_key_that_is_given_twice_is_refused_where_it_stands(client, name, route):
+    body, path = GIVEN_TWICE[name]
+    answer = client.post(route, content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 422
+    twice = {error["path"] for error in answer.json()["errors"] if "twice" in error["detail"]}
+    assert path in twice
+
+
+def test_equal_keys_of_different_objects_and_colons_in_strings_are_none(client):
+    body = json.dumps({"problem": PROBLEM, "label": 'a "b": {"c": 1, "c": 2} \\'}).encode()
+    answer = client.post("/v1/jobs", content=body, headers={"Content-Type": "application/json"})
+    assert answer.status_code in (200, 202), answer.text

@@ -10,6 +10,8 @@ from service.api.schemas import Job, JobList
 from tests.service.running import PROBLEM
 from tests.service.scripted_server import GATED
 
+pytestmark = pytest.mark.slow
+
 # Everything is chosen, so that there is one design and nothing to search.
 SOLVED = {
     **PROBLEM,

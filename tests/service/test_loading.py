@@ -20,6 +20,7 @@ def drawn() -> None:
     assert render.exported(design, problem, "", "svg")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("work", [drawn, analyst.warm_up], ids=["drawing", "analyst"])
 def test_who_imports_waits_for_another_import(work) -> None:
     work()

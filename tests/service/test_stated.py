@@ -122,6 +122,7 @@ QUICK = {name: kind.examples[name == "path"] for name, kind in KINDS.items()}
 """A problem of each kind that takes no long search."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [STOCK, *QUICK.values()], ids=["stock", *QUICK])
 def test_the_problem_of_a_job_posted_again_has_the_same_answer(server: Any, client: Any, problem: Any) -> None:
     job = finished(client, problem)

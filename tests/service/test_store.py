@@ -368,7 +368,7 @@ def test_who_does_not_know_whether_it_has_been_given_a_job_may_ask(store, job):
 def test_an_executor_does_nothing_to_an_attempt_of_another(engine, store, leases, job, name):
     claim(store, job.id, "first")
     overdue(engine, job.id)
-    assert leases.abandoned() == [(job.id, Status.QUEUED)]
+    assert leases.take_back(leases.expired()) == [(job.id, Status.QUEUED)]
     claim(store, job.id, "second")
     before = store.get(job.id)
     late = {
@@ -384,12 +384,12 @@ def test_only_abandoned_jobs_are_taken_back(engine, store, leases):
     ids = [store.create(tenant="", kind="motion", label=None, problem="{}").id for _ in range(4)]
     for job_id in ids[:3]:
         claim(store, job_id, f"claim of {job_id[-4:]}")
-    assert leases.abandoned() == []
+    assert leases.take_back(leases.expired()) == []
     overdue(engine, *ids)
     store.succeed(ids[0], 1, "{}")
     assert leases.renew({f"claim of {ids[1][-4:]}": ids[1]}) == set()
-    assert leases.abandoned() == [(ids[2], Status.QUEUED)]
-    assert leases.abandoned() == []
+    assert leases.take_back(leases.expired()) == [(ids[2], Status.QUEUED)]
+    assert leases.take_back(leases.expired()) == []
     assert [store.get(job_id).status for job_id in ids] == ["succeeded", "running", "queued", "queued"]
 
 
@@ -397,10 +397,10 @@ def test_a_job_that_takes_its_hosts_with_it_is_given_up_in_the_end(engine, store
     for kill in range(MAX_KILLS):
         claim(store, job.id, f"claim {kill}")
         overdue(engine, job.id)
-        assert leases.abandoned() == [(job.id, Status.QUEUED)]
+        assert leases.take_back(leases.expired()) == [(job.id, Status.QUEUED)]
     claim(store, job.id, "last")
     overdue(engine, job.id)
-    assert leases.abandoned() == [(job.id, Status.FAILED)]
+    assert leases.take_back(leases.expired()) == [(job.id, Status.FAILED)]
     assert "/problems/worker-died" in store.get(job.id).error
 
 

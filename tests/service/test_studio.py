@@ -22,6 +22,7 @@ def test_every_file_of_the_folder_is_served():
     assert sorted(FILES) == NAMES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_is_served_with_its_type_and_the_policy(client, name):
     answer = client.get(path_of(name))

@@ -14,6 +14,8 @@ from tests.service.running import SCRIPTED, RunningServer, until
 from tests.service.scripted_server import INSTANT
 from tests.service.test_access import client_with, made, post
 
+pytestmark = pytest.mark.slow
+
 PARENT = "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01"
 SECRET = "a-word-that-nobody-must-trace"
 

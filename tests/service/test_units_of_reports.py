@@ -28,6 +28,7 @@ MEASURING = {
     "contact_force": FORCE,
     "shortest_link": LENGTH,
     "fixed_pivot_region": LENGTH,
+    "driver_pivot_region": LENGTH,
     "moving_pivot_region": LENGTH,
     "longest_link": LENGTH,
     "swing": ANGLE,
@@ -179,6 +180,7 @@ EXAMPLES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "n"), EXAMPLES)
 def test_numbers_of_a_report_are_those_of_the_answer_with_their_units(kind, n):
     problem, result = solved(kind, n)

@@ -91,6 +91,7 @@ TAKERS = {
 """What takes a mechanism: fields of problems, parts of analyses, and the analysis of each type itself."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "number"), EXAMPLES)
 def test_every_mechanism_of_an_answer_is_taken_or_refused_in_a_sentence(kind: str, number: int) -> None:
     for mechanism in answered(kind, number):

@@ -211,6 +211,7 @@ def refusal(name: str, field: str, constraints: dict[str, Any]) -> bool:
     return bool(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "rank_by"),
     often(
@@ -252,6 +253,7 @@ def agrees(name: str, design: Any, demands: dict[str, Any]) -> None:
         assert check.value == (None if own.value is None else pytest.approx(own.value, rel=1e-9, abs=1e-9))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=[pytest.mark.campaign] if name in FAR_OFF else []) for name in CASES]
 )
@@ -274,6 +276,7 @@ def test_what_breaks_a_constraint_fails(name: str) -> None:
 CLASSES = ["crank_rocker", "double_crank", "double_rocker", "non_grashof"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "wanted"),
     often(
@@ -292,6 +295,7 @@ def test_classes_of_fourbars(name: str, wanted: str) -> None:
         assert expected or not design.verification.passed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(CASES, CASES.keys() - SLOW))
 def test_full_rotation(name: str) -> None:
     if refusal(name, "full_rotation", {"full_rotation": True}):
@@ -343,6 +347,8 @@ def test_each_constraint_has_a_check_that_fails_by_itself() -> None:
         reach=2.0,
         size=5.0,
         quality=0.5,
+        used_range=(0.0, 90.0),
+        used_stroke=None,
         lengths=[1.0, 3.0],
     )
     region = {"x": [0.0, 1.0], "y": [0.0, 1.0]}

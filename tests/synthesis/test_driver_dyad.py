@@ -236,3 +236,22 @@ def test_no_sixbar_of_many_has_a_defect() -> None:
             assert turns_through(design)
             count += 1
     assert count > 15
+
+
+@pytest.mark.parametrize("limits", [{"min_transmission_angle": 70.0}, {"max_link_ratio": 3.0}])
+def test_the_driver_is_chosen_within_the_limits(limits: dict[str, float]) -> None:
+    """A small driver that breaks a limit does not stand in the way of one that keeps it."""
+    statement = {"kind": "motion", "positions": THREE, "driver_dyad": True, "constraints": limits}
+    result = solve(parse_problem(statement))
+    assert len(result.designs) == 10
+    for design in result.designs:
+        assert design.metrics.min_transmission_angle >= limits.get("min_transmission_angle", 0.0)
+        assert design.metrics.link_ratio <= limits.get("max_link_ratio", math.inf) * (1.0 + 1e-9)
+
+
+@pytest.mark.slow
+def test_drivers_that_break_a_limit_are_shown_where_failures_are_asked_for() -> None:
+    statement = {"kind": "motion", "positions": THREE, "driver_dyad": {"link": "input"}, "include_failed": True}
+    result = solve(parse_problem(statement | {"constraints": {"max_link_ratio": 1.5}, "max_designs": 2}))
+    assert result.designs
+    assert not any(design.verification.passed for design in result.designs)

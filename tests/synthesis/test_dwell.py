@@ -108,6 +108,7 @@ TASKS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fields",
     further(TASKS, TASKS[:4]),

@@ -146,6 +146,7 @@ TWO = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [*TWO, *THREE], ids="-".join)
 def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...]) -> None:
     rng = np.random.default_rng(4)
@@ -156,9 +157,9 @@ def test_every_way_of_stating_a_dyad_finds_the_planted_one(names: tuple[str, ...
         planted = plant(rng, n, scale, offset)
         side = planted.input_side if trial % 2 else planted.output_side
         choices = DyadChoices.model_validate(side.choices(*names))
-        problem = parse_problem({"kind": "motion", "positions": planted.positions})
+        problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": side.choices(*names)})
         task = motion_task(problem)
-        cloud = side_dyads(task, problem, choices, np.random.default_rng(trial), 1)
+        cloud = side_dyads(task, problem, 0, np.random.default_rng(trial), 1)
         gaps = np.abs(cloud.dyads.fixed - task.to_task(side.fixed_pivot))
         gaps += np.abs(cloud.dyads.moving - task.to_task(side.moving_pivot))
         assert gaps.min(initial=math.inf) < 1e-7, (trial, names)
@@ -173,8 +174,8 @@ def test_directions_are_met_forwards_only() -> None:
     planted = plant(rng, 2)
     stated = planted.input_side.choices("moving", "theta")
     stated["link_angle"] += 180.0
-    problem = parse_problem({"kind": "motion", "positions": planted.positions})
-    cloud = side_dyads(motion_task(problem), problem, DyadChoices.model_validate(stated), rng, 1)
+    problem = parse_problem({"kind": "motion", "positions": planted.positions, "input_side": stated})
+    cloud = side_dyads(motion_task(problem), problem, 0, rng, 1)
     assert len(cloud.dyads.fixed) == 0
 
 

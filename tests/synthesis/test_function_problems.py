@@ -28,6 +28,8 @@ REFUSED = [
     ({"function": {"name": "sine", "exponent": 2.0, "x": [0.0, 1.0]}}, "/function/exponent"),
     ({"function": {"name": "linear", "x": [1e9 - 1e-7, 1e9]}}, "/function/x"),
     ({"function": {"name": "table", "points": [(1, 1), (3, 1), (2, 3)]}}, "/function/points/2/x"),
+    ({"function": {"name": "table"}}, "/function/points"),
+    ({"function": {"name": "table", "x": [1.0, 3.0]}}, "/function/points"),
     ({"function": {"name": "table", "points": [(1, 1), (2, 1), (3, 1)]}}, "/function/x"),
     ({"function": {"name": "table", "points": [(1, 1), (2, 2), (3, 1)], "x": [0.0, 2.0]}}, "/function/x"),
     ({"function": {"name": "linear", "x": [0.0, 1.0]}, "input_range": 360.0}, "/input_range"),

@@ -10,8 +10,12 @@ import numpy as np
 import pytest
 
 from benchmarks.independent import cam_motion
+from benchmarks.independent.cam_demands import CRITERIA, SORTS, in_units
+from benchmarks.independent.cam_demands import statements as demanding
+from benchmarks.independent.cam_laws import AT_REST, FAMILY, MIRRORED, POLYNOMIALS, law
 from benchmarks.independent.cam_measures import compare_cam
-from benchmarks.independent.cam_motion import LAWS, by_law, law
+from benchmarks.independent.cam_motion import by_law, by_polynomial, motion_at, turned
+from benchmarks.independent.cam_verdicts import Limit
 from benchmarks.independent.cams import FOLLOWERS, OPTIMIZED, cams, moves_of
 from benchmarks.independent.comparison import Measured
 from benchmarks.independent.course import Course
@@ -22,20 +26,90 @@ from benchmarks.independent.mobility import class_of
 from benchmarks.independent.statements import families
 from benchmarks.independent.transmission import least_angles
 from synthesis.dispatch import solve
+from synthesis.kinds.cam.segments import Law
 from synthesis.model.linkage_answer import Skeleton
 from synthesis.registry import parse_problem
 from tests.campaign import further, sampled
 
+WAVES = ("simple_harmonic", "cycloidal", "double_harmonic", "half_harmonic_start", "half_harmonic_end")
+LAWS = sorted({*AT_REST, *POLYNOMIALS, *FAMILY, *MIRRORED, *WAVES, "half_cycloidal_start", "half_cycloidal_end"})
 
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LAWS)
 def test_the_laws_written_out_are_motions(name: str) -> None:
-    """From nothing to one, and each derivative that of the one before."""
-    u = np.linspace(0.0, 1.0, 20_001)
-    s, v, a, j = law(name, u)
-    assert (s[0], s[-1]) == pytest.approx((0.0, 1.0), abs=1e-12)
-    assert np.gradient(s, u)[1:-1] == pytest.approx(v[1:-1], abs=1e-6)
-    assert np.gradient(v, u)[1:-1] == pytest.approx(a[1:-1], abs=1e-4)
-    assert np.gradient(a, u)[1:-1] == pytest.approx(j[1:-1], abs=2e-2)
+    """From nothing to one, without a jump, and each derivative that of the one before, between sixteenths."""
+    ends = np.arange(17.0) / 16.0
+    u = np.linspace(ends[:-1], ends[1:], 1001, axis=1)
+    s, v, a, j = law(name, u, np.broadcast_to(u.mean(axis=1, keepdims=True), u.shape))
+    assert (s[0, 0], s[-1, -1]) == pytest.approx((0.0, 1.0), abs=1e-12)
+    for values in (s, v):
+        assert values[1:, 0] == pytest.approx(values[:-1, -1], abs=1e-12)
+    step = u[0, 1] - u[0, 0]
+    for values, rate in ((s, v), (v, a), (a, j)):
+        assert np.gradient(values, step, axis=1)[:, 1:-1] == pytest.approx(rate[:, 1:-1], abs=2e-4)
+
+
+def test_all_laws_that_can_be_stated_are_written_out() -> None:
+    assert {*LAWS, "auto", "optimal"} == set(Law.__args__)
+
+
+def test_a_polynomial_is_divided_where_it_turns() -> None:
+    """u²(1 − u)² rises and falls: v = 0 and s = 1/16 in the middle."""
+    rests = [(at, order, 0.0) for at in (0.0, 1.0) for order in (0, 1)]
+    move = by_polynomial(0.0, 2.0, [*rests, (0.5, 0, 0.0625)])
+    s, v, _, _ = motion_at([move], np.array([0.6]))
+    assert (s[0], v[0]) == pytest.approx((0.3**2 * 0.7**2, 0.3 * 0.7 * 0.4))
+    assert np.abs(move.v[:, [0, -1]]).min() < 1e-12
+    names = ("at", "s", "v", "a", "j")
+    across = {name: getattr(move, name)[118:122].reshape(1, -1)[:, ::4] for name in names}
+    halves = turned(move._replace(**across))
+    assert len(halves.v) == 2
+    assert halves.v[:, 20].prod() < 0.0
+
+
+def test_a_limit_is_exceeded_by_its_sense() -> None:
+    assert Limit(30.0, 1).excess(33.0) == pytest.approx(0.1)
+    assert Limit(30.0, -1).excess(33.0) == pytest.approx(-0.1)
+    assert Limit(0.0, -1).excess(-1e-3) == math.inf
+
+
+@pytest.mark.parametrize(("unit", "size"), [("cm", 0.1), ("m", 1e-3), ("in", 1.0 / 25.4)])
+def test_a_statement_in_other_units_is_the_same_cam(unit: str, size: float) -> None:
+    """Of those drawn in millimetres: travel, limits and dimensions have another number, angles the same."""
+    drawn = [stated for _, stated in demanding(40, 5) if "length_unit" not in stated]
+    for stated in drawn:
+        here, there = parse_problem(stated), parse_problem(in_units(stated, unit))
+        swings = stated["follower"]["type"].startswith("oscillating")
+        assert there.program.travel / here.program.travel == pytest.approx(1.0 if swings else size)
+        assert there.limits.pressure_angle == here.limits.pressure_angle
+        assert there.limits.min_radius == pytest.approx(here.limits.min_radius * size)
+    assert len(drawn) > 10
+
+
+def test_every_sort_and_criterion_is_stated() -> None:
+    drawn = list(demanding(200, 1))
+    assert {name for name, _ in drawn} == {name for name, _ in SORTS}
+    assert {stated.get("minimize") for _, stated in drawn} == {*CRITERIA, None}
+    assert {stated["follower"]["type"] for _, stated in drawn} == set(FOLLOWERS)
+    for _, stated in drawn:
+        assert parse_problem(stated).contradictions() == []
+
+
+def test_a_table_leaves_out_the_bends_of_a_continuous_jerk() -> None:
+    """Of two sines every 3/4°, whose jerk bends where the acceleration is greatest: it was 3e-8 off."""
+
+    def rate(order: int, at: np.ndarray) -> np.ndarray:
+        return np.sin(at + order * math.pi / 2.0) + 0.1 * 2.0**order * np.sin(2.0 * at + 1.0 + order * math.pi / 2.0)
+
+    t = np.radians(0.75 * np.arange(480.0))
+    s, v, a, j = (rate(order, t) for order in range(4))
+    table = SimpleNamespace(angle=np.degrees(t), s=s, v=v, a=a, j=j)
+    move = cam_motion.by_table(table, t[10], math.radians(300.0), 1.0, True)
+    exact = np.abs(rate(2, np.linspace(t[10], t[410], 1_000_001))).max()
+    assert cam_motion.greatest(np.abs(move.a)) == pytest.approx(exact, rel=1e-9)
+    for order in range(4):
+        assert move.rates(order) == pytest.approx(rate(order, move.at), abs=(1e-11, 1e-10, 1e-9, 1e-6)[order])
 
 
 def test_peaks_and_means_of_pieces_are_exact() -> None:
@@ -173,9 +247,10 @@ def test_a_difference_is_seen() -> None:
 
 
 @pytest.mark.campaign
-def test_cams_of_every_follower_agree() -> None:
+@pytest.mark.parametrize("every_demand", [False, True])
+def test_cams_of_every_follower_agree(every_demand: bool) -> None:
     result = Measured()
-    assert cams(2 * len(FOLLOWERS), 7, result) == 2 * len(FOLLOWERS)
+    assert cams(2 * len(FOLLOWERS), 7, result, every_demand) >= (8 if every_demand else 10)
     assert not result.over, result.report()
     assert not result.left, result.report()
     assert len(result.differences) > 40
@@ -226,7 +301,7 @@ def test_radius_and_width_under_a_face_agree(name: str) -> None:
     stated, result = {"kind": "cam", **FACES[name]}, Measured()
     (design,) = solve(parse_problem(stated)).designs
     beside = result.beside("cam", design, name)
-    compare_cam(beside, stated, moves_of(stated, design.mechanism.program))
+    compare_cam(beside, stated, moves_of(stated, design))
     beside.finish()
     assert not result.over, result.report()
     assert result.differences["cam metrics.face_width"]
@@ -264,6 +339,7 @@ QUICKEST = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(QUICK, QUICKEST))
 def test_a_family_agrees(name: str) -> None:
     result = Measured()
@@ -299,10 +375,13 @@ SMALLER = {"min_radius", "min_convex_radius", "min_concave_radius", "curvature_r
 
 @pytest.mark.campaign
 @pytest.mark.timeout(900)
-def test_many_cams_agree() -> None:
+@pytest.mark.parametrize("every_demand", [False, True])
+def test_many_cams_agree(every_demand: bool) -> None:
     result = Measured()
-    assert cams(200, 11, result) >= 180
-    assert not [d for d in result.over if not d.name.endswith(OPTIMIZED)], result.report()
+    count = sampled(200)
+    assert cams(count, 11, result, every_demand) >= (0.8 if every_demand else 0.9) * count
+    lawful = [d for d in result.over if not d.name.endswith(OPTIMIZED)]
+    assert not [d for d in lawful if not every_demand or d.value > 3e-6], result.report()
     assert not result.left, result.report()
     # Of optimized motions, whose jerk steps at hundreds of angles, curvature and width may err to the safe side.
     for difference in result.over:

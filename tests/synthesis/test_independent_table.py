@@ -23,6 +23,7 @@ SOURCES = Path(synthesis.__file__).parent
 NAMED_ELSEWHERE = {
     "proof/checks.py": 3,  # whoever calls them gives the name
     "proof/constraints.py": 1,  # fixed_pivot_region, moving_pivot_region
+    "proof/space.py": 1,  # fixed_pivot_zones, moving_pivot_zones
     "kinds/motion/checks.py": 1,  # input_side, output_side
     "kinds/cam/reproduction.py": 1,  # the caller's
     "kinds/cam/measured_rates.py": 1,  # meets_velocities, meets_accelerations

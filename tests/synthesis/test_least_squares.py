@@ -402,3 +402,26 @@ def test_contradictions_of_positions_name_the_field() -> None:
     positions[7]["exact"] = True
     assert "/positions/7/exact" in [c.path for c in motion(positions).contradictions()]
     assert [c.path for c in motion(positions[:3], method="least_squares").contradictions()] == ["/method"]
+
+
+@pytest.mark.parametrize("tolerance", [None, {"x": 1.0, "y": 1.0, "angle": 2.0}])
+def test_a_line_of_the_body_is_stated_where_the_first_position_is_missed(tolerance: dict[str, float] | None) -> None:
+    """Seven positions of a planted inverted slider-crank, with noise, and its body's line at the first."""
+    rng = np.random.default_rng(3)
+    positions: list[dict[str, Any]] = []
+    for pin in 30.0 * np.exp(1j * (0.3 + 0.2 * np.arange(7))):
+        reach = complex(80.0, 10.0) - pin
+        angle = cmath.phase(reach) + math.asin(8.0 / abs(reach))
+        point = pin + cmath.rect(50.0, angle + 0.5)
+        off = 0.3 * rng.normal(size=3)
+        pose = {"x": point.real + off[0], "y": point.imag + off[1], "angle": math.degrees(angle) + off[2]}
+        positions.append(pose if tolerance is None else pose | {"tolerance": tolerance})
+    stated = positions[0]["angle"]
+    problem = {"kind": "motion", "positions": positions, "output_side": {"dyad": "RP", "slide_angle": stated}}
+    designs = solve(parse_problem(problem)).designs
+    assert designs
+    for design in designs:
+        mechanism = design.mechanism
+        stands = stated if mechanism.reference_body_angle is None else mechanism.reference_body_angle
+        line = mechanism.skeleton.slides[0].angle - (stands - stated)
+        assert math.remainder(line - stated, 180.0) == pytest.approx(0.0, abs=1e-5)

@@ -6,9 +6,11 @@ import pytest
 
 from synthesis import parse_problem, solve
 from synthesis.dispatch import SEARCH_SHARE
+from synthesis.outcome.allowance import Allowance
 from synthesis.registry import KINDS, examples
 from synthesis.relaxation import relaxation
 from tests.campaign import further
+from tests.synthesis.test_drawn_poses import LID, ZONES
 
 POSITIONS = [{"x": x, "y": y, "angle": a} for x, y, a in ((0.0, 0.0, 0.0), (20.0, 10.0, 25.0), (45.0, 8.0, 60.0))]
 
@@ -167,3 +169,67 @@ def test_of_a_dwell_out_of_reach_the_longest_that_was_found_is_told(angle, count
     # The miss rests for so long; state that, and there is an answer.
     assert min(rest.width for rest in miss.design.targets) >= longest
     assert solve(parse_problem({**statement, "dwell_angle": longest})).designs
+
+
+@pytest.mark.parametrize("seconds", [0.5, 3.0, 30.0])
+def test_no_search_is_begun_that_the_allowance_has_no_room_for(seconds):
+    """Searches that take so long, by a clock of the test's: the first is made, and others while one more fits."""
+    problem = parse_problem(motion(min_transmission_angle=85.0, fixed_pivot_region={"x": [20, 30], "y": [-60, -50]}))
+    spent = [0.0]
+
+    def slow(statement, progress):
+        spent[0] += seconds
+        return KINDS["motion"].solve(statement, progress)
+
+    found = relaxation(problem, slow, lambda *_: None, allowance=Allowance(4.0, lambda: spent[0]))
+    assert found.nearest_miss is not None, "the best found so far is told"
+    assert spent[0] <= max(4.0, seconds)
+    assert spent[0] + seconds > 4.0 or len(found.nearest_miss.gaps) == 1
+
+
+def test_what_comes_nearest_does_not_hang_on_the_unit_of_length():
+    zone = {"x": (20.0, 30.0), "y": (-60.0, -50.0)}
+    told = []
+    for scale in (1.0, 1e-3, 1e3):
+        positions = [{"x": scale * p["x"], "y": scale * p["y"], "angle": p["angle"]} for p in POSITIONS]
+        region = {axis: [scale * end for end in ends] for axis, ends in zone.items()}
+        constraints = {"min_transmission_angle": 85.0, "fixed_pivot_region": region}
+        result = solve(parse_problem({"kind": "motion", "positions": positions, "constraints": constraints}))
+        told.append([(gap.check, gap.value) for gap in result.nearest_miss.gaps])
+    assert [[name for name, _ in gaps] for gaps in told] == [[name for name, _ in told[0]]] * 3
+    for gaps in told[1:]:
+        for (name, value), (_, first) in zip(gaps, told[0], strict=True):
+            assert name == "transmission_angle", "the zone is more than two sizes of the task away"
+            assert value == pytest.approx(first, rel=1e-6)
+
+
+def test_zones_of_the_linkage_are_not_for_the_joints_of_its_driver():
+    """As in every answer; a gap of a zone is one of pivots that the zone is for."""
+    statement = {"kind": "motion", "positions": LID, "driver_dyad": True, "constraints": ZONES}
+    problem = parse_problem(limited(statement, min_transmission_angle=89.0))
+    miss = solve(problem).nearest_miss
+    joints = {name: complex(*place) for name, place in miss.design.mechanism.skeleton.joints.items()}
+    assert not problem.constraints.fixed_pivot_region.contains(joints["O6"])
+    outside = max(map(problem.constraints.fixed_pivot_region.distance, (joints["O2"], joints["O4"])))
+    told = {check.name: check.value for check in miss.design.verification.checks}
+    assert told["fixed_pivot_region"] == pytest.approx(outside, abs=1e-9)
+    assert [gap.check for gap in miss.gaps] == ["transmission_angle"]
+
+
+def test_a_limit_beside_tolerances_is_approached_by_continuation():
+    """No search at any step: what is at hand is steered on, far beyond what leaving the limit out met."""
+    statement = {"kind": "motion", "positions": LID, "constraints": {"fixed_pivot_region": ZONES["fixed_pivot_region"]}}
+    problem = parse_problem(limited(statement, link_length={"max": 20.0}))
+    kind = KINDS["motion"]
+    searched = []
+
+    def recorded(stated, progress):
+        searched.append(kind.solve(stated, progress))
+        return searched[-1]
+
+    found = relaxation(problem, recorded, lambda *_: None, kind.verify, kind.nearer)
+    longest = min(max(design.mechanism.links.model_dump().values()) for result in searched for design in result.designs)
+    designs = found.sound or [found.nearest_miss.design]
+    assert max(designs[0].mechanism.links.model_dump().values()) < 0.8 * longest
+    for design in found.sound:
+        assert design.verification.passed

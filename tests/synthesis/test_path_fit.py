@@ -225,6 +225,7 @@ def test_fits_move_with_the_points(scale):
     assert math.isclose(other.rms_distance, scale * one.rms_distance, rel_tol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "points",
     [

@@ -123,6 +123,7 @@ def restated(design: Any, task: float) -> float:
 SLOW = {"motion by a sixbar", "path of a slider-crank", "path of a geared fivebar", "dwell of a rocker"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", further(CASES, CASES.keys() - SLOW))
 def test_quality_is_the_documented_one(name: str) -> None:
     statement, task = CASES[name]

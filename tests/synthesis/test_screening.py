@@ -70,10 +70,7 @@ def test_verdicts_agree_with_the_analysis_core(n: int, constraints: dict[str, An
         planted = plant(rng, n, 5.0)
         problem = parse_problem({"kind": "motion", "positions": planted.positions, "constraints": constraints})
         task = motion_task(problem)
-        one, other = (
-            side_dyads(task, problem, problem.input_side, np.random.default_rng(10 * trial + k), 16).dyads
-            for k in (0, 1)
-        )
+        one, other = (side_dyads(task, problem, 0, np.random.default_rng(10 * trial + k), 16).dyads for k in (0, 1))
         screening = screen(
             task, one, other, demands(problem.constraints, task, constraints.get("min_transmission_angle", 0))
         )

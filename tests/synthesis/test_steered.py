@@ -222,7 +222,8 @@ def test_margins_are_those_of_the_driven_linkage() -> None:
     setting[DIRECTION], setting[SHORTEST], setting[COSINE] = 1.0, 1.0, 0.9
     setting[ASSEMBLY] = math.copysign(1.0, ((at.b[0] - at.a[0]).conjugate() * (at.b[0] - pivots[1])).imag)
     setting[LINKS], setting[LINKS + 1], setting[RATIO] = 0.5, 3.0, 4.0
-    setting[BOXES : BOXES + 8] = [0.0, 3.0, -1.0, 1.0, -np.inf, np.inf, -np.inf, np.inf]
+    fixed, moving = [0.0, 3.0, -1.0, 1.0], [-np.inf, np.inf, -np.inf, np.inf]
+    setting[BOXES : BOXES + 16] = [*fixed, *fixed, *moving, *moving]
     setting[GIVEN : GIVEN + 8] = setting[LINE : LINE + 3] = np.nan
     setting[HOME : HOME + 8], setting[WEIGHT_OF_HOME] = x[:8], 0.3
     count = limits(3)

@@ -123,10 +123,7 @@ def test_every_defect_by_independent_continuation() -> None:
         planted = plant(rng, 3, 10.0)
         problem = problem_of(planted)
         task = motion_task(problem)
-        sides = [
-            side_dyads(task, problem, side, np.random.default_rng(trial + 100 * k), 40).dyads
-            for k, side in enumerate((problem.input_side, problem.output_side))
-        ]
+        sides = [side_dyads(task, problem, k, np.random.default_rng(trial + 100 * k), 40).dyads for k in (0, 1)]
         designs = []
         for i in range(min(len(sides[0].fixed), len(sides[1].fixed))):
             joints = [
@@ -209,7 +206,7 @@ def test_demands_of_the_motion_can_be_dropped() -> None:
     problem = problem_of(planted)
     relaxed = problem_of(planted, constraints={"same_branch": False, "in_order": False})
     task = motion_task(problem)
-    one, other = (side_dyads(task, problem, problem.input_side, np.random.default_rng(k), 60) for k in (0, 1))
+    one, other = (side_dyads(task, problem, 0, np.random.default_rng(k), 60) for k in (0, 1))
     found = 0
     for i in range(50):
         joints = [complex(z[i]) for z in (one.dyads.fixed, one.dyads.moving, other.dyads.moving, other.dyads.fixed)]

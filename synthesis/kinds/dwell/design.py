@@ -8,7 +8,7 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
-from synthesis.model.linkage_answer import CouplerPoint, LinkageResult, MotionMetrics, Skeleton
+from synthesis.model.linkage_answer import LAYOUT, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
 
 
 class DwellMechanism(Answer):
@@ -65,6 +65,7 @@ class DwellDesign(Answer):
     targets: list[Rest]
     verification: Verification
     metrics: DwellMetrics
+    layout: Layout | None = LAYOUT
 
 
 class DwellResult(LinkageResult[DwellDesign]):

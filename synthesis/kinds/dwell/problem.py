@@ -132,7 +132,7 @@ class DwellProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Demands that exclude one another."""
-        found = list(self.constraints.contradictions())
+        found = list(self.contradicting_demands())
         if self.count * self.dwell_angle >= 360.0:
             detail = f"{self.count} dwells of {self.dwell_angle:g}° leave nothing of a turn to move in"
             found.append(Contradiction("/dwell_angle", detail))

@@ -99,6 +99,7 @@ def verify_dwell(problem: DwellProblem, design: DwellMechanism) -> DwellDesign |
         same_branch=turns,
         visits_in_order=turns,  # a turn has one order
         full_rotation=turns,
+        used=(float(inputs[0]), float(inputs[-1])),
     )
     metrics = DwellMetrics(
         way=way,

@@ -8,7 +8,14 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Verification
 from synthesis.model.dimension import Angle, Output
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageMetrics, LinkageResult, SliderCrankMechanism
+from synthesis.model.linkage_answer import (
+    LAYOUT,
+    FourbarMechanism,
+    Layout,
+    LinkageMetrics,
+    LinkageResult,
+    SliderCrankMechanism,
+)
 
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
 
@@ -104,6 +111,7 @@ class FunctionDesign(Answer):
     verification: Verification
     metrics: FunctionMetrics
     structural_error: StructuralError
+    layout: Layout | None = LAYOUT
 
 
 class FunctionResult(LinkageResult[FunctionDesign]):

@@ -121,7 +121,9 @@ class FunctionStatement(Statement):
     def faults(self) -> Iterator[Contradiction]:
         """What makes the statement no function over an interval, with paths below it."""
         yield from self._fields()
-        if self.name == "table" and self.points is not None:
+        if self.name == "table":
+            if self.points is None:
+                return
             for k, (one, other) in enumerate(zip(self.points, self.points[1:], strict=False), start=1):
                 if not other.x > one.x:
                     yield Contradiction(f"/points/{k}/x", "x must rise from row to row of a table")

@@ -273,7 +273,7 @@ class FunctionProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Faults of pairs, function and ranges, and demands that exclude one another."""
-        found = [*self._asked(), *self._zeros_and_scales(), *self.constraints.contradictions()]
+        found = [*self._asked(), *self._zeros_and_scales(), *self.contradicting_demands()]
         if self.slides:
             found += self.constraints.of_another_class((), "classifies fourbars; a slider-crank has no class")
         if self.fixed_pivots is not None and self.fixed_pivots.input == self.fixed_pivots.output:

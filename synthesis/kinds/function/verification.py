@@ -232,6 +232,7 @@ def verify_function(
         same_branch=same_branch,
         visits_in_order=in_order,
         full_rotation=drive.full,
+        used=(start, end) if same_branch else None,
     )
     degrees = 1.0 if problem.slides else 180.0 / math.pi
     metrics = FunctionMetrics(

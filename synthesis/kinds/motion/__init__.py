@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.kind import Kind, Progress
+from synthesis.model.linkage_answer import LinkageDesign
 
 __all__ = ["KIND"]
 
@@ -15,8 +18,14 @@ def _solve(problem: MotionProblem, progress: Progress) -> MotionResult:
     return solve_motion(problem, progress)
 
 
+def _nearer(problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress) -> list[LinkageDesign] | None:
+    from synthesis.kinds.motion.solver import continued
+
+    return continued(problem, designs, progress)
+
+
 def _warm_up() -> None:
-    """Load the kernels of exact positions by the first examples; the fits share theirs with those of paths."""
+    """Load the kernels of exact positions by the first examples: those jobs are short and waited for."""
     for example in KIND.examples[:4]:
         _solve(MotionProblem.model_validate(example), lambda fraction, message: None)
 
@@ -26,4 +35,4 @@ def _brief(problem: MotionProblem) -> bool:
     return not problem.approximate and problem.driver is None and problem.slider is None
 
 
-KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief)
+KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief, nearer=_nearer)

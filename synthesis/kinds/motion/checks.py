@@ -156,7 +156,7 @@ def _motion_checks(target: Demanded, driven: Driven, on_circuit: bool) -> list[C
 def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> list[Check]:
     """Whether the driven linkage keeps what the client fixed of each side: shares of the task's size, and radians.
 
-    Places on the body are compared with the body in the demanded first position, which a fit may miss a little.
+    Places and lines of the body are compared with the body in the demanded first position, which a fit may miss.
     """
     back = cmath.exp(-1j * float(driven.turns[0]))
     checks = []
@@ -168,6 +168,8 @@ def _choice_checks(problem: MotionProblem, target: Demanded, driven: Driven) -> 
             continue
         point = complex(target.points[0])
         pin = None if side.pins is None else point + back * complex(side.pins[0] - driven.points[0])
+        if side.pins is None and side.slide_angle is not None:  # a line of the body
+            side = side._replace(slide_angle=side.slide_angle - float(driven.turns[0]))
         gap = max(_gaps(choices, side, point, pin, target.size))
         checks.append(tolerated(name, gap, CHOICE_KEPT))
     if problem.ground_line is not None:

@@ -5,7 +5,7 @@ for; when some are left open, the missing ones are drawn at random, many times, 
 
 Free pivots are drawn around the body: the moving pivot about P in the first position, the fixed pivot about the middle
 of the positions, at distances spread evenly in logarithm from a small part of the task's size to some multiples of it.
-A region that the client gives is filled evenly instead, and dyads with a pivot outside it are left out.
+An area that the client gives is filled evenly instead, and dyads with a pivot outside it are left out.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.kinds.motion import burmester
+from synthesis.kinds.motion.areas import SideAreas, drawn, side_areas, within
 from synthesis.kinds.motion.draws import distances, points_around
 from synthesis.kinds.motion.dyads import (
     FAR,
@@ -35,7 +36,6 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.sections import SliderDyad, pose_rows, section
 from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
-from synthesis.model.linkage_statement import Constraints, Region
 from synthesis.model.statement import PartialPoint
 
 CURVE_REACH = 50.0
@@ -148,24 +148,26 @@ def _crossing(first: Line, second: Line) -> Complex:
     )
 
 
-def side_dyads(
-    task: MotionTask, problem: MotionProblem, choices: DyadChoices, rng: np.random.Generator, count: int
-) -> Cloud:
-    """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open."""
+def side_dyads(task: MotionTask, problem: MotionProblem, side: int, rng: np.random.Generator, count: int) -> Cloud:
+    """All dyads that one side's choices determine, or a cloud of about ``count`` where some are left open.
+
+    ``side`` is 0 for the input's and 1 for the output's.
+    """
     impossible = why_no_dyads(task)
     if impossible is not None:
         return Cloud(_NO_DYADS, False, impossible.proved, impossible.text)
-    conditions, constraints = stated_conditions(task, problem, choices), problem.constraints
+    choices, areas = (problem.input_side, problem.output_side)[side], side_areas(problem)[side]
+    conditions = stated_conditions(task, problem, choices)
     essential, conditions, lost = _without_redundant_positions(task, conditions)
     free = 5 - len(essential.points) - conditions.count()
     if conditions.linear and (free <= 0 or _pivot(conditions) is not None):
-        cloud = _of_family(essential, conditions, constraints, rng, count)
+        cloud = _of_family(essential, conditions, areas, rng, count)
     elif free <= 0:
         cloud = _of_section(essential, conditions, rng)
     elif free == 1 and len(essential.points) == 4:
-        cloud = _of_curve(essential, conditions, constraints, rng, count)
+        cloud = _of_curve(essential, conditions, areas, rng, count)
     else:
-        cloud = _of_draws(essential, conditions, constraints, rng, count)
+        cloud = _of_draws(essential, conditions, areas, rng, count)
     if len(essential.points) == len(task.points):
         return cloud
     meets = "meets all" if not lost else "meets to nine digits all"
@@ -251,7 +253,7 @@ def _of_random_sections(task: MotionTask, conditions: DyadConditions, rng: np.ra
 
 
 def _of_curve(
-    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+    task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
     """Dyads spread along Burmester's curve of four positions."""
     curve = burmester.burmester_curve(task, conditions)
@@ -259,7 +261,7 @@ def _of_curve(
         return _of_random_sections(task, conditions, rng)
     dyads = burmester.cloud(curve, curve_window(task), count, float(rng.uniform()))
     dyads = settled(task, dyads)
-    good = _in_regions(task, constraints, dyads)
+    good = _in_areas(task, areas, dyads)
     text = "No dyad of the side has its pivots within reach and in the regions that are given."
     return Cloud(Dyads(dyads.fixed[good], dyads.moving[good]), True, False, text)
 
@@ -270,17 +272,17 @@ def curve_window(task: MotionTask) -> burmester.Window:
 
 
 def _of_draws(
-    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+    task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
     """A cloud of dyads, two or more freedoms of which are drawn at random."""
     if _pivot(conditions) is not None or conditions.count() > 0:
         count = min(count, NEWTON_CLOUD)
     fixed, moving = [], []
     for _ in range(REGION_DRAWS):
-        start = _sampled_pivots(task, constraints, rng, count)
-        for pinned, share in _pinned(task, conditions, start, constraints, rng):
+        start = _sampled_pivots(task, areas, rng, count)
+        for pinned, share in _pinned(task, conditions, start, areas, rng):
             dyads, kept = solve_dyads(task, pinned, share)
-            kept &= _in_regions(task, constraints, dyads)
+            kept &= _in_areas(task, areas, dyads)
             fixed.append(dyads.fixed[kept])
             moving.append(dyads.moving[kept])
         if sum(map(len, fixed)) >= count // 2:
@@ -289,10 +291,9 @@ def _of_draws(
     return Cloud(cloud, True, False, "No dyad was met that satisfies the choices and regions of the side.")
 
 
-def _in_regions(task: MotionTask, constraints: Constraints, dyads: Dyads) -> NDArray[np.bool_]:
-    """Which dyads have both pivots in the regions for them."""
-    fixed = task.within(constraints.fixed_pivot_region, dyads.fixed)
-    return fixed & task.within(constraints.moving_pivot_region, dyads.moving)
+def _in_areas(task: MotionTask, areas: SideAreas, dyads: Dyads) -> NDArray[np.bool_]:
+    """Which dyads have both pivots in the areas for them."""
+    return np.asarray(within(task, areas.fixed, dyads.fixed) & within(task, areas.moving, dyads.moving))
 
 
 class Impossible(NamedTuple):
@@ -347,7 +348,7 @@ def _pivot(conditions: DyadConditions) -> Complex | None:
 
 
 def _of_family(
-    task: MotionTask, conditions: DyadConditions, constraints: Constraints, rng: np.random.Generator, count: int
+    task: MotionTask, conditions: DyadConditions, areas: SideAreas, rng: np.random.Generator, count: int
 ) -> Cloud:
     """The dyads of linear conditions: one, none, or a cloud where a freedom is left or a pivot is a pole."""
     family = linear_family(task, conditions)
@@ -365,7 +366,7 @@ def _of_family(
     dyads = Dyads(
         family.dyad.fixed + (moved[:, 0] + 1j * moved[:, 1]), family.dyad.moving + (moved[:, 2] + 1j * moved[:, 3])
     )
-    good = _in_regions(task, constraints, dyads)
+    good = _in_areas(task, areas, dyads)
     return _forwards(task, conditions, Dyads(dyads.fixed[good], dyads.moving[good]), sampled=True, proved=False)
 
 
@@ -406,25 +407,18 @@ def _nearest(task: MotionTask, conditions: DyadConditions) -> str:
     return f"The nearest that is lies at about ({nearest.real:.6g}, {nearest.imag:.6g})."
 
 
-def _sampled_pivots(task: MotionTask, constraints: Constraints, rng: np.random.Generator, count: int) -> Dyads:
+def _sampled_pivots(task: MotionTask, areas: SideAreas, rng: np.random.Generator, count: int) -> Dyads:
     """Random fixed and moving pivots, shape (count,) each."""
     middle = task.points.mean(keepdims=True)
-    fixed = _filled(task, constraints.fixed_pivot_region, rng, count)
-    moving = _filled(task, constraints.moving_pivot_region, rng, count)
+    fixed, moving = drawn(task, areas.fixed, rng, count), drawn(task, areas.moving, rng, count)
     return Dyads(
         points_around(middle, rng, count) if fixed is None else fixed,
         points_around(task.points[:1], rng, count) if moving is None else moving,
     )
 
 
-def _filled(task: MotionTask, region: Region | None, rng: np.random.Generator, count: int) -> Complex | None:
-    if region is None:
-        return None
-    return np.asarray((rng.uniform(*region.x, count) + 1j * rng.uniform(*region.y, count) - task.origin) / task.size)
-
-
 def _pinned(
-    task: MotionTask, conditions: DyadConditions, pivots: Dyads, constraints: Constraints, rng: np.random.Generator
+    task: MotionTask, conditions: DyadConditions, pivots: Dyads, areas: SideAreas, rng: np.random.Generator
 ) -> list[tuple[DyadConditions, Dyads]]:
     """Random conditions added until a dyad is determined; each way of doing so with its share of the pivots as starts.
 
@@ -435,8 +429,7 @@ def _pinned(
     missing = 5 - len(task.points) - conditions.count()
     stated_vector = (conditions.coupler_length, conditions.coupler_angle).count(None) < 2
     if missing >= 2 and _pivot(conditions) is None and not stated_vector and conditions.link_angle is None:
-        regions = constraints.moving_pivot_region, constraints.fixed_pivot_region
-        moving_share = 0.5 if (regions[0] is None) == (regions[1] is None) else float(regions[0] is not None)
+        moving_share = 0.5 if bool(areas.moving) == bool(areas.fixed) else float(bool(areas.moving))
         half = int(len(pivots.fixed) * moving_share)
         by_moving = Dyads(pivots.fixed[:half], pivots.moving[:half])
         by_fixed = Dyads(pivots.fixed[half:], pivots.moving[half:])

@@ -53,9 +53,12 @@ APART = 0.3
 
 
 def coupler_drivers(
-    design: LinkageDesign, mechanism: FourbarMechanism, wanted: DriverDyad, count: int
+    design: LinkageDesign, mechanism: FourbarMechanism, wanted: DriverDyad, count: int, least: float = 0.0
 ) -> list[tuple[float, SixbarMechanism]]:
-    """The best drivers of a fourbar's coupler, at most ``count``, with their scores, best first."""
+    """The best drivers of a fourbar's coupler, at most ``count``, with their scores, best first.
+
+    ``least`` is what the sine of the transmission angle must be at least.
+    """
     fourbar = driven_fourbar(mechanism)
     inputs = np.radians([target.at for target in design.targets])
     steps = np.diff(inputs)
@@ -73,15 +76,18 @@ def coupler_drivers(
     around = (DISTANCES[:, None] * np.exp(1j * DIRECTIONS)).ravel()
     pivots = 0.5 * (paths[:, :1] + paths[:, -1:]) + chord[:, None] * around
     along = np.gradient(paths, axis=1)
-    score = np.empty(pivots.shape)
+    score = np.ones(pivots.shape)
+    if wanted.pivot_region is not None:
+        score[~wanted.pivot_region.contains_each(pivots)] = 0.0
+        if not score.any():
+            return []
     least_sines(paths, along / np.maximum(np.abs(along), np.finfo(np.float64).tiny), pivots, score)
+    score[score < least] = 0.0
     first, last = (np.abs(paths[:, k, None] - pivots) for k in (0, -1))
     with np.errstate(divide="ignore"):
         uneven = (first + last) / np.abs(last - first)
     score = score / (1.0 + ((_whole(joints, paths, pivots) / alone - 1.0) / ROOM) ** 2)
     score = score / (1.0 + (uneven / UNEVEN) ** 2)
-    if wanted.pivot_region is not None:
-        score = np.where(np.vectorize(wanted.pivot_region.contains)(pivots), score, 0.0)
     found: list[tuple[float, SixbarMechanism]] = []
     kept: list[tuple[complex, complex]] = []
     for flat in np.argsort(-score, axis=None, kind="stable"):
@@ -117,11 +123,14 @@ def _paths(a: Complex, b: Complex) -> tuple[Complex, Complex]:
 def least_sines(paths: Complex, along: Complex, pivots: Complex, least: Real) -> None:
     """Least sine of the transmission angle into ``least``, pins × pivots; 0 where C's distance turns back on its way.
 
+    Where ``least`` is 0 already it stays so: those pivots are not looked at.
     ``paths`` and their unit tangents ``along`` are pins × steps, ``pivots`` pins × pivots.
     """
     pins, steps = paths.shape
     for k in range(pins):
         for m in range(pivots.shape[1]):
+            if least[k, m] == 0.0:
+                continue
             o6 = pivots[k, m]
             first, last = abs(paths[k, 0] - o6), abs(paths[k, steps - 1] - o6)
             crank, link = 0.5 * abs(last - first), 0.5 * (last + first)

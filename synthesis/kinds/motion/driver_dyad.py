@@ -34,7 +34,7 @@ from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, Sixb
 from synthesis.model.linkages import driven_fourbar, to_complex
 from synthesis.outcome.ranking import ranked
 from synthesis.outcome.sifting import OUTRANKED, Sifting, reported
-from synthesis.proof.measures import BULKY, UNEVEN
+from synthesis.proof.measures import BULKY, UNEVEN, link_lengths
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -61,6 +61,12 @@ PLACES = np.linspace(-np.pi, np.pi, 49)[:-1]
 USABLE = 20.0
 """Degrees; where the client sets no limit, sixbars with a smaller transmission angle are offered only if there are no
 others."""
+
+LOOKED_AT = 12
+"""Drivers of a coupler that are looked at, the best first."""
+
+ROUNDING = 1e-9
+"""Share by which a length may miss its limit here; the verification decides."""
 
 TRIED = 3
 """Drivers that are verified for a link, the best first, until one passes."""
@@ -97,9 +103,10 @@ def with_driver_dyads(problem: MotionProblem, result: MotionResult, progress: Pr
         best = _driven(problem, design, wanted)
         # Of a linkage that can be driven from either side both ways are looked at, but it was accepted once.
         sifting.rejected[OUTRANKED] -= sifting.rejected[OUTRANKED] > 0
-        sifting.count("driver_dyad" if sifting.keep(best) else "")
-        if best is not None and _sound(problem, best):
-            usable.append(best)
+        kept = not sifting.keep(best)
+        sifting.count("" if kept else "driver_dyad")
+        if kept and _sound(problem, sifting.passed[-1]):
+            usable.append(sifting.passed[-1])
     # Designs that transmit badly are offered where there are no others.
     sifting.withdraw(usable or sifting.passed, OUTRANKED)
     given = f"{sifting.accepted} of {tried} fourbars were given a driver dyad whose crank turns through."
@@ -118,9 +125,10 @@ def undriven(problem: MotionProblem) -> MotionProblem:
     return problem.model_copy(
         update={
             "driver_dyad": False,
-            "method": "auto" if problem.approximate else "exact",
+            "method": "auto" if problem.approximate or problem.few_tolerated else "exact",
             "max_designs": min(max(SPARE * problem.max_designs, LEAST_SPARE), 200),
             "include_failed": False,
+            "layout": None,
             "input_side": problem.input_side.model_copy(update=pins),
             "output_side": problem.output_side.model_copy(update=pins),
             "constraints": problem.constraints.model_copy(update={"full_rotation": False}),
@@ -128,24 +136,44 @@ def undriven(problem: MotionProblem) -> MotionProblem:
     )
 
 
-def _driven(problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad) -> LinkageDesign | None:
-    """A fourbar with the best driver that passes, or the best one that does not; None where no driver fits."""
+def _driven(
+    problem: MotionProblem, design: LinkageDesign, wanted: DriverDyad, *, limited: bool = True
+) -> LinkageDesign | None:
+    """A fourbar with the best driver that passes, or the best one that does not; None where no driver fits.
+
+    Drivers that break a limit by themselves are looked at only without ``limited``, or where failures are asked for.
+    """
     assert isinstance(design.mechanism, FourbarMechanism)
     best = None
+    least = math.sin(math.radians(problem.constraints.min_transmission_angle or 0.0)) if limited else 0.0
     for link in ("input", "output", "coupler"):
         if wanted.link not in ("any", link) or (link == "coupler" and _sound(problem, best) and wanted.link == "any"):
             continue
         if link == "coupler":
-            drivers = coupler_drivers(design, design.mechanism, wanted, TRIED)
+            drivers = coupler_drivers(design, design.mechanism, wanted, LOOKED_AT, least)
         else:
-            drivers = sorted(_drivers(design, design.mechanism, link, wanted), key=lambda c: -c[0])[:TRIED]
-        for _, mechanism in drivers:
+            drivers = sorted(_drivers(design, design.mechanism, link, wanted, least), key=lambda c: -c[0])
+        kept = [mechanism for _, mechanism in drivers if not limited or _keeps_lengths(problem, mechanism)]
+        for mechanism in kept[:TRIED]:
             found = verify(problem, mechanism)
             if found is not None and (best is None or _worth(found) > _worth(best)):
                 best = found
             if found is not None and found.verification.passed:
                 break
+    if best is None and limited and problem.include_failed:
+        return _driven(problem, design, wanted, limited=False)
     return best
+
+
+def _keeps_lengths(problem: MotionProblem, mechanism: SixbarMechanism) -> bool:
+    """Whether a sixbar's links keep the limits of lengths and of their ratio, but for rounding."""
+    lengths, constraints = link_lengths(mechanism), problem.constraints
+    stated, ratio = constraints.link_length, constraints.max_link_ratio
+    short, long = min(lengths), max(lengths)
+    within = stated is None or (
+        short >= (1.0 - ROUNDING) * stated.min and long <= (1.0 + ROUNDING) * (stated.max or long)
+    )
+    return within and (ratio is None or long <= (1.0 + ROUNDING) * ratio * short)
 
 
 def _sound(problem: MotionProblem, design: LinkageDesign | None) -> bool:
@@ -159,9 +187,9 @@ def _worth(design: LinkageDesign) -> tuple[bool, float]:
 
 
 def _drivers(
-    design: LinkageDesign, mechanism: FourbarMechanism, link: str, wanted: DriverDyad
+    design: LinkageDesign, mechanism: FourbarMechanism, link: str, wanted: DriverDyad, least: float
 ) -> list[tuple[float, SixbarMechanism]]:
-    """Drivers of one link with their scores, the best of each shape."""
+    """Drivers of one link with their scores, the best of each shape; ``least`` as for :func:`_stages`."""
     fourbar = driven_fourbar(mechanism)
     inputs = np.radians([target.at for target in design.targets])
     at = positions(fourbar.linkage, inputs, fourbar.assembly)
@@ -175,7 +203,7 @@ def _drivers(
     one_way = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
     if not one_way or not LEAST_SWING < abs(swing) <= WIDEST_SWING:
         return []
-    stage = _stages(abs(swing))
+    stage = _stages(abs(swing), least)
     joints = np.concatenate([at.a, at.b, at.p, [to_complex(p) for p in (mechanism.fixed_pivots.input,
                                                                          mechanism.fixed_pivots.output)]])  # fmt: skip
     alone = diagonal(joints)
@@ -191,7 +219,7 @@ def _drivers(
         whole = diagonal(np.concatenate([around, np.broadcast_to(joints, (*around.shape[:2], len(joints)))], axis=-1))
         score = stage.score[n] / (1.0 + ((whole / alone - 1.0) / ROOM) ** 2)
         if wanted.pivot_region is not None:
-            score = np.where(np.vectorize(wanted.pivot_region.contains)(o6), score, 0.0)
+            score = np.where(wanted.pivot_region.contains_each(o6), score, 0.0)
         k, m = np.unravel_index(int(np.argmax(score)), score.shape)
         if score[k, m] > 0.0:
             place = complex(c[k, m, 0])
@@ -199,8 +227,11 @@ def _drivers(
     return found
 
 
-def _stages(swing: float) -> _Stage:
-    """The best shapes of crank-rockers with a given swing, in units of the rocker."""
+def _stages(swing: float, least: float = 0.0) -> _Stage:
+    """The best shapes of crank-rockers with a given swing, in units of the rocker.
+
+    ``least`` is what the sine of the transmission angle must be at least.
+    """
     pivot = (DISTANCES[:, None] * np.exp(1j * DIRECTIONS)[None, :]).ravel()
     ends = np.exp(np.array([-0.5j, 0.5j]) * swing)
     reach = ends - pivot[:, None]
@@ -215,7 +246,9 @@ def _stages(swing: float) -> _Stage:
     with np.errstate(divide="ignore", invalid="ignore"):
         cosines = [(link**2 + 1.0 - (ground + sign * crank) ** 2) / (2.0 * link) for sign in (-1.0, 1.0)]
         sine = np.sqrt(np.maximum(1.0 - np.max(np.square(cosines), axis=0), 0.0))
-        score = np.where(rocks, sine, 0.0) / ((1.0 + (longest / BULKY) ** 2) * (1.0 + (longest / crank / UNEVEN) ** 2))
+        score = np.where(rocks & (sine >= least), sine, 0.0) / (
+            (1.0 + (longest / BULKY) ** 2) * (1.0 + (longest / crank / UNEVEN) ** 2)
+        )
     order = np.argsort(-score, kind="stable")
     kept: list[int] = []
     for k in order:

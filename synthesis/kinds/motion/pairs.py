@@ -13,10 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.motion.areas import side_areas
 from synthesis.kinds.motion.choices import Cloud, side_dyads
 from synthesis.kinds.motion.demanded import Demanded
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.room import fits
 from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.stated_dyads import DyadChoices
@@ -38,6 +40,9 @@ CURVE_PAIR, CURVE_SINGLE = 1600, 8000
 
 SHORTLIST = 4000
 """Best-scored pairs from which distinct ones are chosen."""
+
+SWEPT_POOL = 10_000
+"""Of the sound pairs so many of the best, and as many of the rest, are looked at for obstacles."""
 
 APART = 0.25 * 0.5 ** np.arange(6)
 """Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
@@ -122,6 +127,7 @@ class Pairs:
         After them come the best-scored ones that differ, for what verification refuses; all there are where the order
         is another than that of quality, of which a client wants the first and no others.
         """
+        screening = self._with_room(screening)
         score = screening.score.ravel()
         shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
         shortlist = shortlist[score[shortlist] > 0.0]
@@ -132,6 +138,22 @@ class Pairs:
         good = np.union1d(good[:: -(-len(good) // GOOD_POOL)], shortlist[score[shortlist].argmax()])
         offered = self._apart(screening, good, self.problem.max_designs, FAR_APART)
         return list(dict.fromkeys([*offered, *best]))
+
+    def _with_room(self, screening: Screening) -> Screening:
+        """Without the pairs that meet an obstacle, and those that are not among the best that are looked at for it."""
+        if self.problem.space is None or not self.problem.space.swept:
+            return screening
+        score = screening.score.ravel()
+        sound = np.flatnonzero(score > 0.0)
+        best = sound[np.argsort(-score[sound], kind="stable")]
+        # The best ones lie close together: of the rest, too, some are looked at.
+        looked = np.concatenate([best[:SWEPT_POOL], best[SWEPT_POOL :: -(-len(best) // SWEPT_POOL) or 1]])
+        i, j = np.unravel_index(looked, screening.score.shape)
+        joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]
+        kept = looked[fits(self.problem, self.task, np.stack(joints, axis=1))]
+        fitting = np.zeros_like(score)
+        fitting[kept] = score[kept]
+        return screening._replace(score=fitting.reshape(screening.score.shape))
 
     def _apart(
         self, screening: Screening, pool: NDArray[np.int64], count: int, aparts: Iterable[float]
@@ -150,12 +172,12 @@ def pairs_of_dyads(problem: MotionProblem) -> Pairs:
     """The pairs of the dyads of both sides; a side that alone is open gets more of them."""
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
-    sides = problem.input_side, problem.output_side
     pair, single = (CURVE_PAIR, CURVE_SINGLE) if len(task.points) == 4 else (CLOUD_PAIR, CLOUD_SINGLE)
-    clouds = [side_dyads(task, problem, sides[0], rng, pair)]
-    alike = sides[0] == sides[1]
-    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, sides[1], rng, pair))
+    clouds = [side_dyads(task, problem, 0, rng, pair)]
+    areas = side_areas(problem)
+    alike = problem.input_side == problem.output_side and areas[0] == areas[1]
+    clouds.append(clouds[0] if alike and not clouds[0].sampled else side_dyads(task, problem, 1, rng, pair))
     for k in (0, 1):
         if clouds[k].sampled and not clouds[1 - k].sampled:
-            clouds[k] = side_dyads(task, problem, sides[k], rng, single)
+            clouds[k] = side_dyads(task, problem, k, rng, single)
     return Pairs(problem, task, (clouds[0], clouds[1]))

@@ -17,6 +17,11 @@ from synthesis.model.statement import Contradiction, Flag, PartialPoint
 LEAST_LENGTH = 1e-12
 """Positions that differ, but by less than this many length units, are refused as absurd."""
 
+LEAST_TOLERANCE = 1e-12
+"""Share of the greatest coordinate (or of the task's size), and radians, up to which a tolerance counts as none: the
+coordinate is met exactly. Doubles keep 1e-16 of either, and driving a linkage to a position leaves some thousands of
+these."""
+
 LEAST_MOTION = 1e-3
 """A motion of P below this share of the way to stated pivots does not set the size of the task."""
 
@@ -179,6 +184,11 @@ class MotionProblem(LinkageProblem):
     )
 
     @property
+    def first_pose(self) -> tuple[complex, float]:
+        """The first position."""
+        return self.positions[0].point, self.positions[0].angle
+
+    @property
     def slider(self) -> Literal["PR", "RP"] | None:
         """The slider that is asked for on one side, if one is."""
         for side in (self.output_side, self.input_side):
@@ -205,10 +215,16 @@ class MotionProblem(LinkageProblem):
     def _limits_of(self, position: Position, fitted: bool) -> tuple[float, float, float]:
         tolerance = position.tolerance
         if isinstance(tolerance, Tolerance):
-            return tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0
+            return self._resolved(tolerance.x or 0.0, tolerance.y or 0.0, tolerance.angle or 0.0)
         if tolerance is not None:
-            return tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi))
+            return self._resolved(tolerance, tolerance, math.degrees(min(tolerance / self.task_size, math.pi)))
         return (math.inf, math.inf, math.inf) if fitted and not position.exact else (0.0, 0.0, 0.0)
+
+    def _resolved(self, x: float, y: float, angle: float) -> tuple[float, float, float]:
+        """Tolerances, 0 where they are below what doubles resolve."""
+        least = LEAST_TOLERANCE * max(self.task_size, *(max(abs(p.x), abs(p.y)) for p in self.positions))
+        turned = math.degrees(LEAST_TOLERANCE)
+        return x if x > least else 0.0, y if y > least else 0.0, angle if angle > turned else 0.0
 
     @property
     def fitted(self) -> bool:
@@ -224,22 +240,28 @@ class MotionProblem(LinkageProblem):
     @property
     def approximate(self) -> bool:
         """Whether the positions are fitted, with tolerances or without: five of them or more."""
-        return self.fitted or (self._toleranced and len(self.positions) >= MOST_HELD)
+        return self.fitted or (self._misses_allowed and len(self.positions) >= MOST_HELD)
+
+    @property
+    def few_tolerated(self) -> bool:
+        """Whether tolerances of two to four positions are used."""
+        return self._misses_allowed and len(self.positions) < MOST_HELD and self.method != "exact"
 
     @property
     def steered(self) -> bool:
-        """Whether tolerances of two to four positions are used: those of fourbars, where pivots are all that is stated.
-
-        Sliders, rotations of links and a driver dyad belong to positions that are met exactly.
-        """
+        """Whether linkages are steered into these: fourbars of which no more is stated than pivots."""
         sides = self.input_side, self.output_side
         pins = all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
-        few = self._toleranced and len(self.positions) < MOST_HELD
-        return few and self.method != "exact" and pins and self.driver is None
+        return self.few_tolerated and pins and self.driver is None
 
     @property
     def _toleranced(self) -> bool:
         return any(position.tolerance is not None for position in self.positions)
+
+    @property
+    def _misses_allowed(self) -> bool:
+        """Whether some tolerance is more than rounding."""
+        return self._toleranced and any(limit > 0.0 for limits in self.limits for limit in limits)
 
     @property
     def task_size(self) -> float:
@@ -279,13 +301,15 @@ class MotionProblem(LinkageProblem):
             *self._misplaced_tolerances(),
             *self._too_many_held(),
             *self._choices_of_fits(),
+            *self._choices_of_few_tolerated(),
             *self._choices_of_sliders(),
             *self._overstated_sides(),
             *self._coinciding_pivots(),
             *self._pivots_off_the_ground_line(),
             *self._pivots_outside_regions(),
             *self._class_of_sliders(),
-            *self.constraints.contradictions(),
+            *self.contradicting_demands(),
+            *self._without_room(),
         ]
 
     def _equal_positions(self) -> list[Contradiction]:
@@ -306,6 +330,15 @@ class MotionProblem(LinkageProblem):
                     )
         return contradictions
 
+    def _without_room(self) -> list[Contradiction]:
+        if self.space is None:
+            return []
+        held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
+        if 0 not in held:
+            return []
+        points = {k: self.positions[k].point for k in held}
+        return self.space.without_room_at(points, {k: cmath.rect(1.0, self.turns[k]) for k in held})
+
     def _misplaced_tolerances(self) -> list[Contradiction]:
         return [
             Contradiction(f"/positions/{k}/exact", "a position that is met exactly has no tolerance; give one of them")
@@ -316,7 +349,7 @@ class MotionProblem(LinkageProblem):
     def _too_many_held(self) -> list[Contradiction]:
         if self.method == "exact" and len(self.positions) > MOST_HELD and not self.approximate:
             return [Contradiction("/method", f"{MOST_HELD} positions at most can be met exactly; fit by least_squares")]
-        if self.method == "least_squares" and not (self.approximate or self.steered):
+        if self.method == "least_squares" and not (self.approximate or self.few_tolerated):
             detail = "fewer than five positions can be met exactly; leave the method out or state tolerances"
             return [Contradiction("/method", detail)]
         held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
@@ -324,6 +357,20 @@ class MotionProblem(LinkageProblem):
             detail = f"is the sixth position to be met exactly; give a tolerance to all but {MOST_HELD}"
             return [Contradiction(f"/positions/{held[MOST_HELD]}", detail)]
         return []
+
+    def _choices_of_few_tolerated(self) -> list[Contradiction]:
+        """Within a tolerance a position is met where the body comes nearest to it, however far links have turned."""
+        contradictions = []
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            if not self.few_tolerated:
+                break
+            if any(rotation is not None for rotation in side.rotations or []):
+                detail = "are those between positions met exactly; leave out the tolerances, or take the method exact"
+                contradictions.append(Contradiction(f"/{name}/rotations", detail))
+            if side.link_angle is not None and self.positions[0].tolerance is not None:
+                detail = "holds in the first position; leave out its tolerance, or take the method exact"
+                contradictions.append(Contradiction(f"/{name}/link_angle", detail))
+        return contradictions
 
     def _choices_of_fits(self) -> list[Contradiction]:
         """A fit takes one pivot of a side (or the whole coupler vector) as given, and a slider's angle."""

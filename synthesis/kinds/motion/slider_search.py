@@ -21,6 +21,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.motion.areas import side_areas, within
 from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads import Dyads
@@ -86,21 +87,20 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     task = motion_task(problem)
     rng = np.random.default_rng(problem.seed)
     progress(0.0, "finding sliders")
-    stated = problem.output_side if problem.output_side.dyad == kind else problem.input_side
-    linked = problem.input_side if stated is problem.output_side else problem.output_side
+    side = int(problem.output_side.dyad == kind)
+    stated = (problem.input_side, problem.output_side)[side]
     dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
     if not len(dyads.points):
         return _none(problem, dyads.reason, complete=dyads.proved)
     progress(0.1, "finding links")
-    links = side_dyads(task, problem, linked, rng, LINKS if dyads.sampled else ALONE)
+    links = side_dyads(task, problem, 1 - side, rng, LINKS if dyads.sampled else ALONE)
     if not len(links.dyads.fixed):
         return _none(problem, links.reason.replace("the side", "the side with pins"), complete=links.complete)
     if dyads.sampled and not links.sampled:
         dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
-    constraints = problem.constraints
-    region = constraints.moving_pivot_region if kind == "PR" else constraints.fixed_pivot_region
-    within = task.within(region, dyads.points)
-    dyads = dyads._replace(points=dyads.points[within], angles=dyads.angles[within])
+    areas = side_areas(problem)[side]
+    inside = within(task, areas.moving if kind == "PR" else areas.fixed, dyads.points)
+    dyads = dyads._replace(points=dyads.points[inside], angles=dyads.angles[inside])
     return slider_linkages(problem, task, links.dyads, dyads, kind, progress)
 
 

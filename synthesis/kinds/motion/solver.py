@@ -11,6 +11,7 @@ may be driven from either side. It counts as one candidate; each way of driving 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -19,13 +20,14 @@ from synthesis.kinds.motion.burmester import Window, branches, burmester_curve
 from synthesis.kinds.motion.choices import Cloud
 from synthesis.kinds.motion.demanded import demanded
 from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
+from synthesis.kinds.motion.drawn_poses import solve_drawn
 from synthesis.kinds.motion.driver_dyad import undriven, with_driver_dyads
 from synthesis.kinds.motion.dyads import DyadConditions
 from synthesis.kinds.motion.least_squares import solve_least_squares
 from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.slider_search import beside_sliders, solve_sliders, with_sliders
-from synthesis.kinds.motion.steered import solve_steered
+from synthesis.kinds.motion.steered import solve_steered, steered_on
 from synthesis.kinds.motion.task import MotionTask
 from synthesis.model.answer import Search
 from synthesis.model.kind import Progress, part_of
@@ -59,16 +61,33 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
         return with_driver_dyads(problem, bare, progress)
     if problem.approximate:
         return solve_least_squares(problem, progress)
-    if problem.slider is not None:
-        return solve_sliders(problem, problem.slider, progress)
     if problem.steered:
         exact = _exact(problem, part_of(progress, 0.0, 0.3))
         return solve_steered(problem, exact, part_of(progress, 0.3, 1.0))
+    if problem.few_tolerated:
+        return solve_drawn(problem, _exact, progress)
     return _exact(problem, progress)
+
+
+def continued(
+    problem: MotionProblem, designs: Sequence[LinkageDesign], progress: Progress
+) -> list[LinkageDesign] | None:
+    """Designs of a statement by continuation from those of a looser one; None where linkages are not steered."""
+    bare = problem if problem.driver is None else undriven(problem)
+    if not bare.steered:
+        return None
+    found = steered_on(bare, designs)
+    if problem.driver is None:
+        return found
+    search = Sifting[LinkageDesign](bare).search("tolerance_search")
+    result = MotionResult(designs=found, curves=[], search=search, summary="")
+    return list(with_driver_dyads(problem, result, progress).designs)
 
 
 def _exact(problem: MotionProblem, progress: Progress) -> MotionResult:
     """Two to five positions met exactly."""
+    if problem.slider is not None:
+        return solve_sliders(problem, problem.slider, progress)
     progress(0.0, "finding dyads")
     pairs = pairs_of_dyads(problem)
     if pairs.lacking is not None:

@@ -88,6 +88,11 @@ class DyadChoices(Statement):
         return whole and self.link_angle is None and not any(b is not None for b in self.rotations or [])
 
     @property
+    def has_partial_moving_pivot(self) -> bool:
+        """Whether one coordinate of the moving pivot is fixed and the other left open."""
+        return self.moving_pivot is not None and whole_point(self.moving_pivot) is None
+
+    @property
     def one_pivot(self) -> bool:
         """Whether one whole pivot is all that is fixed."""
         pivots = whole_point(self.fixed_pivot), whole_point(self.moving_pivot)

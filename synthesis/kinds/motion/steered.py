@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.linkage.fourbar import positions
+from synthesis.kinds.motion.areas import box_of, side_areas
 from synthesis.kinds.motion.demanded import Demanded, demanded
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.least_squares import fit_demands
@@ -42,8 +45,8 @@ from synthesis.kinds.motion.steered_starts import Start, starts, stated_coordina
 from synthesis.kinds.motion.task import MotionTask, Real, motion_task
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress
-from synthesis.model.linkage_answer import LinkageDesign
-from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMechanism
+from synthesis.model.linkages import FourbarConfiguration, body_shift, driven_fourbar, fourbar_mechanism
 from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
@@ -53,6 +56,9 @@ from synthesis.outcome.sifting import DEFECTS, LENGTHS, OUTRANKED, Sifting
 STARTED, BETTERED = 40, 8
 """Linkages that are steered, staying near to their starts; and those of them, as many as differ, that are then brought
 to where they are most usable."""
+
+ROOMY = 4
+"""Times as many are steered where obstacles, which do not steer, leave only some of them."""
 
 STAYING = 0.3
 """Weight of the way from the start, in task sizes, in the first of these."""
@@ -86,12 +92,11 @@ def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progres
         Told how far the work is.
     """
     task = motion_task(problem)
-    tolerances = fit_demands(problem, task).tolerances
+    rows = _demanded_rows(problem, task)
     progress(0.0, "drawing poses within the tolerances")
-    listed = starts(problem, task, tolerances, STARTED)
+    room = problem.space is not None and problem.space.swept
+    listed = starts(problem, task, rows[:, 3:], STARTED * (ROOMY if room else 1))
     progress(0.4, f"steering {len(listed)} linkages")
-    points = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
-    rows = np.ascontiguousarray(np.concatenate([points, tolerances], axis=1))
     begun = [_begun(problem, task, rows, start) for start in listed]
     steered = _all_steered(rows, begun)
     sifting = Sifting[LinkageDesign](problem, REASONS)
@@ -115,6 +120,48 @@ def solve_steered(problem: MotionProblem, exact: MotionResult, progress: Progres
         search=sifting.search("tolerance_search"),
         summary=_summary(sifting, len(listed), len(sifting.passed) - met, met),
     )
+
+
+def steered_on(problem: MotionProblem, designs: Sequence[LinkageDesign]) -> list[LinkageDesign]:
+    """Designs of a statement, steered on from those of a looser one; sixbars without their drivers."""
+    task, target = motion_task(problem), demanded(problem)
+    rows = _demanded_rows(problem, task)
+    bare = (verify(problem, _fourbar_of(design.mechanism), target) for design in designs[:BETTERED])
+    begun = [_let_go(_begun(problem, task, rows, _start_of(problem, task, rows, one))) for one in bare if one]
+    verified = (_verified(problem, task, rows, linkage.x, target) for linkage in _different(_all_steered(rows, begun)))
+    return [design for design in verified if isinstance(design, LinkageDesign) and design.verification.passed]
+
+
+def _demanded_rows(problem: MotionProblem, task: MotionTask) -> Real:
+    """Demanded poses and their tolerances as :func:`~synthesis.kinds.motion.steered_rows.steered_rows` takes them."""
+    points = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
+    return np.ascontiguousarray(np.concatenate([points, fit_demands(problem, task).tolerances], axis=1))
+
+
+def _fourbar_of(mechanism: LinkageMechanism) -> FourbarMechanism:
+    """The fourbar of a linkage that is one, or that is one with a driver."""
+    if isinstance(mechanism, FourbarMechanism):
+        return mechanism
+    joints = (complex(*mechanism.skeleton.joints[name]) for name in ("O2", "A", "B", "O4", "P"))
+    return fourbar_mechanism(FourbarConfiguration(*joints), mechanism.reference_body_angle)
+
+
+def _start_of(problem: MotionProblem, task: MotionTask, rows: Real, design: LinkageDesign) -> Start:
+    """A driven fourbar as a start, with the poses in which it meets its targets."""
+    assert isinstance(design.mechanism, FourbarMechanism)
+    fourbar = driven_fourbar(design.mechanism)
+    at = positions(fourbar.linkage, np.radians([target.at for target in design.targets]), fourbar.assembly)
+    shift = body_shift(design.mechanism, problem.positions[0].angle)
+    first = float(positions(fourbar.linkage, fourbar.reference, fourbar.assembly).coupler_angle)
+    places = (at.p - task.origin) / task.size
+    off = at.coupler_angle - first + shift - rows[:, 2]
+    offsets = np.stack([places.real - rows[:, 0], places.imag - rows[:, 1], off - math.tau * np.round(off / math.tau)])
+    poses = rows[:, :3] + offsets.T
+    shares = np.divide(offsets.T, rows[:, 3:], out=np.zeros_like(poses), where=rows[:, 3:] > 0.0)
+    fixed = [task.to_task(complex(pivot)) for pivot in (fourbar.linkage.input_pivot, fourbar.linkage.output_pivot)]
+    back = cmath.exp(-1j * float(poses[0, 2]))
+    body = [task.points[0] + back * (pin[0] - at.p[0]) / task.size for pin in (at.a, at.b)]
+    return Start(np.array([*fixed, *body]), shares, poses)
 
 
 class _Linkage(NamedTuple):
@@ -184,13 +231,9 @@ def _setting(problem: MotionProblem, task: MotionTask, start: Start) -> Real:
     setting[LINKS] = 0.0 if lengths is None else lengths.min / task.size
     setting[LINKS + 1] = math.inf if lengths is None or lengths.max is None else lengths.max / task.size
     setting[RATIO] = math.inf if constraints.max_link_ratio is None else constraints.max_link_ratio
-    origin = task.origin.real, task.origin.imag
-    for at, region in ((BOXES, constraints.fixed_pivot_region), (BOXES + 4, constraints.moving_pivot_region)):
-        setting[at : at + 4 : 2], setting[at + 1 : at + 4 : 2] = -math.inf, math.inf
-        if region is not None:
-            for axis, interval in enumerate((region.x, region.y)):
-                for side in (0, 1):
-                    setting[at + 2 * axis + side] = (interval[side] - origin[axis]) / task.size
+    one, other = side_areas(problem)
+    for k, areas in enumerate((one.fixed, other.fixed, one.moving, other.moving)):
+        setting[BOXES + 4 * k : BOXES + 4 * (k + 1)] = box_of(task, areas, complex(start.pivots[k]))
     setting[GIVEN : GIVEN + PIVOTS] = stated_coordinates(task, problem)
     setting[LINE : LINE + 3] = math.nan
     if problem.ground_line is not None:
@@ -234,7 +277,7 @@ def _summary(sifting: Sifting[LinkageDesign], started: int, steered: int, exact:
         )
     best = max(design.metrics.min_transmission_angle for design in sifting.passed)
     return (
-        f"{steered} of {started} linkages that were steered into the tolerances satisfy all demands, and {exact} that "
-        f"meet the positions exactly; the least transmission angle is up to {best:.1f}°. The tolerances were "
-        "searched from poses drawn within them; a better linkage may exist."
+        f"{steered} linkages that were steered into the tolerances from {started} starts satisfy all demands, and "
+        f"{exact} that meet the positions exactly; the least transmission angle is up to {best:.1f}°. The tolerances "
+        "were searched from poses drawn within them; a better linkage may exist."
     )

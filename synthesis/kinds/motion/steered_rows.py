@@ -38,12 +38,12 @@ from synthesis.numerics.levenberg import ROWS
 Real = NDArray[np.float64]
 
 DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN, LINE, HOME, WEIGHT_OF_HOME, STEPS = (
-    0, 1, 2, 3, 4, 6, 7, 15, 23, 26, 34, 35,
+    0, 1, 2, 3, 4, 6, 7, 23, 31, 34, 42, 43,
 )  # fmt: skip
 """Places in a setting: the way in which the input turns (±1), sign of the assembly, the shortest link that is demanded
 (0 to 3 for d, a, b, c; −1 where none is), cosine of the least transmission angle, least and most length (0 and infinite
-where open), link ratio (infinite where open), boxes (x from, to, y from, to) of fixed and of moving pivots, stated
-coordinates (O2, O4, A, B; NaN where open), the ground line (unit normal and offset; NaN where open), the pivots to stay
+where open), link ratio (infinite where open), boxes (x from, to, y from, to) of O2, O4, A and B, stated
+coordinates of the same (NaN where open), the ground line (unit normal and offset; NaN where open), the pivots to stay
 near to and the weight of that, and from there on the input's turn from each pose to the next, to half a turn."""
 
 OTHERS = 14 + 8
@@ -117,7 +117,7 @@ def _evaluated(x: Real, points: Real, setting: Real, residuals: Real, margins: R
         return -1
     for pivot in range(4):
         z = (o2, o4, a[0], b[0])[pivot]
-        box = BOXES + (0 if pivot < 2 else 4)
+        box = BOXES + 4 * pivot
         margins[m], margins[m + 1] = z.real - setting[box], setting[box + 1] - z.real
         margins[m + 2], margins[m + 3] = z.imag - setting[box + 2], setting[box + 3] - z.imag
         m += 4

@@ -15,13 +15,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.kinds.motion.areas import SideAreas, drawn, outside, side_areas
 from synthesis.kinds.motion.draws import points_around
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.screening import demands, screen
 from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
 from synthesis.kinds.motion.task import Complex, MotionTask, Real, stated_pivot
-from synthesis.model.linkage_statement import Constraints, LengthLimits, Region
+from synthesis.model.linkage_statement import Constraints, LengthLimits
+from synthesis.model.zones import Area
 from synthesis.outcome.ranking import widest_apart
 
 SETS = 24
@@ -85,12 +87,13 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
         How many are wanted.
     """
     rng = np.random.default_rng(problem.seed)
-    deviations = _deviations(tolerances, SETS if tolerances.any() else 1)
+    shares = deviations(tolerances, SETS if tolerances.any() else 1)
     demanded = np.stack([task.points.real, task.points.imag, np.angle(task.turns)], axis=1)
-    poses = demanded + deviations * tolerances
-    sides = problem.input_side, problem.output_side
-    inputs = _side(problem, task, poses, sides[0], rng)
-    outputs = inputs if sides[0] == sides[1] else _side(problem, task, poses, sides[1], rng)
+    poses = demanded + shares * tolerances
+    sides, areas = (problem.input_side, problem.output_side), side_areas(problem)
+    inputs = _side(task, poses, sides[0], areas[0], rng)
+    alike = sides[0] == sides[1] and areas[0] == areas[1]
+    outputs = inputs if alike else _side(task, poses, sides[1], areas[1], rng)
     eased = _eased(problem.constraints)
     limit = problem.constraints.min_transmission_angle or 0.0
     wanted = demands(eased, task, EASED_ANGLE * limit, problem.rank_by)
@@ -98,8 +101,8 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
     for k, (one, other) in enumerate(zip(inputs, outputs, strict=True)):
         if not len(one.dyads.fixed) or not len(other.dyads.fixed):
             continue
-        drawn = _task_of(poses[k])
-        score = screen(drawn, one.dyads, other.dyads, wanted).score * np.outer(one.weight, other.weight)
+        set_of = _task_of(poses[k])
+        score = screen(set_of, one.dyads, other.dyads, wanted).score * np.outer(one.weight, other.weight)
         best = np.argpartition(-score, min(POOL // SETS, score.size - 1), axis=None)[: POOL // SETS]
         best = best[score.ravel()[best] > 0.0]
         i, j = np.unravel_index(best, score.shape)
@@ -116,25 +119,25 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
         # The body as it lies in the first demanded pose.
         first, turn = complex(pose[0, 0], pose[0, 1]), complex(np.exp(-1j * pose[0, 2]))
         body = task.points[0] + turn * (pivots[n, 2:] - first)
-        found.append(Start(np.concatenate([pivots[n, :2], body]), deviations[sets[n]], pose))
+        found.append(Start(np.concatenate([pivots[n, :2], body]), shares[sets[n]], pose))
     return found
 
 
-def _deviations(tolerances: Real, sets: int) -> Real:
+def deviations(tolerances: Real, sets: int) -> Real:
     """Deviations in (−1, 1) of each coordinate with a tolerance, shape (sets, n, 3); none in the first set.
 
     Roberts' sequence: multiples of the powers of 1/φ with φ^(d+1) = φ + 1, d coordinates, modulo 1.
     """
     free = tolerances > 0.0
     d = int(free.sum())
-    deviations = np.zeros((sets, *tolerances.shape))
+    shares = np.zeros((sets, *tolerances.shape))
     if d:
         ratio = 2.0
         for _ in range(60):
             ratio = (1.0 + ratio) ** (1.0 / (d + 1.0))
         powers = ratio ** -np.arange(1.0, d + 1.0)
-        deviations[1:, free] = 2.0 * np.mod(0.5 + np.outer(np.arange(1, sets), powers), 1.0) - 1.0
-    return deviations
+        shares[1:, free] = 2.0 * np.mod(0.5 + np.outer(np.arange(1, sets), powers), 1.0) - 1.0
+    return shares
 
 
 def _task_of(poses: Real) -> MotionTask:
@@ -151,13 +154,12 @@ class _Drawn(NamedTuple):
 
 
 def _side(
-    problem: MotionProblem, task: MotionTask, poses: Real, choices: DyadChoices, rng: np.random.Generator
+    task: MotionTask, poses: Real, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator
 ) -> list[_Drawn]:
     """The dyads of one side for each set."""
-    constraints, count = problem.constraints, len(poses) * DRAWN
-    regions = constraints.fixed_pivot_region, constraints.moving_pivot_region
-    fixed = _drawn(task, regions[0], complex(task.points.mean()), rng, count)
-    moving = _drawn(task, regions[1], complex(task.points[0]), rng, count)
+    count = len(poses) * DRAWN
+    fixed = _drawn(task, areas.fixed, complex(task.points.mean()), rng, count)
+    moving = _drawn(task, areas.moving, complex(task.points[0]), rng, count)
     stated = [stated_pivot(task, choices, fixed=side) for side in (True, False)]
     free = np.repeat([pivot is None for pivot in stated], 2).astype(np.float64)
     if stated[0] is not None:
@@ -169,7 +171,7 @@ def _side(
     fixed, moving, off = _brought(places[of], spins[of], fixed, moving - task.points[0], free)
     pins = places[of, 0] + spins[of, 0] * moving
     reach = np.maximum(np.abs(fixed), np.abs(pins))
-    astray = _outside(task, regions[0], fixed) + _outside(task, regions[1], pins)
+    astray = outside(task, areas.fixed, fixed) + outside(task, areas.moving, pins)
     sound = (off <= MET) & (reach < FARTHEST) & np.isfinite(reach)
     rank = np.where(sound, astray, np.inf)
     found = []
@@ -182,22 +184,10 @@ def _side(
     return found
 
 
-def _drawn(task: MotionTask, region: Region | None, centre: complex, rng: np.random.Generator, count: int) -> Complex:
-    """Random pivots in their region, or around a centre."""
-    if region is None:
-        return points_around(centre, rng, count)
-    z = rng.uniform(*region.x, count) + 1j * rng.uniform(*region.y, count)
-    return np.asarray((z - task.origin) / task.size)
-
-
-def _outside(task: MotionTask, region: Region | None, z: Complex) -> Real:
-    """Distance of pivots from their region, in task sizes."""
-    if region is None:
-        return np.zeros(z.shape)
-    at = task.origin + z * task.size
-    across = np.maximum(np.maximum(region.x[0] - at.real, at.real - region.x[1]), 0.0)
-    along = np.maximum(np.maximum(region.y[0] - at.imag, at.imag - region.y[1]), 0.0)
-    return np.asarray(np.hypot(across, along) / task.size)
+def _drawn(task: MotionTask, areas: tuple[Area, ...], centre: complex, rng: np.random.Generator, count: int) -> Complex:
+    """Random pivots in their areas, or around a centre."""
+    inside = drawn(task, areas, rng, count)
+    return points_around(centre, rng, count) if inside is None else inside
 
 
 def _brought(

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
-from synthesis.model.linkage_statement import Region
 from synthesis.model.statement import PartialPoint
 
 Real = NDArray[np.float64]
@@ -52,12 +51,6 @@ class MotionTask(NamedTuple):
     def to_problem(self, z: complex) -> complex:
         """A point in task coordinates in the problem's."""
         return self.origin + z * self.size
-
-    def within(self, region: Region | None, points: Complex) -> NDArray[np.bool_]:
-        """Which points, in task coordinates, lie in a region of the problem's coordinates; all where there is none."""
-        if region is None:
-            return np.ones(points.shape, np.bool_)
-        return np.array([region.contains(z) for z in self.origin + points * self.size], np.bool_)
 
     def pivot(self, stated: PartialPoint | None, computed: complex) -> complex:
         """A pivot in the problem's coordinates: where the client stated it, to the last digit, or as computed."""

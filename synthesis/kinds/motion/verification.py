@@ -7,6 +7,7 @@ other linkage by its closures, and one states what is checked, the same for both
 from __future__ import annotations
 
 from synthesis.kinds.motion.demanded import Demanded, demanded
+from synthesis.kinds.motion.first_target import at_first_target
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.verify_fourbar import verify_fourbar
 from synthesis.kinds.motion.verify_mechanism import verify_mechanism
@@ -30,10 +31,21 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded
     Returns
     -------
     LinkageDesign or None
-        The mechanism with its checks and metrics; ``verification.passed`` tells whether it may be used. None where the
-        dimensions do not make a linkage that can be assembled and driven at all.
+        The mechanism with its checks and metrics; ``verification.passed`` tells whether it may be used. Where the first
+        position may be missed its reference is the first target, whatever it was. None where the dimensions do not
+        make a linkage that can be assembled and driven at all.
     """
     target = demanded(problem) if target is None else target
+    design = _driven(problem, mechanism, target)
+    if design is None or target.held[0].all():
+        return design
+    moved = at_first_target(problem, design)
+    again = None if moved is None else _driven(problem, moved, target)
+    # At a toggle rounding may put the first target on the other assembly.
+    return design if again is None or again.verification.passed < design.verification.passed else again
+
+
+def _driven(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded) -> LinkageDesign | None:
     if isinstance(mechanism, FourbarMechanism):
         return verify_fourbar(problem, mechanism, target)
     return verify_mechanism(problem, mechanism, target)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from kinematics.errors import DimensionError
 from kinematics.linkage.fourbar import BARKER, Fourbar, barker_type, positions, transmission_extremes, traverse
 from synthesis.kinds.motion.checks import Driven, Side, linkage_design
-from synthesis.kinds.motion.closest import Motion, closest_inputs
+from synthesis.kinds.motion.closest import Motion, as_near, closest_inputs
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
@@ -72,6 +72,9 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
             return np.where(at.valid, at.p, np.nan), at.coupler_angle
 
         way_of_body = carried(pose, (way.start, way.end), p, met.turns, target.size, slides=False)
+    inputs = np.degrees(way.angles)
+    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
+    away = math.radians(inputs[0]) - float(way.angles[0])
     measures = measured(
         link_lengths(mechanism),
         reach_of_fourbar(linkage),
@@ -82,10 +85,9 @@ def verify_fourbar(problem: MotionProblem, mechanism: FourbarMechanism, target: 
         same_branch=way.same_branch,
         visits_in_order=way.in_order,
         full_rotation=barker.motion in TURNS_THROUGH,
+        used=(way.start + away, way.end + away) if way.same_branch else None,
         eased=ease(way_of_body.input_turn, way_of_body.excess),
     )
-    inputs = np.degrees(way.angles)
-    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     return linkage_design(
         problem, mechanism, target, driven, measures, inputs, on_circuit=way.same_circuit, carried=way_of_body
     )
@@ -142,6 +144,9 @@ def _fitted(target: Demanded, fourbar: DrivenFourbar, shift: float) -> _Met | No
     row = np.where(misses[0] <= OWN * misses[1], 0, 1)
     row[0] = 0
     angles = np.stack([inputs for inputs, _ in closest])[row, np.arange(len(row))]
+    # The reference is known to all digits, the least of a smooth deviation to half of them.
+    if as_near(motion_in(fourbar.assembly), target, 0, fourbar.reference, float(angles[0])):
+        angles[0] = fourbar.reference
     if not np.all(np.isfinite(angles)):
         return None
     at = positions(linkage, angles, signs)

@@ -20,7 +20,7 @@ from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.limits import branches, holding_reference, limit_positions
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.kinds.motion.checks import Driven, Side, linkage_design
-from synthesis.kinds.motion.closest import closest_inputs
+from synthesis.kinds.motion.closest import SAME_MISS, as_near, closest_inputs
 from synthesis.kinds.motion.demanded import Complex, Demanded, Real
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.answer import Check
@@ -35,6 +35,7 @@ from synthesis.model.linkages import body_shift
 from synthesis.proof.carried import Carried, carried, ease
 from synthesis.proof.checks import tolerated
 from synthesis.proof.closer import GRID, least_angles
+from synthesis.proof.constraints import within_zone
 from synthesis.proof.measures import barker_of, link_lengths, measured, reach_of
 from synthesis.proof.on_branch import OnBranch
 from synthesis.proof.rebuilt import rebuilt
@@ -42,12 +43,14 @@ from synthesis.proof.rebuilt import rebuilt
 OWN = 1.5
 """A target counts as met on the reference's branch unless another one misses it this many times less."""
 
-SAME_MISS = 1e-10
-"""Misses, in units of the limits or the task's size, that differ by less are equal: what rounding leaves."""
-
 AT_LIMIT = 1e-7
 """Radians that the driven link may turn beyond its place at the first and last target: at a limit its angle goes with
 the square of the crank's, so this is far above what rounding leaves and far below what can be seen."""
+
+END_WITHIN, END_SAMPLES, END_REFINEMENTS = 0.1, 33, 6
+"""Radians of the crank around a last target within which its toggle is looked for; grids, each 32 times finer: 1e-10
+radians in the end. Where the body turns about a point that the linkage holds nearly still, the nearest place is known
+to some hundredths only."""
 
 RANGE_GRID = 721
 """Inputs at which the driven link's way is looked at."""
@@ -106,6 +109,8 @@ def verify_mechanism(problem: MotionProblem, design: LinkageMechanism, target: D
         same_branch=same_branch,
         visits_in_order=way.in_order,
         full_rotation=here.full,
+        used=(used if whole else (float(way.inputs[0]), float(way.inputs[-1]))) if same_branch else None,
+        slides=slides,
         eased=ease(way_of_body.input_turn, way_of_body.excess),
     )
     return linkage_design(
@@ -153,10 +158,29 @@ def _closest(bodies: list[_Body], target: Demanded, own: int) -> _Met | None:
     at = np.stack(inputs)[best, columns]
     # Where the body comes to rest an input is known to half of its digits; the reference is known to all.
     home = float(bodies[own].mechanism.reference_input)
-    points, turns = bodies[own].pose(np.full(len(columns), home))
-    if np.linalg.norm(target.offsets(points, turns)[0] / target.units[0]) <= missed[0, 0] + SAME_MISS:
+    if as_near(bodies[own].pose, target, 0, home, at[0]):
         at[0] = home
+    if "driver_coupler" in bodies[own].mechanism.links and best[-1] == 0 and math.isfinite(at[-1]):
+        end = _dead_centre(bodies[own], float(at[-1]))
+        if end is not None and as_near(bodies[own].pose, target, -1, end, at[-1]):
+            at[-1] = end
     return _Met(at, np.array(rows)[best]) if np.all(np.isfinite(at)) else None
+
+
+def _dead_centre(body: _Body, near: float) -> float | None:
+    """The input near to another at which a driver's crank lies in one line with its link; None if there is none."""
+    low, high = near - END_WITHIN, near + END_WITHIN
+    for _ in range(END_REFINEMENTS):
+        inputs = np.linspace(low, high, END_SAMPLES)
+        joints = body.at(inputs).joints
+        crank, link = joints["D"][0] - joints["O6"][0], joints["C"][0] - joints["D"][0]
+        across = (crank.conjugate() * link).imag
+        passed = np.flatnonzero(across[:-1] * across[1:] <= 0.0)
+        if not len(passed):
+            return None
+        k = passed[np.argmin(np.abs(inputs[passed] - near))]
+        low, high = inputs[k], inputs[k + 1]
+    return float(0.5 * (low + high))
 
 
 def _way(mechanism: Mechanism, here: Branch, inputs: Real) -> _Way:
@@ -218,6 +242,5 @@ def _driver_checks(
     ]
     wanted = problem.driver
     if wanted is not None and wanted.pivot_region is not None:
-        pivot = complex(*design.fixed_pivots["O6"])
-        checks.append(Check(name="driver_pivot_region", passed=wanted.pivot_region.contains(pivot)))
+        checks.append(within_zone("driver_pivot_region", wanted.pivot_region, [complex(*design.fixed_pivots["O6"])]))
     return checks

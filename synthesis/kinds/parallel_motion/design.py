@@ -8,7 +8,7 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import CouplerPoint, LinkageMetrics, LinkageResult, Skeleton, Target
+from synthesis.model.linkage_answer import LAYOUT, CouplerPoint, Layout, LinkageMetrics, LinkageResult, Skeleton, Target
 
 
 class ParallelMotionMechanism(Answer):
@@ -50,6 +50,7 @@ class ParallelMotionDesign(Answer):
     targets: list[Target] = Field(description="The points of the path; empty where a linkage was given.")
     verification: Verification
     metrics: ParallelMotionMetrics
+    layout: Layout | None = LAYOUT
 
 
 class ParallelMotionResult(LinkageResult[ParallelMotionDesign]):

@@ -124,11 +124,15 @@ class ParallelMotionProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """No curve, or two; a point that has no cognate; lengths that make no linkage."""
-        found = list(self.constraints.contradictions())
+        found = list(self.contradicting_demands())
         if (self.linkage is None) == (self.path is None):
             found.append(Contradiction("/linkage", "state either a linkage or a path"))
         if self.path is not None:
             found += [fault._replace(path=f"/path{fault.path}") for fault in self.path.contradictions()]
+            for name in ("layout", "space"):
+                if getattr(self.path, name) is not None:
+                    detail = "it is the sixbar that is built, not the fourbar: state it beside the path"
+                    found.append(Contradiction(f"/path/{name}", detail))
         if self.linkage is not None:
             found += _faults(self.linkage)
         return found

@@ -117,6 +117,7 @@ def verify_parallel_motion(
         same_branch=min(transmission.values()) > NO_TOGGLE and (path is None or _kept(path, "same_branch")),
         visits_in_order=path is None or _kept(path, "visits_in_order"),
         full_rotation=turns,
+        used=(float(inputs[0]), float(inputs[-1])),
     )
     metrics = ParallelMotionMetrics(
         input_rotation=math.degrees(float(inputs[-1] - inputs[0])),

@@ -217,7 +217,9 @@ def _kicked(ends: _Begun, points: Complex, settings: dict[str, Any], rng: np.ran
 
 def _from_fourbars(problem: PathProblem, progress: Progress) -> list[Mechanism]:
     """The geared fivebars that draw the curves of the best fourbars."""
-    asked = problem.model_copy(update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES})
+    asked = problem.model_copy(
+        update={"mechanism": "fourbar", "gear_ratio": None, "max_designs": MAX_COGNATES, "layout": None}
+    )
     fourbars = solve_curve_match(asked, lambda share, message: progress(0.7, message))
     cognates: list[Mechanism] = []
     for design in fourbars.designs:

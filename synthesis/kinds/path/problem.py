@@ -296,7 +296,7 @@ class PathProblem(LinkageProblem):
             *self._pivots(),
             *self._mechanism(),
             *self._closed(),
-            *self.constraints.contradictions(),
+            *self.contradicting_demands(),
         ]
 
     def _timing(self) -> list[Contradiction]:

@@ -89,6 +89,9 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
     least = float(transmission_extremes(linkage, *used)[0]) if way.same_branch else 0.0
     pivots = [complex(linkage.input_pivot), complex(linkage.output_pivot)]
     joints = np.concatenate([passed.a, passed.b, passed.p, pivots])
+    inputs = np.degrees(way.angles)
+    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
+    away = math.radians(inputs[0]) - float(way.angles[0])
     measures = measured(
         link_lengths(mechanism),
         reach_of_fourbar(linkage),
@@ -99,9 +102,8 @@ def verify_path(problem: PathProblem, mechanism: FourbarMechanism) -> PathDesign
         same_branch=way.same_branch,
         visits_in_order=way.on_circuit and way.in_order,
         full_rotation=turns,
+        used=(used[0] + away, used[1] + away) if way.same_branch else None,
     )
-    inputs = np.degrees(way.angles)
-    inputs += 360.0 * np.round((mechanism.reference_input_angle - inputs[0]) / 360.0)
     at_points = AtPoints(inputs, passed.misses, way.on_circuit, pivots, [complex(passed.a[0]), complex(passed.b[0])])
     own = [*_coupler_point_checks(problem, linkage), *_crank_phase_checks(problem, mechanism, linkage)]
 

@@ -72,6 +72,7 @@ def verify_traced(problem: PathProblem, design: SliderCrankMechanism | GearedFiv
         same_branch=True,
         visits_in_order=bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)) and bool(np.ptp(inputs) > 0.0),
         full_rotation=here.full,
+        used=used,
     )
     pins = ("A", "B") if isinstance(design, SliderCrankMechanism) else ("A", "B", "C")
     moving = [complex(joints[pin][0]) for pin in pins]

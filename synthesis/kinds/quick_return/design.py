@@ -9,8 +9,10 @@ from pydantic import Discriminator, Field
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, Output
 from synthesis.model.linkage_answer import (
+    LAYOUT,
     FixedPivots,
     FourbarMechanism,
+    Layout,
     Line,
     LinkageResult,
     MotionMetrics,
@@ -89,6 +91,7 @@ class QuickReturnDesign(Answer):
     targets: list[LimitPosition]
     verification: Verification
     metrics: QuickReturnMetrics
+    layout: Layout | None = LAYOUT
 
 
 class RatioRange(Answer):

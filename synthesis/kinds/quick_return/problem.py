@@ -86,6 +86,20 @@ class QuickReturnProblem(LinkageProblem):
                     "positions": [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 60.0, "y": 20.0, "angle": 50.0}],
                     "constraints": {"max_link_ratio": 5.0},
                 },
+                {
+                    "kind": "quick_return",
+                    "time_ratio": 1.4,
+                    "stroke": 100.0,
+                    "mechanism": "drag_link_slider",
+                    "layout": {
+                        "link_width": 10.0,
+                        "pin_diameter": 5.0,
+                        "thickness": 4.0,
+                        "gap": 0.5,
+                        "shafts": "both_sides",
+                        "max_planes": 4,
+                    },
+                },
             ]
         },
     )
@@ -230,7 +244,7 @@ class QuickReturnProblem(LinkageProblem):
         classes = {CLASSES[name] for name in self.types if name in CLASSES}
         listed = " or ".join(sorted(classes)).replace("_", "-") or "of no class of fourbars"
         reason = f"its crank turns through, and the mechanism that is asked for is {listed}"
-        return [*self.constraints.of_another_class(classes, reason), *self.constraints.contradictions()]
+        return [*self.constraints.of_another_class(classes, reason), *self.contradicting_demands()]
 
     def _of_positions(self) -> list[Contradiction]:
         """What two positions of a body exclude."""

@@ -111,23 +111,30 @@ def _summary(
     lines = []
     for reach in ranges:
         if not reach.reaches:
-            lines.append(f"{reach.type} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}.")
+            lines.append(f"{_words(reach.type)} cannot reach a time ratio of {problem.time_ratio:g}: {_said(reach)}.")
     within = "" if problem.link_ratio_limit is None else f" with a link ratio within {problem.link_ratio_limit:g}"
     lines += [
-        f"There is no {name}{within}." if TYPES[name].proven else f"No {name}{within} was found." for name in short
+        f"There is no {_words(name)}{within}." if TYPES[name].proven else f"No {_words(name)}{within} was found."
+        for name in short
     ]
     if sifting.passed:
         best = max(sifting.passed, key=lambda design: design.metrics.min_transmission_angle)
+        count = len(sifting.passed)
         lines.insert(
             0,
-            f"{len(sifting.passed)} designs have a measured time ratio of {problem.time_ratio:g}; the best "
-            f"transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a {best.mechanism.type}.",
+            f"{count} design{'s have' if count > 1 else ' has'} a measured time ratio of {problem.time_ratio:g}; the "
+            f"best transmission angle is {best.metrics.min_transmission_angle:.3f}°, of a "
+            f"{_words(best.mechanism.type)}.",
         )
     else:
         lines.insert(0, "No design exists." if complete else "No design was found.")
         if sifting.rejected:
             lines.append(f"Rejected: {sifting.listed()}.")
     return " ".join(lines)
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _said(reach: RatioRange) -> str:

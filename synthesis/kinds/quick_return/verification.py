@@ -107,6 +107,7 @@ def verify_quick_return(problem: QuickReturnProblem, design: QuickReturnMechanis
         same_branch=turns,
         visits_in_order=turns,  # the output reverses twice in a turn: there is one order
         full_rotation=turns,
+        used=(float(inputs[0]), float(inputs[-1])),
     )
     metrics = QuickReturnMetrics(
         time_ratio=reversals.time_ratio,

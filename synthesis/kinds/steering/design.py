@@ -8,7 +8,15 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import DrivenTo, FourbarMechanism, LinkageResult, Skeleton
+from synthesis.model.linkage_answer import (
+    LAYOUT,
+    DrivenTo,
+    FourbarMechanism,
+    Layout,
+    LinkageResult,
+    Skeleton,
+    UsedRange,
+)
 
 
 class DavisMechanism(Answer):
@@ -33,7 +41,7 @@ class SteeringPosition(DrivenTo):
     error: Angle = Field(description="outer − required.")
 
 
-class SteeringMetrics(Answer):
+class SteeringMetrics(UsedRange):
     """Measured properties of a steering mechanism."""
 
     steering_error: Angle = Field(description="Greatest magnitude up to the lock, to both sides, degrees.")
@@ -58,6 +66,7 @@ class SteeringDesign(Answer):
     targets: list[SteeringPosition]
     verification: Verification
     metrics: SteeringMetrics
+    layout: Layout | None = LAYOUT
 
 
 class SteeringResult(LinkageResult[SteeringDesign]):

@@ -96,4 +96,4 @@ class SteeringProblem(LinkageProblem):
             # The arms are equal and the tie rod differs from the ground: S + L > P + Q always.
             reason = "Ackermann's linkage, with two equal arms, is never Grashof"
             found += self.constraints.of_another_class(("non_grashof",), reason)
-        return [*found, *self.constraints.contradictions()]
+        return [*found, *self.contradicting_demands()]

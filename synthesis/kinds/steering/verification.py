@@ -111,6 +111,8 @@ def verify_steering(problem: SteeringProblem, design: SteeringMechanisms) -> Ste
         same_branch=driven.on_branch,
         visits_in_order=bool(np.all(np.diff(driven.left) > 0.0) and np.all(np.diff(driven.right) > 0.0)),
         full_rotation=False,
+        used=(float(driven.inputs[0]), float(driven.inputs[-1])),
+        slides=not isinstance(design, FourbarMechanism),
     )
     metrics = SteeringMetrics(
         steering_error=worst,

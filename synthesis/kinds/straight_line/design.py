@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field
 from synthesis.kinds.straight_line.problem import LineMechanism
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
-from synthesis.model.linkage_answer import FourbarMechanism, LinkageResult, MotionMetrics, Skeleton
+from synthesis.model.linkage_answer import LAYOUT, FourbarMechanism, Layout, LinkageResult, MotionMetrics, Skeleton
 
 
 class ExactLineMechanism(Answer):
@@ -71,6 +71,7 @@ class StraightLineDesign(Answer):
     targets: list[LinePoint]
     verification: Verification
     metrics: StraightLineMetrics
+    layout: Layout | None = LAYOUT
 
 
 class StraightLineResult(LinkageResult[StraightLineDesign]):

@@ -111,7 +111,7 @@ class StraightLineProblem(LinkageProblem):
 
     def contradictions(self) -> list[Contradiction]:
         """Ranges that a type cannot have, and demands that exclude one another."""
-        contradictions = list(self.constraints.contradictions())
+        contradictions = list(self.contradicting_demands())
         for name, most in MOST_RANGE.items():
             if self.mechanism == name and self.range_of(name) >= most:
                 detail = f"the crank of {name} turns by less than {most:g}°; state less or another mechanism"

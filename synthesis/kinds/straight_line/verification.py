@@ -103,6 +103,7 @@ def verify_straight_line(
         same_branch=min(driven.transmission.values()) > NO_TOGGLE,
         visits_in_order=driven.velocity[0] > 0.0,
         full_rotation=whole is not None,
+        used=(float(inputs[0]), float(inputs[-1])),
     )
     metrics = StraightLineMetrics(
         family=family,

@@ -12,6 +12,7 @@ FAR = [9e5, 1e6]
 UNITS: dict[str, Any] = {"length_unit": Row("in", file="csv"), "seed": 7}
 
 DEMANDS: dict[str, Any] = {
+    "space": {"box": [[-1e6, -1e6], [1e6, 1e6]]},
     "constraints": {"min_transmission_angle": 1.0},
     "constraints.min_transmission_angle": 1.0,
     "constraints.grashof": "non_grashof",
@@ -30,6 +31,28 @@ DEMANDS: dict[str, Any] = {
     "constraints.moving_pivot_region.y": Row(FAR, {"constraints.moving_pivot_region": WIDE}),
 }
 """Demands that every design keeps are shown among its checks; a far region is kept by none."""
+
+
+def layout_rows(wide: float, base: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Rows of the block ``layout``; links and pins ``wide`` get in one another's way, slender ones do not."""
+    block = {"link_width": 0.2 * wide, "pin_diameter": 0.1 * wide, "thickness": 3.0}
+    problem = {**(base or {}), "layout": block}
+    return {
+        "layout": Row(block, base or {}),
+        "layout.link_width": Row(wide, problem),
+        "layout.pin_diameter": Row(wide, {**problem, "layout": {**block, "link_width": wide}}),
+        "layout.thickness": Row(4.0, problem),
+        "layout.gap": Row(0.5 * wide, problem),
+        "layout.max_planes": Row(20, problem),
+        "layout.shafts": Row("both_sides", problem),
+        "layout.over": Row("cycle", problem),
+    }
+
+
+def whole_turn(rows: dict[str, Any]) -> dict[str, Any]:
+    """The rows of a kind whose used range is the cycle."""
+    return {name: row for name, row in rows.items() if name != "layout.over"}
+
 
 NONE_KEEPS = {"constraints.min_transmission_angle": 89.5}
 
@@ -81,6 +104,7 @@ DRIVEN = {
 MOTION_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **layout_rows(60.0),
     "max_designs": Row(2, {**BOTH_OPEN, "max_designs": 1}),
     "include_failed": Row(True, NONE_KEEPS),
     "rank_by": Row("size", {**BOTH_OPEN, "max_designs": 3}),
@@ -161,6 +185,7 @@ ELLIPSE = {
 PATH_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **layout_rows(60.0),
     "constraints.input_pivot_region": WIDE,
     "constraints.input_pivot_region.x": Row(FAR, {"constraints.input_pivot_region": WIDE}),
     "constraints.input_pivot_region.y": Row(FAR, {"constraints.input_pivot_region": WIDE}),
@@ -204,6 +229,7 @@ CARRIED = {"swing": None, "positions": LIMITS}
 QUICK_RETURN_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **whole_turn(layout_rows(1.6)),
     "max_designs": 1,
     "include_failed": Row(True, NONE_KEEPS),
     "rank_by": "size",
@@ -225,6 +251,7 @@ LINE: dict[str, Any] = {"kind": "straight_line", "length": 100.0, "mechanism": "
 LINE_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **layout_rows(160.0),
     "max_designs": Row(1, {"mechanism": "auto", "max_designs": 3}),
     "include_failed": Row(True, {"max_deviation": 1e-6}),
     "rank_by": Row("size", {"mechanism": "auto"}),
@@ -249,6 +276,7 @@ STEERING: dict[str, Any] = {
 STEERING_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **layout_rows(1200.0),
     "max_designs": 1,
     "include_failed": Row(True, {"mechanism": "ackermann", "max_steering_error": 1e-3}),
     "rank_by": Row("size", {"mechanism": "auto"}),
@@ -275,6 +303,7 @@ SLIDER = {"output": {"type": "slider", "stroke": 60.0}}
 DWELL_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **whole_turn(layout_rows(30.0)),
     **{
         f"constraints.{region}.{axis}": Row(FAR, {f"constraints.{region}": WIDE})
         for region in ("fixed_pivot_region", "moving_pivot_region")
@@ -315,6 +344,7 @@ SKELETON = {
 PARALLEL_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    **layout_rows(60.0, {"include_cognates": True}),
     "max_designs": Row(1, {"include_cognates": True}),
     "include_failed": Row(True, NONE_KEEPS),
     "rank_by": Row("size", {"include_cognates": True}),
@@ -356,6 +386,7 @@ FUNCTION_ROWS: dict[str, Any] = {
     **UNITS,
     "length_unit": Row("in", file="dxf"),
     **DEMANDS,
+    **layout_rows(60.0, {"fixed_pivots": {"input": [10.0, 5.0], "output": [90.0, 30.0]}}),
     "max_designs": Row(1, {"pairs": [*FUNCTION["pairs"], {"input": 70.0, "output": 97.0}], "max_designs": 3}),
     "include_failed": Row(True, NONE_KEEPS),
     "rank_by": Row("size", {"pairs": [*FUNCTION["pairs"], {"input": 70.0, "output": 97.0}], "max_designs": 6}),

@@ -30,9 +30,11 @@ NO_EFFECT = {
     ("planetary_train", "include_failed"): EXHAUSTIVE,
     ("gearbox", "include_failed"): EXHAUSTIVE,
     ("layshaft_gearbox", "include_failed"): EXHAUSTIVE,
+    ("quick_return", "layout.over"): "the crank turns through: that is its used range",
+    ("dwell", "layout.over"): "the crank turns through: that is its used range",
     ("parallel_motion", "linkage.reference_body_angle"): "taken because answers have it, and said not to be looked at",
 }
 """Fields with which no answer changes, and why."""
 
-ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton"})
-"""Models whose fields have rows or tests of their own: problems of paths, and skeletons beside dimensions."""
+ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space"})
+"""Models whose fields have rows or tests of their own: problems of paths, skeletons beside dimensions, and rooms."""

@@ -1,0 +1,10 @@
+"""How near the parts of a mechanism come to each other, and to what stands around it, over a whole motion.
+
+:func:`swept` decides whether pairs of parts keep a distance at *every* input of a range, not at samples of it: between
+two positions no point moves farther than :mod:`enclosures` allows, and :mod:`sweep` refines until that decides.
+"""
+
+from kinematics.linkage.clearance.outlines import Part
+from kinematics.linkage.clearance.sweep import Swept, free_inputs, free_ranges, swept
+
+__all__ = ["Part", "Swept", "free_inputs", "free_ranges", "swept"]

@@ -1,0 +1,152 @@
+"""The parts of a mechanism in motion: their distances at inputs, and how far they move around them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import DimensionError
+from kinematics.linkage.clearance.enclosures import by_closures, by_theorem
+from kinematics.linkage.clearance.outlines import MEETING, Complex, Indices, Part, Real, distances
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.program import program_of, unit_frame
+from kinematics.linkage.planar.triads import Loops, loop_equations
+
+Pairs = Sequence[tuple[int, int]]
+
+FIRST = 0.05
+"""Half of a part of the range at first: radians, or a share of the mechanism's size along an input slide."""
+
+
+class _Pose(NamedTuple):
+    """A mechanism at n inputs: joints in unit coordinates (joints, n), rotations of the links and e^{iφ} (links, n)."""
+
+    places: Complex
+    rotations: Real
+    turn: Complex
+    valid: NDArray[np.bool_]
+
+
+class Scene:
+    """The parts of a mechanism as the kernels take them.
+
+    Attributes
+    ----------
+    size : float
+        Of the mechanism, in length units.
+    unit : float
+        Of the input: 1 radian, or the size along a slide.
+    pairs : int, shape (p, 2)
+    overlaps : float, shape (p,)
+        Distance of the outlines of each pair where the cores meet: less than nothing by the sum of the radii and more.
+    """
+
+    def __init__(self, mechanism: Mechanism, parts: Sequence[Part], pairs: Pairs) -> None:
+        if mechanism.shape != ():
+            raise DimensionError("mechanism", "one design", mechanism.shape)
+        for part in parts:
+            if part.link not in mechanism.links:
+                raise DimensionError("link of a part", "a link of the mechanism", part.link)
+            if not len(part.points) or not np.isfinite(part.points).all():
+                raise DimensionError("points of a part", "one or more, finite", part.points)
+            if not 0.0 <= part.radius < np.inf:
+                raise DimensionError("radius of a part", "zero or more", part.radius)
+        self._mechanism = mechanism
+        self._program, frame = program_of(mechanism), unit_frame(mechanism)
+        self.size, self._origin = float(frame.size), complex(frame.origin)
+        self.unit = self.size if mechanism.driven_by_slide else 1.0
+        self.pairs = np.asarray(pairs, np.int64)
+        links, joints = self._program.links, list(mechanism.joints)
+        place = self._program.code.joints[0]
+        self._on = np.array([[joint in mechanism.links[link] for joint in joints] for link in links])
+        self._pins = self._on.argmax(axis=1)
+        self._links = np.array([links.index(part.link) for part in parts], np.int64)
+        points = [(np.asarray(part.points, np.complex128) - self._origin) / self.size for part in parts]
+        self._vertices = np.concatenate(points)
+        self._starts = np.concatenate([[0], np.cumsum([len(own) for own in points])])
+        # How far the vertices of a part are from each joint: a rotation about that joint moves them.
+        self._reach = np.array([[np.abs(own - joint).max() for joint in place] for own in points])
+        self._radii = np.array([part.radius for part in parts])[self.pairs].sum(axis=1)
+        self.overlaps = -self._radii - MEETING * self.size
+        self._loops: Loops | None = None
+        if self._program.class_iii:
+            self._loops = loop_equations(mechanism, dict(zip(joints, place.tolist(), strict=True)))
+
+    def divided(self, low: float, high: float) -> tuple[Real, Real]:
+        """Middles and halves of equal parts of a range, none of which is too large to begin with."""
+        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+            raise DimensionError("range of the input", "finite, from the lower end to the higher", (low, high))
+        count = max(int(np.ceil((high - low) / (2.0 * FIRST * self.unit))), 1)
+        half = 0.5 * (high - low) / count
+        return np.asarray(low + half * (2.0 * np.arange(count) + 1.0), np.float64), np.full(count, half)
+
+    def distances(self, pair: Indices, centre: Real, half: Real) -> tuple[Real, Real]:
+        """Distances of pairs at inputs, NaN where there is no position; and by how much they may be less around it.
+
+        Parameters
+        ----------
+        pair : int, shape (m,)
+            Of :attr:`pairs`.
+        centre, half : float, shape (m,)
+            Inputs, and how far around them the input may be.
+
+        Returns
+        -------
+        distance, bound : float, shape (m,)
+            Of the outlines, length units. The bound is infinite where nothing is known.
+        """
+        (inputs, halves), item = np.unique(np.stack([centre, half]), axis=1, return_inverse=True)
+        item = item.ravel()
+        pose = self._pose(inputs)
+        shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
+        shift[0] = 0.0
+        cores = self._vertices, self._starts, self._links, self.pairs
+        apart = distances(*cores, np.stack([pair, item], axis=1), pose.turn, shift)
+        apart[~pose.valid[item]] = np.nan
+        moves = self._moves(pose, halves)
+        first, second = self.pairs[pair].T
+        return self.size * apart - self._radii[pair], self.size * (moves[first, item] + moves[second, item])
+
+    def moves(self, centre: Real, half: Real) -> Real:
+        """How far parts move at most while the input stays within a half of a middle.
+
+        Parameters
+        ----------
+        centre, half : float, shape (n,)
+
+        Returns
+        -------
+        float, shape (parts, n)
+            Length units.
+        """
+        return self.size * self._moves(self._pose(centre), half)
+
+    def _pose(self, inputs: Real) -> _Pose:
+        code, links = self._program.code, self._program.links
+        motion = drive(self._mechanism, inputs, order=0)
+        places = np.stack([motion.joints[name][0] for name in self._mechanism.joints]) - self._origin
+        angles = np.stack([np.zeros(len(inputs)), *(motion.angles[link][0] for link in links[1:])])
+        rotations = angles - code.link_angles[0][:, None]
+        return _Pose(places / self.size, rotations, np.exp(1j * rotations), motion.valid)
+
+    def _moves(self, pose: _Pose, half: Real) -> Real:
+        code, links = self._program.code, self._program.links
+        turned = np.full(pose.rotations.shape, np.pi)
+        if self._loops is not None:
+            unknown = [links.index(link) for link in self._loops.links]
+            turned[unknown] = by_theorem(self._loops, pose.rotations[unknown], half)
+        shifted = np.empty(pose.places.shape)
+        by_closures(
+            code.rows, code.ratios, code.gives, self._on, code.joints[0], code.lines[0], code.line_angles[0],
+            code.driver, pose.places, pose.turn, half / self.unit, turned, shifted,
+        )  # fmt: skip
+        chords = 2.0 * np.sin(0.5 * turned[self._links])
+        about = shifted[None] + self._reach[:, :, None] * chords[:, None]
+        moves: Real = np.where(self._on[self._links][:, :, None], about, np.inf).min(axis=1)
+        moves[self._links == 0] = 0.0
+        moves[~np.isfinite(moves)] = np.inf
+        return moves

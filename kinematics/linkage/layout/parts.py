@@ -1,0 +1,217 @@
+"""What a planar mechanism is built of: plates that lie in planes, and pins that join them.
+
+* The *plate* of a link is the hull of its joints, the coupler point among them, widened by half of the link width.
+* A *pin* stands at every joint of two links or more; the ground counts as one, so that its joints are pivots.
+* On a *slide* a block runs in a slot of the link that has the line, in the plane of its plate, and turns on a pin at
+  the joint: the plate takes in the slot, from where the joint is least along the line in the motion to where it is
+  most, and the pin joins it as it joins the links of the joint. A slide on the ground is a slot in the base.
+* A *gear* is a disc of its pitch radius about the pivot of its link, a plate of its own, keyed to that link by the
+  shaft of the pivot. Gears that turn the same way have an idler between them, as large as the smaller of the two.
+* Joints of one link that lie on each other have one pin, and fixed pivots that do one shaft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.clearance import Part
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, TopologyError
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+GRID = 1441
+"""Inputs at which the ends of slots are looked for: a quarter of a degree of a full turn apart."""
+
+ONE_PLACE = 1e-9
+"""Distance as a share of the mechanism's size below which joints lie on each other: one pin."""
+
+
+class Plate(NamedTuple):
+    """What lies in one plane: a link, or a gear that turns with it."""
+
+    name: str
+    link: str
+    outline: Part
+
+
+class Pin(NamedTuple):
+    """A pin at a joint, or a shaft at a fixed pivot.
+
+    Attributes
+    ----------
+    joint : str
+        Its joint; the first of those that lie on one another.
+    plates : frozenset of int
+        The plates that it joins.
+    grounded : bool
+        Whether it stands on the base, fixed or by a block in a slot there.
+    outline : Part
+        Its disc.
+    """
+
+    joint: str
+    plates: frozenset[int]
+    grounded: bool
+    outline: Part
+
+    @property
+    def name(self) -> str:
+        """As an answer calls it."""
+        return f"pin {self.joint}"
+
+
+class Parts(NamedTuple):
+    """Plates and pins; ``meshes`` are the gears that lie in one plane, plates by their numbers."""
+
+    plates: tuple[Plate, ...]
+    pins: tuple[Pin, ...]
+    meshes: tuple[tuple[int, ...], ...]
+
+
+def parts_of(mechanism: Mechanism, link_width: float, pin_diameter: float, low: float, high: float) -> Parts:
+    """The parts of one design.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        A single design, of shape ().
+    link_width, pin_diameter : float
+        Length units; the pin's at most the link's.
+    low, high : float
+        Least and greatest input of the motion, radians or positions along the input slide: slots are as long as it
+        needs them.
+
+    Raises
+    ------
+    TopologyError
+        For gears on a link that is not pinned to the ground, of the ratio 0, or on one shaft.
+    """
+    travel = _travel(mechanism, low, high)
+    size = max(abs(complex(z) - complex(w)) for z, w in combinations(mechanism.joints.values(), 2))
+    moving = [link for link in mechanism.links if link != GROUND]
+    plates = []
+    for link in moving:
+        points = [complex(mechanism.joints[joint]) for joint in mechanism.links[link]]
+        for slide, ends in zip(mechanism.slides, travel, strict=True):
+            if slide.link == link:
+                points += [complex(slide.point) + end * complex(np.exp(1j * slide.angle)) for end in ends]
+        plates.append(Plate(link, link, Part(link, _hull(points, ONE_PLACE * size), 0.5 * link_width)))
+    pins = []
+    shafts: dict[str, set[int]] = {}
+    meshes = []
+    for n, gear in enumerate(mechanism.gears):
+        number = f" {n + 1}" if len(mechanism.gears) > 1 else ""
+        mesh = []
+        for joint, name, link, place, radius in _wheels(mechanism, gear.first, gear.second, gear.ratio):
+            disc = Part(GROUND, np.array([place]), radius)
+            mesh.append(len(plates))
+            if joint is None:
+                pins.append(
+                    Pin(f"{name}{number}", frozenset(mesh[-1:]), True, disc._replace(radius=0.5 * pin_diameter))
+                )
+            else:
+                shafts.setdefault(joint, set()).add(len(plates))
+            plates.append(Plate(f"{name}{number}", link, disc))
+        meshes.append(tuple(mesh))
+    for joints in _places(mechanism, ONE_PLACE * size):
+        links = {link for link, listed in mechanism.links.items() if joints & set(listed)}
+        links |= {slide.link for slide in mechanism.slides if slide.joint in joints}
+        joined = {n for n, link in enumerate(moving) if link in links}
+        joined |= {plate for joint in joints for plate in shafts.get(joint, ())}
+        grounded = GROUND in links
+        if joined and len(joined) + grounded > 1:
+            joint = next(name for name in mechanism.joints if name in joints)
+            carrier = next(link for link in (GROUND, *moving) if joint in mechanism.links.get(link, ()))
+            disc = Part(carrier, np.array([complex(mechanism.joints[joint])]), 0.5 * pin_diameter)
+            pins.append(Pin(joint, frozenset(joined), grounded, disc))
+    return Parts(tuple(plates), tuple(pins), tuple(meshes))
+
+
+def _travel(mechanism: Mechanism, low: float, high: float) -> list[tuple[float, float]]:
+    """The least and the greatest travel of each slide: of a grid, by the parabola through three neighbours."""
+    if not mechanism.slides:
+        return []
+    motion = drive(mechanism, np.linspace(low, high, GRID), order=0)
+    return [(_least(motion.slides[name][0]), -_least(-motion.slides[name][0])) for name in mechanism.slide_names]
+
+
+def _least(values: Real) -> float:
+    k = int(np.nanargmin(values))
+    if not 0 < k < len(values) - 1:
+        return float(values[k])
+    before, at, after = values[k - 1 : k + 2]
+    bend = before - 2.0 * at + after
+    return float(at - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(at)
+
+
+def _places(mechanism: Mechanism, near: float) -> list[set[str]]:
+    """Joints, those of one link that lie on each other together."""
+    places = [{joint} for joint in mechanism.joints]
+    for listed in mechanism.links.values():
+        for one, other in combinations(listed, 2):
+            if abs(complex(mechanism.joints[one]) - complex(mechanism.joints[other])) <= near:
+                first, second = (next(place for place in places if joint in place) for joint in (one, other))
+                if first is not second:
+                    places.remove(second)
+                    first |= second
+    return places
+
+
+def _wheels(
+    mechanism: Mechanism, first: str, second: str, ratio: float
+) -> list[tuple[str | None, str, str, complex, float]]:
+    """Gears that tie two links by a ratio: joint of the shaft, name, link, centre and pitch radius of each.
+
+    With radii in the ratio |λ| to 1 the discs touch on the line of the pivots: r + |λ| r = d, and with an idler as
+    large as the smaller one between them r + |λ| r + 2 min(r, |λ| r) = d.
+    """
+    pivots = []
+    for link in (first, second):
+        shared = [joint for joint in mechanism.links[link] if joint in mechanism.links[GROUND]]
+        if not shared:
+            raise TopologyError(f"the gear of {link!r} has no shaft: that link is not pinned to the ground")
+        pivots.append(shared[0])
+    o, q = (complex(mechanism.joints[joint]) for joint in pivots)
+    if ratio == 0.0 or o == q:
+        raise TopologyError(f"gears of {first!r} and {second!r} need a ratio other than 0 and shafts apart")
+    idled = 2.0 * min(1.0, abs(ratio)) if ratio > 0.0 else 0.0
+    unit = abs(q - o) / (1.0 + abs(ratio) + idled)
+    wheels: list[tuple[str | None, str, str, complex, float]] = [
+        (pivots[0], f"gear of {first}", first, o, abs(ratio) * unit),
+        (pivots[1], f"gear of {second}", second, q, unit),
+    ]
+    if idled:
+        share = (abs(ratio) + 0.5 * idled) / (1.0 + abs(ratio) + idled)
+        wheels.append((None, "idler", GROUND, o + share * (q - o), 0.5 * idled * unit))
+    return wheels
+
+
+def _hull(points: Sequence[complex], near: float) -> Complex:
+    """Corners of the convex hull, counter-clockwise (Andrew's chain); of points on a line the two ends, or the one."""
+    listed: list[complex] = []
+    for point in sorted(points, key=lambda z: (z.real, z.imag)):
+        if all(abs(point - other) > near for other in listed):
+            listed.append(point)
+    if len(listed) < 3:
+        return np.array(listed)
+    along = max((b - a for a, b in combinations(listed, 2)), key=abs)
+    off = [((z - listed[0]) * along.conjugate()).imag / abs(along) for z in listed]
+    if max(off) - min(off) <= near:
+        shares = [(z * along.conjugate()).real for z in listed]
+        return np.array([listed[shares.index(min(shares))], listed[shares.index(max(shares))]])
+    half: list[list[complex]] = []
+    for ordered in (listed, listed[::-1]):
+        chain: list[complex] = []
+        for z in ordered:
+            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (z - chain[-2])).imag <= 0.0:
+                chain.pop()
+            chain.append(z)
+        half.append(chain[:-1])
+    return np.array(half[0] + half[1])

@@ -1,0 +1,96 @@
+"""A linkage laid out in planes, as an answer has it: in degrees, with what it is made of."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from kinematics.errors import MechanismError
+from kinematics.linkage import layout as core
+from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.analyses.cycle import cycle_of
+from synthesis.model.layout import LayoutSizes
+from synthesis.model.linkage_answer import Layout, LayoutClash
+
+DRIVEN = 181
+"""Inputs at which it is seen whether the mechanism can be driven through the motion at all."""
+
+WHOLE = 1e-9
+"""Share of a cycle by which a motion may miss it and be closed: rounding."""
+
+
+def layout_of(mechanism: Mechanism, stated: LayoutSizes, used: tuple[float, float] | None) -> Layout:
+    """Lay a linkage out in planes.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        One design, in its reference configuration.
+    stated : LayoutSizes
+        What it is made of.
+    used : pair of float or None
+        First and last input of the used range, radians or places along the input slide; None where no motion leads
+        through it.
+    """
+    slides = mechanism.driven_by_slide
+    try:
+        if stated.over == "cycle":
+            used = cycle_of(mechanism)
+        if used is None:
+            return _without("no motion leads through the used range")
+        low, high = sorted(used)
+        inputs = np.linspace(low, high, DRIVEN + 2)[1:-1] if high > low else np.array([low])
+        if not drive(mechanism, inputs, order=0).valid.all():
+            return _without("the mechanism cannot be assembled all over the motion")
+        turn = math.inf if slides else cycle(mechanism)
+        found = core.laid_out(
+            mechanism,
+            low,
+            high,
+            link_width=stated.link_width,
+            pin_diameter=stated.pin_diameter,
+            gap=stated.gap,
+            through=stated.shafts == "both_sides",
+            closed=abs(high - low - turn) <= WHOLE * turn,
+        )
+    except MechanismError as error:
+        return _without(str(error))
+    count = max(found.planes.values())
+    unit = 1.0 if slides else 180.0 / math.pi
+    free = None if found.free is None else (unit * found.free[0], unit * found.free[1])
+
+    def place(at: float) -> dict[str, Any]:
+        return {"input_place": at} if slides else {"input_angle": math.degrees(at)}
+
+    return Layout(
+        buildable=not found.clashes,
+        planes=found.planes,
+        count=count,
+        least=True,
+        height=count * (stated.thickness + stated.gap),
+        pins=found.pins,
+        stub_shafts=found.stub_shafts,
+        crossings=found.crossings,
+        clashes=[LayoutClash(parts=one.parts, distance=one.distance, **place(one.at)) for one in found.clashes],
+        free_range=None if slides else free,
+        free_stroke=free if slides else None,
+    )
+
+
+def _without(reason: str) -> Layout:
+    return Layout(
+        buildable=False,
+        planes={},
+        count=0,
+        least=False,
+        height=0.0,
+        pins={},
+        stub_shafts=[],
+        crossings=[],
+        clashes=[],
+        remark=reason,
+    )

@@ -1,0 +1,65 @@
+"""A linkage as it stands at its first target, where that is not where its solver left it.
+
+Within tolerances a solver's first pose is one of many; the first target is where the driven body comes nearest.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from kinematics.linkage.planar.drive import drive
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.model.linkage_answer import (
+    FourbarMechanism,
+    LinkageDesign,
+    LinkageMechanism,
+    SixbarMechanism,
+    SliderCrankMechanism,
+)
+from synthesis.model.linkages import (
+    FourbarConfiguration,
+    fourbar_mechanism,
+    inverted_slider_crank_mechanism,
+    slider_crank_mechanism,
+)
+from synthesis.proof.rebuilt import rebuilt
+
+SAME_INPUT = 1e-7
+"""Radians, or task sizes: at a smooth minimum an input is known to half of its digits."""
+
+
+def at_first_target(problem: MotionProblem, design: LinkageDesign) -> LinkageMechanism | None:
+    """The mechanism of a driven design with its first target as its reference.
+
+    None where it stands there already, and for sixbars: their crank's limit is their first target.
+    """
+    mechanism = design.mechanism
+    driven = None if isinstance(mechanism, SixbarMechanism) else rebuilt(mechanism)
+    if driven is None:
+        return None
+    place, angle = design.targets[0].input_place, design.targets[0].input_angle
+    at = math.radians(angle or 0.0) if place is None else place
+    away = at - float(driven.reference_input)
+    away = math.remainder(away, math.tau) if place is None else away / problem.task_size
+    if abs(away) <= SAME_INPUT:
+        return None
+    motion = drive(driven, np.array([at]), order=0)
+    if not motion.valid.all():
+        return None
+    joints = {name: complex(jet[0, 0]) for name, jet in motion.joints.items()}
+    turned = float(motion.angles["coupler"][0, 0] - driven.link_angle("coupler"))
+    stood = mechanism.reference_body_angle
+    body_angle = (problem.positions[0].angle if stood is None else stood) + math.degrees(turned)
+    o2, a, p = joints["O2"], joints["A"], joints["P"]
+    if isinstance(mechanism, FourbarMechanism):
+        return fourbar_mechanism(FourbarConfiguration(o2, a, joints["B"], joints["O4"], p), body_angle)
+    if isinstance(mechanism, SliderCrankMechanism):
+        along = math.radians(mechanism.slide.angle)
+        return slider_crank_mechanism(
+            o2, a, joints["B"], along, p, driven_by=mechanism.driven_by, body_angle=body_angle
+        )
+    line = cmath.exp(1j * (float(driven.slides[0].angle) + turned))
+    return inverted_slider_crank_mechanism(o2, a, joints["O4"], cmath.phase(line), p, body_angle=body_angle)

@@ -1,0 +1,152 @@
+"""Which fourbars that carry a body are likely to keep clear of obstacles: looked at in a few positions on their way.
+
+A kernel that leaves out what plainly does not fit, so that only what may fit is driven and proven. What it passes may
+still fail between the positions; what it drops would fail.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.linkage.clearance.outlines import OPTIONS, distance
+from kinematics.linkage.fourbar import Fourbar, positions
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.task import Complex, MotionTask, Real
+from synthesis.model.space import Space
+
+LOOKED_AT = 60
+"""Positions on the way from the first target to the last, or round the cycle."""
+
+SURE = 1e-6
+"""Share of the task's size by which a distance may fall short: these numbers are for choosing only."""
+
+
+def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[np.bool_]:
+    """Which fourbars keep within the box and clear of the obstacles where they are looked at.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With a space that demands something of the motion.
+    task : MotionTask
+        Its positions.
+    joints : complex, shape (n, 4)
+        O2, A, B, O4 at the first target, in task coordinates; fourbars whose motion goes through the targets.
+    """
+    space = problem.space
+    assert space is not None
+    o2, a, b, o4 = (np.ascontiguousarray(task.origin + column * task.size) for column in joints.T)
+    point = complex(task.origin)
+    linkages = Fourbar(o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (point - a) / (b - a) * np.abs(b - a))
+    sign = np.where((np.conj(b - a) * (b - o4)).imag >= 0.0, 1, -1)
+    inputs = _inputs(space, task, o2, a)
+    at = positions(linkages, inputs, sign)
+    home = positions(linkages, np.angle(a - o2)[:, None], sign)
+    spin = np.exp(1j * (at.coupler_angle - home.coupler_angle))
+    corners = [zone.outline for zone in space.obstacles]
+    starts = np.cumsum([0, *(len(points) for points, _ in corners)])
+    outline = (
+        np.array([complex(*corner) for corner in space.body.outline]) - point if space.body else np.empty(0, complex)
+    )
+    out = np.empty(len(joints), np.bool_)
+    _look(
+        o2, o4, at.a, at.b, at.p, spin, at.valid, outline,
+        np.concatenate([points for points, _ in corners]) if corners else np.empty(0, np.complex128),
+        starts, np.array([radius for _, radius in corners]), _box(space),
+        0.5 * space.link_width, space.clearance - SURE * task.size, SURE * task.size, out,
+    )  # fmt: skip
+    return out
+
+
+def _inputs(space: Space, task: MotionTask, o2: Complex, a: Complex) -> Real:
+    """Input angles that are looked at, shape (n, LOOKED_AT)."""
+    stands = np.angle(a - o2)
+    shares = np.linspace(0.0, 1.0, LOOKED_AT)
+    if space.over == "cycle":
+        return np.asarray(stands[:, None] + math.tau * shares)
+    pins = task.origin + task.size * task.images((a - task.origin) / task.size)
+    turned = np.angle((pins - o2[:, None]) / (pins[:, :1] - o2[:, None]))
+    turned[:, 0] = 0.0  # and not by rounding a little less, which would be a whole turn
+    onward, backward = np.mod(turned, math.tau), -np.mod(-turned, math.tau)
+    rises, falls = (np.diff(onward) > 0.0).all(axis=1), (np.diff(backward) < 0.0).all(axis=1)
+    forward = rises & ~(falls & (-backward[:, -1] < onward[:, -1]))
+    return np.asarray(stands[:, None] + np.where(forward, onward[:, -1], backward[:, -1])[:, None] * shares)
+
+
+def _box(space: Space) -> Real:
+    """Left, right, low, high; infinite where no box is given."""
+    if space.box is None:
+        return np.array([-np.inf, np.inf, -np.inf, np.inf])
+    (left, low), (right, high) = space.box
+    return np.array([left, right, low, high])
+
+
+@njit(**OPTIONS)
+def _look(
+    o2: Complex,
+    o4: Complex,
+    a: Complex,
+    b: Complex,
+    p: Complex,
+    spin: Complex,
+    valid: NDArray[np.bool_],
+    outline: Complex,
+    corners: Complex,
+    starts: NDArray[np.int64],
+    radii: Real,
+    box: Real,
+    half: float,
+    clearance: float,
+    slack: float,
+    out: NDArray[np.bool_],
+) -> None:
+    """Fill ``out``: whether each of n linkages keeps clear at m inputs; shapes (n,) and (n, m) of the joints."""
+    bar, hull, body = np.empty(2, np.complex128), np.empty(3, np.complex128), np.empty(len(outline), np.complex128)
+    for n in range(len(o2)):
+        free = True
+        for m in range(a.shape[1]):
+            if not valid[n, m]:
+                continue
+            bar[0], bar[1] = o2[n], a[n, m]
+            free = _clear(bar, half, corners, starts, radii, box, clearance, slack)
+            bar[0], bar[1] = o4[n], b[n, m]
+            free = free and _clear(bar, half, corners, starts, radii, box, clearance, slack)
+            if len(outline):
+                bar[0], bar[1] = a[n, m], b[n, m]
+                free = free and _clear(bar, half, corners, starts, radii, box, clearance, slack)
+                for k in range(len(outline)):
+                    body[k] = p[n, m] + spin[n, m] * outline[k]
+                free = free and _clear(body, 0.0, corners, starts, radii, box, clearance, slack)
+            else:
+                hull[0], hull[1], hull[2] = a[n, m], b[n, m], p[n, m]
+                free = free and _clear(hull, half, corners, starts, radii, box, clearance, slack)
+            if not free:
+                break
+        out[n] = free
+
+
+@njit(**OPTIONS)
+def _clear(
+    core: Complex,
+    half: float,
+    corners: Complex,
+    starts: NDArray[np.int64],
+    radii: Real,
+    box: Real,
+    clearance: float,
+    slack: float,
+) -> bool:
+    for n in range(len(core)):
+        z = core[n]
+        if z.real - half < box[0] - slack or z.real + half > box[1] + slack:
+            return False
+        if z.imag - half < box[2] - slack or z.imag + half > box[3] + slack:
+            return False
+    for k in range(len(radii)):
+        if distance(core, corners[starts[k] : starts[k + 1]]) - half - radii[k] < clearance:
+            return False
+    return True

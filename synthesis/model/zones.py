@@ -1,0 +1,215 @@
+"""Shapes in the plane that statements speak of: where pivots may lie, and what stands in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import AfterValidator, Field, model_validator
+
+from synthesis.model.statement import Point, PositiveLength, Statement
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+MOST_VERTICES = 1000
+"""Of one outline: a curve drawn in steps of a third of a degree. Every pair of edges counts in a sweep."""
+
+ON_EDGE = 1e-9
+"""Points this share of the greatest coordinate outside an area count as inside: they were meant to lie on its edge."""
+
+FLAT = 1e-9
+"""Area of a polygon, as a share of the square of its extent, that is none."""
+
+
+class Area(Protocol):
+    """Where points may lie."""
+
+    def distance_each(self, points: Complex) -> Real:
+        """How far points, of any shape, lie outside, in length units; 0 within and, to rounding, on the edge."""
+
+    def sampled(self, rng: np.random.Generator, count: int) -> Complex:
+        """Points spread evenly over the area, shape (count,)."""
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The box around it: x from, to, y from, to."""
+
+
+def _simple(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    from shapely import Polygon, is_valid_reason
+
+    extent = np.ptp(np.array(points), axis=0).max()
+    if extent == 0.0 or Polygon(points).area <= FLAT * extent**2:
+        raise ValueError("the corners enclose no area")
+    if not Polygon(points).is_valid:
+        reason = is_valid_reason(Polygon(points))
+        raise ValueError(f"the outline must not meet itself ({reason})")
+    return points
+
+
+Outline = Annotated[list[Point], Field(min_length=3, max_length=MOST_VERTICES), AfterValidator(_simple)]
+"""Corners of a simple polygon, in order, either way round; it need not be convex. The first is not repeated."""
+
+
+class Circle(Statement):
+    """A circle with what it encloses."""
+
+    center: Point
+    radius: PositiveLength
+
+
+def _shaped(corners: Complex) -> Any:
+    """The geometry of a point, a line or a polygon."""
+    from shapely import LineString, Point, Polygon
+
+    pairs = np.stack([corners.real, corners.imag], axis=1)
+    return Point(pairs[0]) if len(pairs) == 1 else LineString(pairs) if len(pairs) == 2 else Polygon(pairs)
+
+
+class Zone(Statement):
+    """An area: a polygon, which need not be convex, or a circle."""
+
+    polygon: Outline | None = None
+    circle: Circle | None = None
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Self:
+        if (self.polygon is None) == (self.circle is None):
+            raise ValueError("give a polygon or a circle")
+        return self
+
+    @cached_property
+    def _shape(self) -> Polygon:
+        from shapely import Polygon, prepare
+
+        assert self.polygon is not None
+        shape = Polygon(self.polygon)
+        prepare(shape)
+        return shape
+
+    def distance_each(self, points: Complex) -> Real:
+        """How far points, of any shape, lie outside, in length units; 0 within and, to rounding, on the edge."""
+        if self.circle is not None:
+            centre = complex(*self.circle.center)
+            away = np.abs(points - centre) - self.circle.radius
+            slack = ON_EDGE * (abs(centre) + self.circle.radius)
+        else:
+            import shapely
+
+            away = shapely.distance(self._shape, shapely.points(np.real(points), np.imag(points)))
+            slack = ON_EDGE * float(np.abs(self._shape.bounds).max())
+        return np.asarray(np.where(away > slack, away, 0.0))
+
+    def distance_from(self, corners: Complex) -> float:
+        """Distance from a point, a line or a polygon by its corners; 0 where they meet."""
+        from shapely import Point
+
+        other = _shaped(corners)
+        if self.circle is not None:
+            return max(float(other.distance(Point(self.circle.center))) - self.circle.radius, 0.0)
+        return float(other.distance(self._shape))
+
+    def holds(self, corners: Complex) -> bool:
+        """Whether a point, a line or a polygon reaches inside, and does not only touch."""
+        from shapely import Point
+
+        other = _shaped(corners)
+        if self.circle is not None:
+            return bool(other.distance(Point(self.circle.center)) < self.circle.radius)
+        return bool(other.relate_pattern(self._shape, "T********"))
+
+    def sampled(self, rng: np.random.Generator, count: int) -> Complex:
+        """Points spread evenly over the area, shape (count,)."""
+        if self.circle is not None:
+            distance = self.circle.radius * np.sqrt(rng.uniform(0.0, 1.0, count))
+            return np.asarray(complex(*self.circle.center) + distance * np.exp(2j * np.pi * rng.uniform(size=count)))
+        from shapely import area, constrained_delaunay_triangles, get_coordinates, get_parts
+
+        triangles = get_parts(constrained_delaunay_triangles(self._shape))
+        weights = area(triangles)
+        corners = get_coordinates(triangles).view(np.complex128).reshape(-1, 4)[:, :3]
+        chosen = corners[rng.choice(len(triangles), count, p=weights / weights.sum())]
+        first, second = rng.uniform(0.0, 1.0, (2, count))
+        beyond = first + second > 1.0
+        first, second = np.where(beyond, 1.0 - first, first), np.where(beyond, 1.0 - second, second)
+        sides = chosen[:, 1:] - chosen[:, :1]
+        return np.asarray(chosen[:, 0] + first * sides[:, 0] + second * sides[:, 1])
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The box around it: x from, to, y from, to."""
+        points, radius = self.outline
+        x, y = points.real, points.imag
+        return float(x.min() - radius), float(x.max() + radius), float(y.min() - radius), float(y.max() + radius)
+
+    @property
+    def size(self) -> float:
+        """Area in square length units."""
+        return float(np.pi * self.circle.radius**2 if self.circle is not None else self._shape.area)
+
+    @property
+    def outline(self) -> tuple[Complex, float]:
+        """Corners, or the centre alone, and the radius by which they are widened."""
+        if self.circle is not None:
+            return np.array([complex(*self.circle.center)]), self.circle.radius
+        assert self.polygon is not None
+        return np.array([complex(*corner) for corner in self.polygon]), 0.0
+
+
+class MovingZone(Zone):
+    """A zone of a moving pivot in the first position."""
+
+    frame: Annotated[
+        Literal["plane", "body"],
+        Field(
+            description="plane: where the pivot is in the first position, as it is met. body: where it is on the body, "
+            "drawn as the body lies in the first position."
+        ),
+    ] = "plane"
+
+    def carried(self, moved: Callable[[tuple[float, float]], tuple[float, float]]) -> Self:
+        """A zone of the body that goes with it, by where its points go; one of the plane stays."""
+        if self.frame == "plane":
+            return self
+        if self.circle is not None:
+            circle = self.circle.model_copy(update={"center": moved(self.circle.center)})
+            return type(self)(circle=circle, frame=self.frame)
+        assert self.polygon is not None
+        return type(self)(polygon=[moved(corner) for corner in self.polygon], frame=self.frame)
+
+
+class AnyOf:
+    """Any of several zones."""
+
+    def __init__(self, zones: Sequence[Zone]) -> None:
+        self.zones = tuple(zones)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AnyOf) and self.zones == other.zones
+
+    def __hash__(self) -> int:
+        return hash(len(self.zones))
+
+    def distance_each(self, points: Complex) -> Real:
+        """How far points lie outside all of them."""
+        return np.asarray(np.min([zone.distance_each(points) for zone in self.zones], axis=0))
+
+    def sampled(self, rng: np.random.Generator, count: int) -> Complex:
+        """Points spread evenly over all of them, shape (count,)."""
+        sizes = np.array([zone.size for zone in self.zones])
+        drawn = np.stack([zone.sampled(rng, count) for zone in self.zones])
+        return np.asarray(drawn[rng.choice(len(sizes), count, p=sizes / sizes.sum()), np.arange(count)])
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The box around all of them."""
+        boxes = np.array([zone.bounds for zone in self.zones])
+        least, greatest = boxes.min(axis=0), boxes.max(axis=0)
+        return float(least[0]), float(greatest[1]), float(least[2]), float(greatest[3])

@@ -1,0 +1,205 @@
+"""Whether a finished linkage fits into its room: pivots in their zones, and a motion that keeps clear of what is there.
+
+The mechanism is built anew from its answer and swept over its motion (:mod:`kinematics.linkage.clearance`), so that
+nothing between two positions escapes. What could not be decided counts as not kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.errors import MechanismError
+from kinematics.linkage.clearance import Part, swept
+from kinematics.linkage.planar.limits import branches, holding_reference
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.model.answer import Check
+from synthesis.model.dimension import LENGTH
+from synthesis.model.linkage_answer import UsedRange
+from synthesis.model.space import Space
+from synthesis.model.zones import MovingZone, Zone
+from synthesis.proof.on_branch import OnBranch
+
+Complex = NDArray[np.complex128]
+
+ROOM = ("fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles")
+"""The checks of a room."""
+
+BODY_POINT = "P"
+"""The joint that only the link that carries the body has."""
+
+
+class FirstPosition(NamedTuple):
+    """The body in its first position, as it is demanded and as the linkage has it.
+
+    ``point`` and ``angle`` (radians) are demanded; ``met`` is where P is in the reference, and ``turned`` how far the
+    body is turned there from the demanded angle.
+    """
+
+    point: complex
+    met: complex
+    turned: float
+
+    def on_body(self, places: Complex) -> Complex:
+        """Where places of the linkage in its reference lie on the body as it is demanded."""
+        return np.asarray(self.point + (places - self.met) * np.exp(-1j * self.turned))
+
+    def off_body(self, places: Complex) -> Complex:
+        """Where places on the body as it is demanded lie in the reference."""
+        return np.asarray(self.met + (places - self.point) * np.exp(1j * self.turned))
+
+
+def space_checks(
+    space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None = None
+) -> list[Check]:
+    """A check for each demand on the room.
+
+    Parameters
+    ----------
+    space : Space
+        What is demanded.
+    mechanism : Mechanism
+        The finished linkage, in its reference configuration at the first target.
+    used : UsedRange
+        The motion that it was verified along.
+    first : FirstPosition, optional
+        Of a linkage that carries a body.
+    """
+    checks = []
+    sides = _sides(mechanism)
+    for demanded, moving in ((space.fixed_pivots, False), (space.moving_pivots, True)):
+        if demanded is None:
+            continue
+        gone = 0.0
+        for zones, side in zip((demanded.input, demanded.output), sides, strict=True):
+            if zones is not None:
+                gone = max(gone, _outside(zones, mechanism, side.moving if moving else side.fixed, first))
+        value = gone if math.isfinite(gone) else None
+        checks.append(Check(name=ROOM[moving], passed=gone == 0.0, value=value, limit=0.0, dimension=LENGTH))
+    return [*checks, *_swept(space, mechanism, used, first)]
+
+
+class _Side(NamedTuple):
+    """The joints of a side by their names; None where it has no such pivot."""
+
+    fixed: str | None
+    moving: str | None
+
+
+def _sides(mechanism: Mechanism) -> tuple[_Side, _Side]:
+    """The input's side and the output's."""
+    ground = mechanism.links[GROUND]
+    crank = _Side("O2" if "O2" in ground else None, "A" if "A" in mechanism.joints else None)
+    other = next((joint for joint in ("O4", "O5") if joint in ground), None)
+    pinned = "B" in mechanism.joints and not any(slide.joint == "A" for slide in mechanism.slides)
+    output = _Side(other, "B" if pinned else None)
+    return (output, crank) if mechanism.driven_by_slide else (crank, output)
+
+
+def _outside(
+    zones: Zone | Sequence[Zone], mechanism: Mechanism, joint: str | None, first: FirstPosition | None
+) -> float:
+    """How far a pivot lies outside its zones; infinite for a linkage that has no such pivot."""
+    if joint is None:
+        return math.inf
+    place = np.asarray(mechanism.joints[joint]).reshape(1)
+    gone = []
+    for zone in [zones] if isinstance(zones, Zone) else zones:
+        on_body = isinstance(zone, MovingZone) and zone.frame == "body" and first is not None
+        at = first.on_body(place) if on_body and first is not None else place
+        gone.append(float(zone.distance_each(at)[0]))
+    return min(gone)
+
+
+def _swept(space: Space, mechanism: Mechanism, used: UsedRange, first: FirstPosition | None) -> list[Check]:
+    """Whether links and body keep within the box and clear of the obstacles."""
+    if not space.swept:
+        return []
+    span = _range(space, mechanism, used)
+    moving = moving_parts(space, mechanism, first)
+    checks = []
+    if space.box is not None:
+        walls, away = _walls(space.box, mechanism, moving)
+        nearest, kept = (None, False) if span is None else _kept(mechanism, moving, walls, span, away)
+        beyond = None if nearest is None else max(away - nearest, 0.0) if not kept else 0.0
+        checks.append(Check(name="box", passed=kept, value=beyond, limit=0.0, dimension=LENGTH))
+    if space.obstacles:
+        obstacles = [Part(GROUND, *zone.outline) for zone in space.obstacles]
+        nearest, kept = (None, False) if span is None else _kept(mechanism, moving, obstacles, span, space.clearance)
+        checks.append(Check(name="obstacles", passed=kept, value=nearest, limit=space.clearance, dimension=LENGTH))
+    return checks
+
+
+def moving_parts(space: Space, mechanism: Mechanism, first: FirstPosition | None) -> list[Part]:
+    """Links by the hulls of their joints, and the body, in the reference."""
+    body = space.body is not None and first is not None
+    parts = []
+    for link, joints in mechanism.links.items():
+        if link == GROUND:
+            continue
+        kept = [joint for joint in joints if not (body and joint == BODY_POINT)]
+        hull = _hull(np.array([complex(mechanism.joints[joint]) for joint in kept]))
+        parts.append(Part(link, hull, 0.5 * space.link_width))
+    if space.body is not None and first is not None:
+        outline = np.array([complex(*corner) for corner in space.body.outline])
+        parts.append(Part(_carrier(mechanism), first.off_body(outline), 0.0))
+    return parts
+
+
+def _carrier(mechanism: Mechanism) -> str:
+    return next(link for link, joints in mechanism.links.items() if BODY_POINT in joints and link != GROUND)
+
+
+def _hull(points: Complex) -> Complex:
+    """Corners of the hull of a few points: one, two or more."""
+    from shapely import MultiPoint, get_coordinates
+
+    hull = MultiPoint(np.stack([points.real, points.imag], axis=1)).convex_hull
+    corners: Complex = get_coordinates(hull).view(np.complex128).ravel()
+    return corners[:-1] if hull.geom_type == "Polygon" else corners
+
+
+def _range(space: Space, mechanism: Mechanism, used: UsedRange) -> tuple[float, float] | None:
+    """Least and greatest input of the motion that counts, radians or length units; None where there is none."""
+    if space.over == "used":
+        ends = used.used_stroke
+        if ends is None and used.used_range is not None:
+            ends = math.radians(used.used_range[0]), math.radians(used.used_range[1])
+        return None if ends is None else (min(ends), max(ends))
+    try:
+        here = holding_reference(mechanism, branches(mechanism))
+    except MechanismError:
+        return None
+    return None if here is None else OnBranch(mechanism, here).range
+
+
+def _kept(
+    mechanism: Mechanism, moving: list[Part], fixed: list[Part], span: tuple[float, float], wanted: float
+) -> tuple[float, bool]:
+    """The least distance of moving parts from fixed ones, and whether it is as much as is wanted."""
+    pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
+    found = swept(mechanism, [*moving, *fixed], pairs, *span, wanted)
+    return min(pair.least for pair in found), all(pair.keeps for pair in found)
+
+
+def _walls(
+    box: tuple[tuple[float, float], tuple[float, float]], mechanism: Mechanism, moving: list[Part]
+) -> tuple[list[Part], float]:
+    """The four sides of a box, moved outward by so much that nothing reaches them: what is as far from them is inside.
+
+    So it is told how far a part is beyond a side, as its distance from the moved side falls short.
+    """
+    (left, low), (right, high) = box
+    places = np.array([complex(z) for z in mechanism.joints.values()])
+    middle = complex(0.5 * (left + right), 0.5 * (low + high))
+    reach = float(np.abs(places - middle).max()) + sum(
+        float(np.abs(part.points - part.points[0]).max()) for part in moving
+    )
+    away = 2.0 * (reach + abs(complex(right - left, high - low)) + max(part.radius for part in moving))
+    x, y = (left - away, right + away), (low - away, high + away)
+    corners = np.array([complex(x[0], y[0]), complex(x[1], y[0]), complex(x[1], y[1]), complex(x[0], y[1])])
+    return [Part(GROUND, corners[[n, (n + 1) % 4]], 0.0) for n in range(4)], away
