@@ -104,9 +104,10 @@ def _parsed(body: bytes) -> Any:
     except ValueError as error:
         # The message is the parser's own, "expected `:` at line 1 column 8"; it holds nothing of the input.
         raise malformed_json(f"The body is not valid JSON: {error}.") from None
-    if _has_more_values_than(parsed, MAX_VALUES):
+    values, keys = _counts(parsed)
+    if values > MAX_VALUES:
         raise _too_many()
-    if _keys_written(body) != _keys_read(parsed):
+    if _keys_written(body) != keys:
         twice = [(place, "This key is given twice; give it once.") for place in _given_twice(body)]
         if twice:
             raise invalid_request(twice)
@@ -141,18 +142,19 @@ def _keys_written(body: bytes) -> int:
     return _punctuation(body).count(b":")
 
 
-def _keys_read(parsed: Any) -> int:
-    """How many keys there are; of those given twice the parser keeps the last."""
-    count = 0
+def _counts(parsed: Any) -> tuple[int, int]:
+    """How many values objects and lists hold, and how many keys; of those given twice the parser keeps the last."""
+    values = keys = 0
     pending = [parsed]
     while pending:
         value = pending.pop()
         if isinstance(value, dict):
-            count += len(value)
+            keys += len(value)
             pending.extend(value.values())
         elif isinstance(value, list):
+            values += len(value)
             pending.extend(value)
-    return count
+    return values + keys, keys
 
 
 class _Members(list[tuple[str, Any]]):
@@ -174,21 +176,3 @@ def _given_twice(body: bytes) -> list[str]:
         elif isinstance(value, list):
             pending += [((*place, k), member) for k, member in enumerate(value)]
     return list(dict.fromkeys(found))
-
-
-def _has_more_values_than(parsed: Any, limit: int) -> bool:
-    count = 0
-    pending = [parsed]
-    while pending:
-        value = pending.pop()
-        if isinstance(value, dict):
-            count += len(value)
-            if count > limit:
-                return True
-            pending.extend(value.values())
-        elif isinstance(value, list):
-            count += len(value)
-            if count > limit:
-                return True
-            pending.extend(value)
-    return False

@@ -148,6 +148,14 @@ DRAG_LINK = {
     "reference_input_angle": 40.0,
 }
 
+GEARED = {
+    "type": "geared_fivebar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
+    "links": {"input": 10.0, "coupler_1": 70.0, "coupler_2": 70.0, "output": 12.0},
+    "gear_ratio": 2.0,
+    "phase": 30.0,
+}
+
 
 def analysed(mechanism: Statement, layout: Statement, **motion: Any) -> Any:
     request = parse_request({"mechanism": mechanism, "motion": motion or {}, "layout": layout})
@@ -173,26 +181,12 @@ def test_a_given_mechanism_is_laid_out_over_its_motion() -> None:
 def test_a_given_mechanism_that_cannot_be_laid_out_says_why() -> None:
     rocker = {**DRAG_LINK, "links": {"input": 60.0, "coupler": 30.0, "output": 40.0}}
     assert "cannot be assembled" in analysed(rocker, block(4.0))["remark"]
-    geared = {
-        "type": "geared_fivebar",
-        "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
-        "links": {"input": 10.0, "coupler_1": 50.0, "coupler_2": 50.0, "output": 12.0},
-        "gear_ratio": 0.0,
-        "phase": 30.0,
-    }
-    told = analysed(geared, block(2.0))
+    told = analysed({**GEARED, "gear_ratio": 0.0}, block(2.0))
     assert not told["buildable"]
     assert "a ratio other than 0" in told["remark"]
 
 
 def test_the_gears_of_a_fivebar_take_a_plane() -> None:
-    geared = {
-        "type": "geared_fivebar",
-        "fixed_pivots": {"input": [0.0, 0.0], "output": [60.0, 0.0]},
-        "links": {"input": 10.0, "coupler_1": 70.0, "coupler_2": 70.0, "output": 12.0},
-        "gear_ratio": 2.0,
-        "phase": 30.0,
-    }
-    planes = analysed(geared, block(4.0))["planes"]
+    planes = analysed(GEARED, block(4.0))["planes"]
     assert planes["gear of input"] == planes["gear of output"] == planes["idler"]
     assert planes["gear of input"] not in (planes["input"], planes["output"])
