@@ -302,7 +302,11 @@ BESIDE = {
     "slider": {**LID, "output_side": {"dyad": "PR"}, "max_designs": 3},
     "driver dyad": {**LID, "driver_dyad": True, "max_designs": 2},
     "constraints": {**LID, "constraints": {"min_transmission_angle": 40.0, "max_link_ratio": 4.0}, "max_designs": 3},
-    "layout": {**LID, "layout": {"link_width": 20.0, "pin_diameter": 8.0, "max_planes": 3}, "max_designs": 3},
+    "layout": {
+        **LID,
+        "layout": {"link_width": 20.0, "pin_diameter": 8.0, "thickness": 5.0, "max_planes": 3},
+        "max_designs": 3,
+    },
     "four positions": {
         **LID,
         "positions": [*LID["positions"], {"x": 120.0, "y": 560.0, "angle": 110.0}],
