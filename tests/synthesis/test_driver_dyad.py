@@ -249,7 +249,7 @@ def test_the_driver_is_chosen_within_the_limits(limits: dict[str, float]) -> Non
         assert design.metrics.link_ratio <= limits.get("max_link_ratio", math.inf) * (1.0 + 1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_drivers_that_break_a_limit_are_shown_where_failures_are_asked_for() -> None:
     statement = {"kind": "motion", "positions": THREE, "driver_dyad": {"link": "input"}, "include_failed": True}
     result = solve(parse_problem(statement | {"constraints": {"max_link_ratio": 1.5}, "max_designs": 2}))
