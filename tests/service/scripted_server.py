@@ -12,6 +12,7 @@ import threading
 import time
 from pathlib import Path
 
+from service import analyst
 from service.cli import main
 from synthesis import dispatch
 from synthesis.model.answer import Result, Search
@@ -155,6 +156,7 @@ if __name__ in ("__main__", "__mp_main__"):
     dispatch.solve = solve
     dispatch.warm_up = warm_up
     dispatch.warm_up_rest = lambda: None
+    analyst.warm_up = lambda: None
     crash_points()
 if __name__ == "__mp_main__" and (FOLDER / "slow-start").exists():
     time.sleep(60)  # it is killed before

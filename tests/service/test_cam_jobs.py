@@ -62,6 +62,14 @@ def test_a_broken_joint_is_refused_with_its_place(client):
     assert "fundamental law" in first["detail"]
 
 
+@pytest.mark.parametrize("name", ["velocity", "acceleration", "jerk"])
+def test_a_limit_on_the_motion_is_refused_where_every_law_is_stated(client, name):
+    problem = EXAMPLES[0] | {"limits": {"pressure_angle": 30.0, name: 1e-3}}
+    answer = client.post("/v1/jobs", json={"problem": problem})
+    assert answer.status_code == 422
+    assert [error["path"] for error in answer.json()["errors"]] == [f"/problem/limits/{name}"]
+
+
 def test_a_groove_is_drawn_with_both_walls(client):
     job = client.post(
         "/v1/jobs", json={"problem": EXAMPLES[0] | {"closure": "form"}}, headers={"Prefer": "wait=30"}

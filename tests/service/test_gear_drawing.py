@@ -44,7 +44,7 @@ TASKS: dict[str, dict[str, Any]] = {
     },
     "one_stage": {"ratio": 3, "max_stages": 1, "length_unit": "in"},
 }
-QUICK = [TASKS["idler"], TASKS["reverted"], TASKS["one_stage"]]
+QUICK = [TASKS["reverted"], TASKS["one_stage"]]
 
 
 @pytest.fixture(scope="module", params=further(TASKS.values(), QUICK), ids=TASKS.keys())

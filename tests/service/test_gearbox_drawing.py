@@ -41,7 +41,7 @@ TASKS: dict[str, dict[str, Any]] = {
     },
     "no_reverse": {"kind": "layshaft_gearbox", "ratios": [3.0, 1.7, 1.0], "tooth_sum": {"min": 60, "max": 70}},
 }
-QUICK = [TASKS["six_speeds"], TASKS["no_reverse"]]
+QUICK = [TASKS["no_reverse"]]
 
 
 @pytest.fixture(scope="module", params=further(TASKS.values(), QUICK), ids=TASKS.keys())

@@ -126,7 +126,10 @@ def test_the_table_keeps_every_link_rigid_and_its_rates_are_differences(kind: st
     "statement",
     [
         {"kind": "quick_return", "mechanism": "fourbar", "time_ratio": 1.2, "swing": 50.0},
-        {"kind": "path", "points": [{"x": x, "y": y} for x, y in ((0, 0), (10, 6), (22, 8), (33, 5), (40, -3))]},
+        pytest.param(
+            {"kind": "path", "points": [{"x": x, "y": y} for x, y in ((0, 0), (10, 6), (22, 8), (33, 5), (40, -3))]},
+            marks=pytest.mark.campaign,
+        ),
     ],
     ids=lambda statement: statement["kind"],
 )

@@ -22,6 +22,9 @@ OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00
 # The example of each kind that is solved at once; the others take longer.
 QUICK = {"motion": 3, "path": 1, "function": 1, "cam": 0, "straight_line": 1, "quick_return": 0}
 
+# Kinds whose quickest examples take longer than a second; the campaign has them.
+SLOW = ("path", "dwell")
+
 # What the checks measure that compare in a unit; the others are shares, residuals, ratios and counts, which have none.
 MEASURING = {
     "transmission_angle": ANGLE,
@@ -174,7 +177,7 @@ def solved(kind, n):
 
 
 EXAMPLES = [
-    pytest.param(kind, n, marks=[] if n == QUICK.get(kind, 0) else pytest.mark.campaign if n else pytest.mark.slow)
+    pytest.param(kind, n, marks=pytest.mark.campaign if n != QUICK.get(kind, 0) or kind in SLOW else pytest.mark.slow)
     for kind in KINDS
     for n in range(len(examples(kind)))
 ]

@@ -68,6 +68,7 @@ def test_the_groove_is_as_long_as_it_goes_between_its_points():
     assert design.metrics.length == pytest.approx(25.0 + design.metrics.groove_width, rel=1e-7)
 
 
+@pytest.mark.campaign
 def test_what_a_convex_program_has_instead_of_no_force_changes_no_walls():
     """The return goes at a constant velocity for most of its way, but for accelerations of a billionth of the peak."""
     segments = [

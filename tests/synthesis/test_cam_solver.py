@@ -285,6 +285,7 @@ def test_optimal_motions_by_every_criterion(minimize):
     assert best.optimality.value <= law.optimality.value * 1.001
 
 
+@pytest.mark.campaign
 def test_conditions_within_an_optimal_motion():
     segments = moves("optimal", "cycloidal")
     segments[1]["conditions"] = [{"angle": 45.0, "s": 10.0}, {"angle": 60.0, "v": 20.0}]
@@ -364,6 +365,7 @@ def test_smallest_flat_faced_cam_over_all_motions():
     assert best.metrics.face_width <= 60.0 * 1.002
 
 
+@pytest.mark.campaign
 def test_a_lift_that_vanishes_beside_the_roller_is_solved():
     """The pitch curve is a circle but for rounding, and the limit on its curvature is just reached all around."""
     small = moves("modified_sine", "cycloidal", 1e-5, 90.0, 90.0)

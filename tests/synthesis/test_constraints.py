@@ -93,7 +93,7 @@ FAR_OFF = {
 }
 """Cases that search for seconds for what comes nearest to demands that nothing meets."""
 
-SLOW = {"dwell of a rocker", "dwell of a slider", "path of a slider-crank"}
+SLOW = {"dwell of a rocker", "dwell of a slider", "path of a slider-crank", "path of a geared fivebar"}
 """Cases that take longer than others which are answered by the same code."""
 
 

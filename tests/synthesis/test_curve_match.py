@@ -285,6 +285,7 @@ def test_a_limit_of_the_coupler_point_steers_the_match():
         assert box["across"][0] * (1.0 - 1e-9) <= at.imag <= box["across"][1] * (1.0 + 1e-9)
 
 
+@pytest.mark.campaign
 def test_zones_of_pivots_choose_what_the_match_begins_with():
     """No member that is most alike stands near the zones, and none of their cognates does."""
     task = list(closed_curves.tasks(17, 0))[16]

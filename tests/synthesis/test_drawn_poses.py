@@ -145,6 +145,7 @@ def test_the_reference_is_the_first_target_where_that_may_be_missed(side: Statem
         assert math.hypot(x - stated["x"], y - stated["y"]) == pytest.approx(target.point_residual, abs=1e-5)
 
 
+@pytest.mark.campaign
 def test_a_driver_dyad_drives_linkages_whose_first_position_is_missed() -> None:
     problem: Statement = {"kind": "motion", "positions": FIRST_MISSED, "driver_dyad": True}
     problem["constraints"] = {"moving_pivot_region": {"x": [20.0, 154.0], "y": [-8.0, 126.0]}}

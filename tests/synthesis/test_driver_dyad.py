@@ -16,6 +16,7 @@ from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.verification import verify
 from synthesis.model.linkage_answer import LinkageDesign, SixbarMechanism
 from synthesis.registry import parse_problem
+from tests.campaign import further
 from tests.synthesis.driving import assert_drives_through, constraints_of, turns_through
 
 TWO = [{"x": 0.0, "y": 0.0, "angle": 0.0}, {"x": 30.0, "y": 20.0, "angle": 45.0}]
@@ -238,7 +239,9 @@ def test_no_sixbar_of_many_has_a_defect() -> None:
     assert count > 15
 
 
-@pytest.mark.parametrize("limits", [{"min_transmission_angle": 70.0}, {"max_link_ratio": 3.0}])
+@pytest.mark.parametrize(
+    "limits", further([{"min_transmission_angle": 70.0}, {"max_link_ratio": 3.0}], [{"min_transmission_angle": 70.0}])
+)
 def test_the_driver_is_chosen_within_the_limits(limits: dict[str, float]) -> None:
     """A small driver that breaks a limit does not stand in the way of one that keeps it."""
     statement = {"kind": "motion", "positions": THREE, "driver_dyad": True, "constraints": limits}

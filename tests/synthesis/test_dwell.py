@@ -111,7 +111,7 @@ TASKS = [
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "fields",
-    further(TASKS, TASKS[:4]),
+    further(TASKS, TASKS[:3]),
     ids=lambda fields: f"{fields.get('mechanism', 'slider')}-{fields.get('count', 1)}",
 )
 def test_dwells_are_what_was_measured(fields) -> None:

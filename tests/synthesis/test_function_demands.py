@@ -91,6 +91,7 @@ def test_derivatives_of_the_limits(mechanism, grashof):
 
 
 @pytest.mark.parametrize("criterion", further(["minimax", "least_squares"], ["minimax"]))
+@pytest.mark.campaign
 def test_a_sine_over_a_right_angle_is_kept_from_the_change_point(criterion):
     # Crank and coupler of one length draw this sine without error, and meet a change point at its end.
     problem = FunctionProblem(

@@ -130,6 +130,7 @@ def test_reverted_trains_nearer_than_the_book_s(case: Case) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", cases("norton_defect", "gear"))
+@pytest.mark.campaign
 def test_exhaustive_where_the_book_s_loop_is_not(case: Case) -> None:
     x = case.inputs
     target = Fraction(x["target"])

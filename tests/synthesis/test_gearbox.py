@@ -199,6 +199,7 @@ def test_gearboxes_without_a_formula_are_not_promised() -> None:
     assert single.search.complete
 
 
+@pytest.mark.campaign
 def test_a_wide_statement_tells_how_far_it_is() -> None:
     """Progress goes on within a structure."""
     problem = gearbox_problem(

@@ -335,7 +335,19 @@ QUICK = (
 QUICKEST = [
     name
     for name in QUICK
-    if name not in ("functions", "tolerated path", "input is driven", "coupler is driven", "demands of a line")
+    if name
+    not in (
+        "functions",
+        "tolerated path",
+        "input is driven",
+        "coupler is driven",
+        "demands of a line",
+        "positions",
+        "parallel motion along a path",
+        "timed path",
+        "demands of steering",
+        "parallel motion",
+    )
 ]
 
 

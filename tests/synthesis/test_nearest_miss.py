@@ -187,6 +187,7 @@ def test_no_search_is_begun_that_the_allowance_has_no_room_for(seconds):
     assert spent[0] + seconds > 4.0 or len(found.nearest_miss.gaps) == 1
 
 
+@pytest.mark.campaign
 def test_what_comes_nearest_does_not_hang_on_the_unit_of_length():
     zone = {"x": (20.0, 30.0), "y": (-60.0, -50.0)}
     told = []
@@ -203,6 +204,7 @@ def test_what_comes_nearest_does_not_hang_on_the_unit_of_length():
             assert value == pytest.approx(first, rel=1e-6)
 
 
+@pytest.mark.campaign
 def test_zones_of_the_linkage_are_not_for_the_joints_of_its_driver():
     """As in every answer; a gap of a zone is one of pivots that the zone is for."""
     statement = {"kind": "motion", "positions": LID, "driver_dyad": True, "constraints": ZONES}
@@ -216,6 +218,7 @@ def test_zones_of_the_linkage_are_not_for_the_joints_of_its_driver():
     assert [gap.check for gap in miss.gaps] == ["transmission_angle"]
 
 
+@pytest.mark.campaign
 def test_a_limit_beside_tolerances_is_approached_by_continuation():
     """No search at any step: what is at hand is steered on, far beyond what leaving the limit out met."""
     statement = {"kind": "motion", "positions": LID, "constraints": {"fixed_pivot_region": ZONES["fixed_pivot_region"]}}

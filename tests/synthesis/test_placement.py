@@ -23,7 +23,7 @@ TASKS = {
     "dwell_slider": {"kind": "dwell", "dwell_angle": 60.0, "output": {"type": "slider", "stroke": 50.0}},
 }  # fmt: skip
 
-QUICK = [name for name in TASKS if name not in ("dwell_rocker", "dwell_slider")]
+QUICK = [name for name in TASKS if not name.startswith("dwell")]
 
 LARGER = 1.7
 """Size of the place that a linkage of free size is to take."""

@@ -166,6 +166,7 @@ def test_least_squares_may_be_asked_for_and_exact_positions_too() -> None:
     assert fault.path == "/method"
 
 
+@pytest.mark.campaign
 def test_a_tolerated_first_position_is_said_where_the_body_stands_otherwise() -> None:
     stated, regions = off_planted(4, 1)
     stated[0]["tolerance"] = {"x": 1.0, "y": 1.0, "angle": 2.0}

@@ -196,6 +196,7 @@ def test_davis_s_gear_steers_correctly_from_lock_to_lock() -> None:
         )
 
 
+@pytest.mark.campaign
 def test_limits_are_kept() -> None:
     stated = {"wheelbase": 2.745, "pivot_distance": 1.22, "lock": 40.0}
     strict = answer(**stated, max_steering_error=0.4)

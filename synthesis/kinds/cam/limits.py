@@ -34,10 +34,11 @@ class CamLimits(Statement):
         default=None, description="Greatest prime radius (roller) or base radius (face)."
     )
     velocity: Annotated[PositiveNumber, VELOCITY] | None = Field(
-        default=None, description="Peak of every optimal or automatic motion."
+        default=None,
+        description="Peak of every optimal or automatic motion. Beside laws that are all stated by name it is refused.",
     )
-    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = None
-    jerk: Annotated[PositiveNumber, JERK] | None = None
+    acceleration: Annotated[PositiveNumber, ACCELERATION] | None = Field(default=None, description="Likewise.")
+    jerk: Annotated[PositiveNumber, JERK] | None = Field(default=None, description="Likewise.")
 
     @property
     def falling_pressure_angle(self) -> float:

@@ -167,6 +167,7 @@ class CamProblem(StatedProblem):
             *self._closure(),
             *follower_contradictions(self.follower),
             *self._inputs(),
+            *self._limits(),
         ]
         return contradictions or self.program.joint_contradictions(self.accept_discontinuity, self.grooved)
 
@@ -181,6 +182,17 @@ class CamProblem(StatedProblem):
             detail = "only a roller runs in a groove; take another follower or force"
             return [Contradiction("/closure", detail)]
         return []
+
+    def _limits(self) -> list[Contradiction]:
+        """Limits on the motion have a motion to choose."""
+        if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
+            return []
+        detail = "each law is stated, and has the peaks that it has; let a law be auto or optimal, or drop the limit"
+        return [
+            Contradiction(f"/limits/{name}", detail)
+            for name in ("velocity", "acceleration", "jerk")
+            if getattr(self.limits, name) is not None
+        ]
 
     def _inputs(self) -> list[Contradiction]:
         """What a criterion needs."""
