@@ -33,6 +33,9 @@ NEAR = 0.05
 STILL = 1e-9
 """Radians that are no step of an input."""
 
+MET = 1e-6
+"""Share of the design's size within which a cognate meets a target."""
+
 TIMED = 1e-6
 """Radians within which two inputs turn together."""
 
@@ -70,19 +73,25 @@ def _compare(beside: Beside, drive: Drive, turns: Real, cognate: Any) -> None:
     sense, turned = np.sign((np.conj(b - a) * (b - place["O4"])).imag), np.diff(inputs)
     # Two targets may be met at one input, but for rounding.
     free = bool((sense == sense[0]).all() and ((turned > -STILL).all() or (turned < STILL).all()))
-    beside.same("cognates.same_branch", cognate.same_branch, free)
-    if not (free and cognate.same_branch):
-        _compare_unfree(beside, cognate, free, float(lacks[at].max()))
+    met, wanted = inputs[at], p[at]
+    low, high = float(met.min()), float(met.max())
+    # Where the design's way leads out of the branch and into it again, the input may reach the targets the other way.
+    driven = own.follow(low, high)
+    off = float(np.abs(own.joint("P", met) - wanted).max()) if driven else math.inf
+    held = free or off < MET * drive.size
+    beside.same("cognates.same_branch", cognate.same_branch, held)
+    if not (held and cognate.same_branch):
+        _compare_unfree(beside, cognate, held, float(lacks[at].max()))
         return
-    beside.same("cognates.visits_in_order", cognate.visits_in_order, True)
-    low, high = float(inputs[at].min()), float(inputs[at].max())
-    if not own.follow(low, high):
+    steps_on = np.diff(met)
+    in_order = free or bool((steps_on > -STILL).all() or (steps_on < STILL).all())
+    beside.same("cognates.visits_in_order", cognate.visits_in_order, in_order)
+    if not driven:
         beside.measured.left[f"path {cognate.side} cognate: could not be driven ({beside.name})"] += 1
         return
     least = min(least_angles(own, low, high).values())
     beside.add("cognates.min_transmission_angle", cognate.min_transmission_angle, least, 90.0)
-    off = np.abs(own.joint("P", inputs[at]) - p[at])
-    beside.add("cognates.deviation", cognate.deviation, float(off.max()), drive.size)
+    beside.add("cognates.deviation", cognate.deviation, off, drive.size)
 
 
 def _compare_unfree(beside: Beside, cognate: Any, free: bool, lacks: float) -> None:

@@ -19,11 +19,14 @@ GRID = 1441
 """Inputs of the first grid: a quarter of a degree of a full turn."""
 
 SAMPLES, REFINEMENTS = 17, 6
-"""Inputs in each refinement of the grid about the least value, and their number: 8⁶ times finer than the grid."""
+"""Inputs in each refinement of the grid about a low place, and their number: 8⁶ times finer than the grid."""
+
+VALLEYS = 8
+"""Low places that are refined: an error that is spread evenly is about as great at several."""
 
 
 def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[float, float]:
-    """The least of a quantity, by ever finer grids about its least value on a given one.
+    """The least of a quantity, by ever finer grids about the lowest places of a given one.
 
     Parameters
     ----------
@@ -41,8 +44,31 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
     """
     if not np.isfinite(values).any():
         return math.nan, math.nan
-    n = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
-    at, least, place = float(inputs[n]), float(values[n]), float(inputs[n])
+    known = np.where(np.isfinite(values), values, np.inf)
+    n = int(np.argmin(known))
+    best = float(inputs[n]), float(known[n])
+    for n in _valleys(known):
+        at, least = _descended(of, inputs, n)
+        if least < best[1]:
+            best = at, least
+    return best
+
+
+def _valleys(values: Real) -> list[int]:
+    """The places of a grid beside which the least may lie, the lowest first.
+
+    Between the places beside it a smooth quantity falls below a low place by less than the higher of them lies above.
+    """
+    left, right = np.append(values[:1], values[:-1]), np.append(values[1:], values[-1:])
+    known = np.isfinite(values)
+    rise = np.where(known, np.maximum(left, right), 0.0) - np.where(known, values, 0.0)
+    low = np.flatnonzero(known & (values <= left) & (values <= right) & (values - rise <= values.min()))
+    return [int(n) for n in low[np.argsort(values[low], kind="stable")][:VALLEYS]]
+
+
+def _descended(of: Callable[[Real], Real], inputs: Real, n: int) -> tuple[float, float]:
+    """The least about a place of the grid, by ever finer grids."""
+    at, place, least = float(inputs[n]), math.nan, math.inf
     step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
     low, high = sorted((inputs[0], inputs[-1]))
     for _ in range(REFINEMENTS):
@@ -50,10 +76,10 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
         refined = of(closer)
         if not np.isfinite(refined).any():
             break
-        n = int(np.argmin(np.where(np.isfinite(refined), refined, np.inf)))
-        at = float(closer[n])
-        if refined[n] < least:
-            place, least = at, float(refined[n])
+        k = int(np.argmin(np.where(np.isfinite(refined), refined, np.inf)))
+        at = float(closer[k])
+        if refined[k] < least:
+            place, least = at, float(refined[k])
         step *= 2.0 / (SAMPLES - 1)
     return place, least
 

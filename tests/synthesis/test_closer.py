@@ -1,0 +1,69 @@
+"""Extremes between the places of a grid."""
+
+import math
+
+import numpy as np
+import pytest
+
+from synthesis.dispatch import solve
+from synthesis.proof.closer import least_near
+from synthesis.registry import parse_problem
+
+
+def test_the_least_may_lie_beside_a_place_that_is_not_the_lowest():
+    grid = np.linspace(0.0, 1.0, 50)
+
+    def two_valleys(at):
+        return np.minimum(np.abs(at - grid[18]), 3.0 * np.abs(at - 0.77) - 0.001)
+
+    values = two_valleys(grid)
+    assert values.argmin() == 18
+    at, least = least_near(two_valleys, grid, values)
+    assert at == pytest.approx(0.77, abs=1e-6)
+    assert least == pytest.approx(-0.001, abs=1e-6)
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.0, 1.0, 7))
+def test_even_waves_have_their_deepest(phase):
+    def waves(at):
+        return np.cos(40.0 * at + phase) + 1e-6 * at
+
+    grid = np.linspace(0.0, 1.0, 60)
+    assert least_near(waves, grid, waves(grid))[1] == pytest.approx(waves(np.linspace(0.0, 1.0, 10**6)).min(), abs=1e-9)
+
+
+def test_what_has_no_value_is_passed_over():
+    grid = np.linspace(0.0, 1.0, 30)
+
+    def broken(at):
+        return np.where(np.abs(at - 0.5) < 0.1, np.nan, (at - 0.71) ** 2)
+
+    assert least_near(broken, grid, broken(grid))[0] == pytest.approx(0.71, abs=1e-5)
+    assert math.isnan(least_near(lambda at: at * math.nan, grid, grid * math.nan)[1])
+
+
+def test_the_steering_error_is_the_greatest_of_all_peaks():
+    """A least greatest error is about as great on the way as at the lock; it was looked for at one of them."""
+    stated = {
+        "kind": "steering",
+        "wheelbase": 3173.5061801240495,
+        "pivot_distance": 1165.497881187407,
+        "track": 1238.1718859881023,
+        "lock": 41.38831050063958,
+        "max_steering_error": 4.0,
+        "constraints": {"max_link_ratio": 12.0, "min_transmission_angle": 5.0},
+    }
+    share, lock = stated["pivot_distance"] / stated["wheelbase"], math.radians(stated["lock"])
+    (design, *_) = [d for d in solve(parse_problem(stated)).designs if abs(d.metrics.steering_error - 0.4006) < 1e-4]
+    links, half = design.mechanism.links, 0.5 * stated["pivot_distance"]
+    pin = complex(*design.mechanism.skeleton.joints["A"]) + half
+    # The left arm is turned in small steps; where the right pin is, the law of cosines says.
+    turn = np.linspace(0.0, lock, 400_001)
+    reach = 2.0 * half - pin * np.exp(1j * turn)
+    bend = np.arccos((np.abs(reach) ** 2 + links.output**2 - links.coupler**2) / (2.0 * np.abs(reach) * links.output))
+    straight = math.pi - np.angle(pin)
+    right = math.pi + np.angle(reach) - np.array([[1.0], [-1.0]]) * bend - straight
+    right = (right + math.pi) % math.tau - math.pi
+    right = right[np.abs(right[:, 0]).argmin()]
+    error = right - np.arctan(np.tan(turn) / (1.0 + share * np.tan(turn)))
+    assert design.metrics.steering_error == pytest.approx(math.degrees(np.abs(error).max()), rel=1e-8)
