@@ -211,6 +211,7 @@ OTHERS = {
 }
 
 
+@pytest.mark.timeout(400)  # three searches of a path, each of which may take half a minute beside other work
 @pytest.mark.parametrize("kind", further(OTHERS, ["quick_return"]))
 def test_every_kind_of_linkage_has_its_room_measured(client, kind):
     bare = finished(client, OTHERS[kind])
