@@ -230,7 +230,8 @@ def test_many_short_segments(count, lift):
         {"motion": "rise" if k % 2 == 0 else "fall", "angle": 360.0 / count, "lift": lift, "law": "modified_sine"}
         for k in range(count)
     ]
-    result = solve(parse_problem(copy.deepcopy(BASE) | {"segments": moves}), lambda fraction, message: None)
+    stated = copy.deepcopy(BASE) | {"segments": moves, "limits": {"pressure_angle": 30.0}}
+    result = solve(parse_problem(stated), lambda fraction, message: None)
     (design,) = result.designs
     assert design.verification.passed
     assert len(design.segments) == count

@@ -100,7 +100,8 @@ def test_motion_and_size_together():
     """Unit lift in 60° at 20° under modified sine's own peaks: 3.647; with modified sine itself 4.142."""
     beta = math.pi / 3.0
     v, a, j = (factor.largest for factor in LAWS["modified_sine"].factors)
-    limits = {"pressure_angle": 20.0, "curvature_ratio": 0.0, "acceleration": a / beta**2, "jerk": j / beta**3}
+    sizes = {"pressure_angle": 20.0, "curvature_ratio": 0.0}
+    limits = {**sizes, "acceleration": a / beta**2, "jerk": j / beta**3}
     follower = {"type": "translating_roller", "roller_radius": 0.3}
     segments = moves("optimal", "modified_sine", 1.0, 60.0, 200.0)
     design = only(answered(cam(segments=segments, follower=follower, limits=limits, minimize="size")))
@@ -108,7 +109,7 @@ def test_motion_and_size_together():
     assert design.optimality.bound == pytest.approx(3.647, rel=2e-3)
     assert design.metrics.peak_velocity * beta < v
     segments = moves("modified_sine", "modified_sine", 1.0, 60.0, 200.0)
-    law = only(answered(cam(segments=segments, follower=follower, limits={**limits}, minimize="size")))
+    law = only(answered(cam(segments=segments, follower=follower, limits=sizes, minimize="size")))
     assert law.mechanism.prime_radius == pytest.approx(4.142, abs=5e-4)
 
 
