@@ -11,6 +11,7 @@ from kinematics.linkage.fourbar.classification import barker_type
 from kinematics.linkage.fourbar.transmission import transmission_extremes
 from kinematics.linkage.planar import catalogue
 from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.variation import Task, deviations, shares
 
 
 def warm_up() -> None:
@@ -25,6 +26,11 @@ def warm_up() -> None:
     stays_on_branch(linkage, 0.0, 1.0)
     transmission_extremes(linkage, 0.0, 1.0)
     barker_type(linkage)
+    at = fourbar.positions(linkage, angles)
+    task = Task("poses", np.ones(3, np.int64), angles, points=at.p, angles=at.coupler_angle, used=(0.0, 1.0))
+    made = np.array([[0.0, 0.0, 6.0, 0.0, 2.0, 7.0, 9.0, 0.0, 1.0]])
+    deviations(task, made)
+    shares(task, made)
     slider = slider_crank.SliderCrank.from_lengths(1.0, 3.0, 0.5, 1j)
     slider_crank.positions(slider, angles)
     slider_crank.coupler_points(slider, angles)

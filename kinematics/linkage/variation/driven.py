@@ -1,0 +1,235 @@
+"""The task of one linkage, and variants of the linkage driven to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinematics.errors import ShapeError
+from kinematics.linkage.variation import kernels, loops
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+Sort = Literal["poses", "points", "outputs"]
+
+_SORTS: dict[Sort, int] = {"poses": loops.POSES, "points": loops.POINTS, "outputs": loops.OUTPUTS}
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What a fourbar or a slider-crank has to do, and how it is driven to each of its t targets.
+
+    Attributes
+    ----------
+    sort : {"poses", "points", "outputs"}
+        Positions of the coupler's body, places of P, or places of the output at stated inputs.
+    assemblies : int, shape (t,)
+        Signs as of :func:`kinematics.linkage.positions`.
+    inputs : float, shape (t,)
+        Nominal inputs, radians, in one run.
+    slide_angle : float or None
+        Direction of a slider-crank's slide, radians; None for a fourbar.
+    points : complex, shape (t,), or None
+        Demanded places of P, of poses and points.
+    angles : float, shape (t,), or None
+        Absolute angles, radians: of the line A → B for poses, of O4 → B for outputs of a fourbar.
+    travels : float, shape (t,), or None
+        Outputs of a slider: its places along the slide, from ``origin``.
+    origin : complex
+        A point of the plane, from which travels are counted.
+    used : pair of float or None
+        The range of inputs over which the linkage is to stay on its branch; its ends move as the inputs at the targets
+        do. None where no such range is held.
+    adjusted : bool
+        Whether the input of a variant is set to where it comes nearest to each target, from the nominal one. Outputs
+        are looked at with the nominal one always.
+    units : pair of float
+        What distance, and angle in radians, are measured in where nearness is compared; infinite: does not count.
+    greatest : bool
+        Whether the nearest place is where the greater of distance and angle is least, or where the sum of their
+        squares is.
+    """
+
+    sort: Sort
+    assemblies: Whole
+    inputs: Real
+    slide_angle: float | None = None
+    points: Complex | None = None
+    angles: Real | None = None
+    travels: Real | None = None
+    origin: complex = 0j
+    used: tuple[float, float] | None = None
+    adjusted: bool = True
+    units: tuple[float, float] = (1.0, 1.0)
+    greatest: bool = True
+    on_ground: tuple[bool, bool] = (False, False)
+    ground_angle: float = 0.0
+
+    @property
+    def slides(self) -> bool:
+        """Whether the linkage is a slider-crank."""
+        return self.slide_angle is not None
+
+    @property
+    def along(self) -> complex:
+        """Direction of the slide; 1 for a fourbar."""
+        angle = self.slide_angle or 0.0
+        return complex(math.cos(angle), math.sin(angle))
+
+    @property
+    def guides(self) -> bool:
+        """Whether there is a point P."""
+        return self.sort != "outputs"
+
+    @property
+    def dimensions(self) -> int:
+        """How many dimensions a variant has."""
+        return (5 if self.slides else 7) + 2 * self.guides
+
+    @cached_property
+    def rows(self) -> Real:
+        """The targets as the kernels take them, shape (t, 7)."""
+        count = len(self.inputs)
+        rows = np.zeros((count, 7))
+        rows[:, 0], rows[:, 1] = np.cos(self.inputs), np.sin(self.inputs)
+        if self.travels is not None:
+            rows[:, 2] = self.travels + (self.origin * self.along.conjugate()).real
+        elif self.points is not None:
+            rows[:, 2], rows[:, 3] = self.points.real, self.points.imag
+        if self.angles is not None:
+            rows[:, 4], rows[:, 5] = np.cos(self.angles), np.sin(self.angles)
+        rows[:, 6] = self.assemblies
+        return rows
+
+    @property
+    def margins(self) -> Real:
+        """How far the range reaches beyond the least and the greatest input of a target; NaN where none is held."""
+        if self.used is None:
+            return np.full(2, np.nan)
+        low, high = sorted(self.used)
+        return np.maximum([self.inputs.min() - low, high - self.inputs.max()], 0.0)
+
+    def variants(self, dimensions: ArrayLike) -> Real:
+        """Rows of dimensions as the kernels take them.
+
+        Raises
+        ------
+        ShapeError
+            For rows of another length.
+        """
+        rows = np.ascontiguousarray(dimensions, np.float64)
+        if rows.ndim != 2 or rows.shape[1] != self.dimensions:
+            raise ShapeError(variants=rows.shape, task=(len(self.inputs), self.dimensions))
+        return rows
+
+    @property
+    def drive(self) -> loops.Drive:
+        """How the kernels are to drive variants."""
+        before, after = self.margins
+        return loops.Drive(
+            _SORTS[self.sort],
+            self.slides,
+            self.along.real,
+            self.along.imag,
+            self.adjusted,
+            self.greatest,
+            1.0 / self.units[0],
+            1.0 / self.units[1],
+            float(before),
+            float(after),
+        )
+
+    @property
+    def _with_ground(self) -> Real:
+        """Settings, as the kernels take them, for one radian that the ground turns."""
+        return np.array([1.0, -1.0]) * self.on_ground
+
+    def towards(self, rows: Real, given: ArrayLike | None = None) -> Real:
+        """Settings of each variant as the kernels take them, shape (v, 2), or (0, 2) where nothing is set.
+
+        Raises
+        ------
+        ShapeError
+            For settings of another number of variants.
+        """
+        if given is None and (self.slides or not any(self.on_ground)):
+            return np.empty((0, 2))
+        settings = np.zeros((len(rows), 2))
+        if given is not None:
+            if np.shape(given) != settings.shape:
+                raise ShapeError(settings=np.shape(given), variants=rows.shape)
+            settings += np.asarray(given, np.float64)
+            settings[:, 1] *= 1.0 if self.guides else -1.0
+        if not self.slides:
+            ground = (rows[:, 2] - rows[:, 0]) + 1j * (rows[:, 3] - rows[:, 1])
+            settings += np.angle(ground * np.exp(-1j * self.ground_angle))[:, None] * self._with_ground
+        return settings
+
+
+class Deviations(NamedTuple):
+    """Variants at targets; NaN where a variant cannot be assembled, or all over where it leaves its branch.
+
+    Attributes
+    ----------
+    distances, angles : float, shape (v, t)
+        Lengths and radians, not below zero; zeros of what the task does not ask for.
+    offsets : float, shape (v, t, 3)
+        x, y and angle less what is demanded; of a slider's output its travel stands for x.
+    inputs : float, shape (v, t)
+        Radians.
+    """
+
+    distances: Real
+    angles: Real
+    offsets: Real
+    inputs: Real
+
+
+def deviations(task: Task, variants: ArrayLike, settings: ArrayLike | None = None) -> Deviations:
+    """Variants of a linkage driven to all of its targets.
+
+    Parameters
+    ----------
+    task : Task
+        The targets.
+    variants : float, shape (v, n)
+        Dimensions. Fourbar: O2 (x, y), O4 (x, y), input, coupler, output, and P along A → B and to its left.
+        Slider-crank: O2 (x, y), the offset (how far O2 lies to the left of the slide), crank, coupler, and P. A task of
+        outputs has no P.
+    settings : float, shape (v, 2), optional
+        How much farther on the input stands than on paper, radians; and by how much more the body is turned on its
+        link, radians, or the output's dial on the output, radians or length units.
+
+    Raises
+    ------
+    ShapeError
+        For another number of dimensions, or of settings.
+    """
+    rows = task.variants(variants)
+    shape = len(rows), len(task.inputs)
+    offsets, inputs = np.empty((*shape, 3)), np.empty(shape)
+    kernels.deviations(task.drive, rows, task.rows, task.inputs, task.towards(rows, settings), offsets, inputs)
+    return Deviations(np.hypot(offsets[..., 0], offsets[..., 1]), np.abs(offsets[..., 2]), offsets, inputs)
+
+
+def shares(task: Task, variants: ArrayLike) -> Real:
+    """The greatest share of its limit that each variant takes at a target: at most 1 where it keeps all of them.
+
+    The units of the task are the limits, and the place of the input is the one at which the greater share is least.
+
+    Returns
+    -------
+    float, shape (v,)
+        Infinite where a variant cannot be assembled or leaves its branch. Above 1 it is the first share that breaks a
+        limit, not the greatest.
+    """
+    rows = task.variants(variants)
+    share = np.empty(len(rows))
+    kernels.shares(task.drive, rows, task.rows, task.inputs, task.towards(rows), share)
+    return share

@@ -1,0 +1,158 @@
+"""The loop of a fourbar or a slider-crank of any dimensions, compiled: closed, measured, held to its branch.
+
+Both are one loop here, a crank k = a e^{iθ} from O2, a coupler u = B − A, and a *guide* of the pin B: the output's
+circle about O4, or the slide. With a normal n of the guide at B (B − O4, or the slide's own),
+
+    n · (i ω2 k + i ω3 u) = 0,        ω3 / ω2 = − n·ik / n·iu,        v / ω2 = i k + i (ω3/ω2) (P − A),
+
+so that only the closure knows which of both it is. A row of dimensions is O2 (x, y), O4 (x, y), a, b, c, P (along A →
+B, across it) of a fourbar; O2 (x, y), offset, a, b, P (along, across) of a slider-crank; there is no P where none is
+guided. A row of a target is cos θ, sin θ, P (x, y) or the travel, cos, sin of the angle, and the assembly sign.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from kinematics.linkage.kernels import ON_TOGGLE, OPTIONS, Real, direction
+
+POSES, POINTS, OUTPUTS = 0, 1, 2
+"""What targets are: positions of the coupler's body, places of P, or places of the output."""
+
+
+class Drive(NamedTuple):
+    """How variants are driven.
+
+    Attributes
+    ----------
+    sort : int
+        What targets are.
+    slides : bool
+        Whether the linkage is a slider-crank.
+    ex, ey : float
+        Direction of its slide.
+    adjusted, greatest : bool
+        Whether the input is set anew at each target, and to where the greater miss, not the sum of squares, is least.
+    per_length, per_angle : float
+        Inverses of the units of distance and angle.
+    before, after : float
+        What the range of the motion reaches beyond the least and the greatest input; NaN where no range is held.
+    """
+
+    sort: int
+    slides: bool
+    ex: float
+    ey: float
+    adjusted: bool
+    greatest: bool
+    per_length: float
+    per_angle: float
+    before: float
+    after: float
+
+
+@njit(**OPTIONS)
+def closed(
+    drive: Drive, row: Real, sign: float, cosine: float, sine: float
+) -> tuple[bool, float, float, float, float, float, float, float, float]:
+    """Whether the loop closes; k, u = B − A and the guide's normal n at B; and the length b."""
+    if drive.slides:
+        ex, ey = drive.ex, drive.ey
+        a, b = row[3], row[4]
+        kx, ky = a * cosine, a * sine
+        # Along and across the slide: A stands k_y over the pivot's parallel of it, the slide ``offset`` below.
+        across = -row[2] - (kx * -ey + ky * ex)
+        square = (b - across) * (b + across)
+        valid = square >= -2.0 * ON_TOGGLE * b * max(a, b, abs(row[2]))
+        along = sign * math.sqrt(max(square, 0.0))
+        return valid, kx, ky, ex * along - ey * across, ey * along + ex * across, -ey, ex, b, along
+    a, b, c = row[4], row[5], row[6]
+    kx, ky = a * cosine, a * sine
+    dx, dy = row[2] - row[0] - kx, row[3] - row[1] - ky
+    square = dx * dx + dy * dy
+    f = math.sqrt(square)
+    product = (b + c + f) * (b + c - f) * (f + (b - c)) * (f - (b - c))
+    valid = (product >= -4.0 * ON_TOGGLE * b * c * square) & (f > 0.0)
+    half = 0.5 / square
+    along = (square + (b - c) * (b + c)) * half
+    height = sign * math.sqrt(max(product, 0.0)) * half
+    ux, uy = dx * along - dy * height, dy * along + dx * height
+    return valid, kx, ky, ux, uy, ux - dx, uy - dy, b, 0.0
+
+
+@njit(**OPTIONS)
+def misses(
+    drive: Drive, row: Real, target: Real, cosine: float, sine: float
+) -> tuple[bool, float, float, float, float, float, float]:
+    """Whether the loop closes; deviations x, y and angle from a target; and their rates with the input."""
+    valid, kx, ky, ux, uy, nx, ny, b, _ = closed(drive, row, target[6], cosine, sine)
+    turn = -(ny * kx - nx * ky) / (ny * ux - nx * uy)
+    if drive.sort == OUTPUTS:
+        if drive.slides:
+            travel = (row[0] + kx + ux) * drive.ex + (row[1] + ky + uy) * drive.ey - target[2]
+            return valid, travel, 0.0, 0.0, (-ky - turn * uy) * drive.ex + (kx + turn * ux) * drive.ey, 0.0, 0.0
+        off = direction(nx * target[4] + ny * target[5], ny * target[4] - nx * target[5])
+        square = nx * nx + ny * ny
+        return valid, 0.0, 0.0, off, 0.0, 0.0, (nx * (kx + turn * ux) + ny * (ky + turn * uy)) / square
+    at = 5 if drive.slides else 7
+    armx, army = row[at] / b, row[at + 1] / b
+    px, py = armx * ux - army * uy, armx * uy + army * ux
+    x, y = row[0] + kx + px - target[2], row[1] + ky + py - target[3]
+    off = 0.0
+    if drive.sort == POSES:
+        off = direction(ux * target[4] + uy * target[5], uy * target[4] - ux * target[5])
+    return valid, x, y, off, -ky - turn * py, kx + turn * px, turn if drive.sort == POSES else 0.0
+
+
+@njit(**OPTIONS)
+def sound(drive: Drive, row: Real) -> bool:
+    """Whether all links have a length above zero."""
+    least = min(row[3], row[4]) if drive.slides else min(row[4], row[5], row[6])
+    return bool(least > 0.0)
+
+
+@njit(**OPTIONS)
+def _between(low: float, high: float, place: float) -> bool:
+    """Whether a range of angles holds a place, or one some full turns from it."""
+    return place + math.tau * math.ceil((low - place) / math.tau) <= high
+
+
+@njit(**OPTIONS)
+def on_branch(drive: Drive, row: Real, low: float, high: float) -> bool:
+    """Whether a variant turns from its least input at a target to its greatest, and beyond, without a toggle.
+
+    The distance of A from O4, or of A from the slide, is extreme with the crank along the ground or square to the
+    slide.
+    """
+    if math.isnan(drive.before):
+        return True
+    ends = drive.before > 0.0 or drive.after > 0.0
+    low, high = low - drive.before, high + drive.after
+    if drive.slides:
+        a, b = row[3], row[4]
+        up, down = -row[2] - a, -row[2] + a
+        far_up, far_down = abs(up) >= b, abs(down) >= b
+        zero = math.atan2(drive.ey, drive.ex) + 0.5 * math.pi
+        if not (far_up or far_down):
+            return True
+        if (far_up and _between(low, high, zero)) or (far_down and _between(low, high, zero + math.pi)):
+            return False
+        return not ends or max(abs(row[2] + a * math.cos(low - zero)), abs(row[2] + a * math.cos(high - zero))) < b
+    a, b, c = row[4], row[5], row[6]
+    gx, gy = row[2] - row[0], row[3] - row[1]
+    d = math.sqrt(gx * gx + gy * gy)
+    near, far = abs(d - a) <= abs(b - c), d + a >= b + c
+    if not (near or far):
+        return True
+    zero = direction(gx, gy)
+    if (near and _between(low, high, zero)) or (far and _between(low, high, zero + math.pi)):
+        return False
+    if not ends:
+        return True
+    least, most = (b - c) * (b - c), (b + c) * (b + c)
+    first = a * a + d * d - 2.0 * a * d * math.cos(low - zero)
+    second = a * a + d * d - 2.0 * a * d * math.cos(high - zero)
+    return bool(least < min(first, second) and max(first, second) < most)

@@ -1,0 +1,216 @@
+"""Derivatives of what a linkage does to its dimensions, exact, through the closure of its loop.
+
+In the letters of :mod:`kernels`: the pin B of the coupler u = B − A is guided with the normal n, n·dB = r, where r =
+n·dO4 + c dc for the output of a fourbar, and n·dO2 − do for a slide at the offset o. From dB = dO2 + dk + û db + i u
+dφ follow
+
+    dφ = (r − n·(dO2 + dk + û db)) / n·iu,        dP = dO2 + dk + û dp + i (P − A) dφ,        dk = e^{iθ} da + i k dθ,
+
+so that the input θ is one dimension more. Differentiated once again, with ω = ∂φ/∂θ and v = ∂P/∂θ,
+
+    dω = −(dn·i(k + ω u) + n·i(dk + ω du)) / n·iu,        dv = i (dk + p dω + ω dp').
+
+An adjusted input is where the sum of the squares of distance and angle in their units is least, e·v/E² + ε ω/Ω² = 0,
+which gives dθ of every dimension. The place where the greater of both is least, by which variants are judged, has no
+derivative where a target is met exactly. Sources: Norton, Design of Machinery, Sec. 4.10 (transmission angle); Chase
+and Greenwood, Design issues in mechanical tolerance analysis, Manufacturing Review 1 (1988) 50, for closures as
+tolerance chains.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from kinematics.linkage.variation.driven import Complex, Real, Task, Whole, deviations
+
+
+class Sensitivities(NamedTuple):
+    """How the deviations at targets follow n dimensions.
+
+    Attributes
+    ----------
+    inputs : float, shape (t,)
+        Nearest inputs of the nominal linkage, radians.
+    offsets : float, shape (t, 3)
+        Its deviations x, y, angle there (as of :func:`deviations`).
+    fixed : float, shape (t, 3, n)
+        Their derivatives at these inputs.
+    motion : float, shape (t, 3)
+        Their derivatives to the input.
+    rates : float, shape (t, 3, n)
+        Their derivatives where the input follows; the same as ``fixed`` where it does not.
+    least : float or None
+        Least transmission angle over the used range, radians; None where no range is held.
+    least_rates : float, shape (n,)
+        Its derivatives; zeros where there is none. Of two places where it is least, that of the first.
+    """
+
+    inputs: Real
+    offsets: Real
+    fixed: Real
+    motion: Real
+    rates: Real
+    least: float | None
+    least_rates: Real
+
+
+class _Loop(NamedTuple):
+    """The loop at t inputs, and the derivatives of its parts to the n dimensions and, last, to the input.
+
+    ``u``, ``normal`` and ``arm`` (P − A) have the shape (t,), all others (t, n + 1); ``turn`` is that of the coupler.
+    """
+
+    u: Complex
+    normal: Complex
+    arm: Complex
+    turn: Real
+    du: Complex
+    dn: Complex
+    db: Complex
+    dp: Complex
+    dturn: Real
+    """∂²φ/∂θ of each."""
+    dv: Complex
+    """∂²P/∂θ of each."""
+
+
+def _dot(a: Complex, b: Complex | np.complex128) -> Real:
+    return np.asarray((a * np.conj(b)).real)
+
+
+def _loop(task: Task, row: Real, inputs: Real, assemblies: Whole) -> _Loop:
+    """The loop of the linkage with the dimensions ``row``, shape (n,)."""
+    n = len(row)
+    lengths = 3 if task.slides else 4
+    a, b = row[lengths], row[lengths + 1]
+    shape = len(inputs), n + 1
+    crank = a * np.exp(1j * inputs)
+    # What each dimension moves by itself: O2, the length b, P on its link, and the guide of B.
+    o2, dk, along, place = (np.zeros(shape, np.complex128) for _ in range(4))
+    o2[:, 0], o2[:, 1] = 1.0, 1j
+    dk[:, lengths], dk[:, n] = np.exp(1j * inputs), 1j * crank
+    if task.slides:
+        normal = np.full(len(inputs), 1j * task.along)
+        across = -row[2] - _dot(crank, normal)
+        u = task.along * (assemblies * np.sqrt((b - across) * (b + across))) + normal * across
+        guide = _dot(normal[:, None], o2)
+        guide[:, 2] -= 1.0
+        held = np.zeros(shape, np.complex128)
+    else:
+        c = row[6]
+        diagonal = complex(row[2] - row[0], row[3] - row[1]) - crank
+        f = np.abs(diagonal)
+        part = (f * f + (b - c) * (b + c)) / (2.0 * f)
+        u = diagonal / f * (part + 1j * assemblies * np.sqrt((b - part) * (b + part)))
+        normal = u - diagonal
+        held = np.zeros(shape, np.complex128)
+        held[:, 2], held[:, 3] = 1.0, 1j
+        guide = _dot(normal[:, None], held)
+        guide[:, 6] += c
+    unit = u / b
+    along[:, lengths + 1] = unit
+    arm = np.zeros_like(u)
+    if task.guides:
+        arm = complex(row[-2], row[-1]) * unit
+        place[:, n - 2], place[:, n - 1] = unit, 1j * unit
+    lever = _dot(normal, 1j * u)[:, None]
+    turn = (guide - _dot(normal[:, None], o2 + dk + along)) / lever
+    du = along + 1j * u[:, None] * turn
+    db = o2 + dk + du
+    dn = np.zeros_like(db) if task.slides else db - held
+    darm = place + 1j * arm[:, None] * turn
+    speed = turn[:, n:]
+    dturn = (
+        -(_dot(dn, 1j * (crank[:, None] + speed * u[:, None])) + _dot(normal[:, None], 1j * (dk + speed * du))) / lever
+    )
+    dv = 1j * (dk + arm[:, None] * dturn + speed * darm)
+    return _Loop(u, normal, arm, turn, du, dn, db, o2 + dk + darm, dturn, dv)
+
+
+def sensitivities(task: Task, nominal: Real) -> Sensitivities:
+    """Derivatives of a linkage's deviations, and of its least transmission angle, to its dimensions.
+
+    Parameters
+    ----------
+    task : Task
+        The targets; its units are those in which nearness is measured.
+    nominal : float, shape (n,)
+        Dimensions, as of :func:`deviations`. The linkage is to have a position at every target.
+
+    Returns
+    -------
+    Sensitivities
+        Not finite where the linkage stands at a toggle.
+    """
+    square = dataclasses.replace(task, greatest=False)
+    driven = deviations(square, nominal[None])
+    inputs, offsets = driven.inputs[0], driven.offsets[0]
+    n = len(nominal)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = _loop(task, nominal, inputs, task.assemblies)
+        every, speeds = _measured(task, at)
+        following = np.zeros((len(inputs), n))
+        if task.adjusted and task.guides:
+            weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]]) ** 2
+            motion = every[:, :, n]
+            slope = np.einsum("c,tcj,tc->tj", weights, every, motion) + np.einsum(
+                "c,tc,tcj->tj", weights, offsets, speeds
+            )
+            following = -slope[:, :n] / slope[:, n:]
+    fixed, motion = every[:, :, :n], every[:, :, n]
+    rates = fixed + motion[:, :, None] * following[:, None, :]
+    least, least_rates = _transmission(task, nominal, inputs, following)
+    return Sensitivities(inputs, offsets, fixed, motion, rates, least, least_rates)
+
+
+def _measured(task: Task, at: _Loop) -> tuple[Real, Real]:
+    """Derivatives of x, y and the angle, shape (t, 3, n + 1), and those of their speeds with the input."""
+    zeros = np.zeros_like(at.turn)
+    if task.sort == "outputs":
+        if task.slides:
+            first = np.stack([_dot(at.db, np.complex128(task.along)), zeros, zeros], axis=1)
+        else:
+            first = np.stack([zeros, zeros, _turning(at.normal, at.dn)], axis=1)
+        return first, np.zeros_like(first)
+    turned, turning = (at.turn, at.dturn) if task.sort == "poses" else (zeros, zeros)
+    first = np.stack([at.dp.real, at.dp.imag, turned], axis=1)
+    return first, np.stack([at.dv.real, at.dv.imag, turning], axis=1)
+
+
+def _turning(vector: Complex, change: Complex) -> Real:
+    """Derivatives of a vector's angle, shape (t, n + 1)."""
+    return np.asarray((np.conj(vector[:, None]) * change).imag / (np.abs(vector) ** 2)[:, None])
+
+
+def _transmission(task: Task, nominal: Real, inputs: Real, following: Real) -> tuple[float | None, Real]:
+    """The least transmission angle over the used range, and its derivatives: at an end, which follows, or inside.
+
+    Inside it is least where the crank lies along the ground, or square to the slide; there the input does not matter.
+    """
+    if task.used is None:
+        return None, np.zeros(len(nominal))
+    margins, first, last = task.margins, int(inputs.argmin()), int(inputs.argmax())
+    low, high = float(inputs[first] - margins[0]), float(inputs[last] + margins[1])
+    if task.slide_angle is not None:
+        still = task.slide_angle + 0.5 * math.pi
+    else:
+        still = math.atan2(nominal[3] - nominal[1], nominal[2] - nominal[0])
+    turns = np.array([place + math.tau * math.ceil((low - place) / math.tau) for place in (still, still + math.pi)])
+    places = np.concatenate([[low, high], turns[turns <= high]])
+    ends = np.zeros((len(places), len(nominal)))
+    ends[0], ends[1] = following[first], following[last]
+    signs = np.full(len(places), task.assemblies[0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = _loop(task, nominal, places, signs)
+        between = np.angle(at.normal / at.u)
+        change = _turning(at.normal, at.dn) - _turning(at.u, at.du)
+    # The acute angle between two lines.
+    folded = np.remainder(between, math.pi)
+    acute = np.minimum(folded, math.pi - folded)
+    k = int(np.where(np.isfinite(acute), acute, 0.0).argmin())
+    sense = 1.0 if folded[k] <= 0.5 * math.pi else -1.0
+    return float(acute[k]), sense * (change[k, :-1] + change[k, -1] * ends[k])
