@@ -10,7 +10,7 @@ from synthesis.model.kind import Progress, part_of
 from synthesis.model.linkage_statement import LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.front import front_of
-from synthesis.outcome.layout import all_laid_out
+from synthesis.outcome.layout import all_laid_out, fewest_planes_first, searched_for
 from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
@@ -43,16 +43,20 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
     problem.require_consistent()
     told = _silent if progress is None else progress
     kind = KINDS[problem.kind]
-    result: Result[Any] = kind.solve(problem, part_of(told, 0.0, SEARCH_SHARE))
+    asked = searched_for(problem)
+    result: Result[Any] = kind.solve(asked, part_of(told, 0.0, SEARCH_SHARE))
     if not any(design.verification.passed for design in result.designs):
         told(SEARCH_SHARE, "no design found; looking for what comes nearest")
         rest = part_of(told, SEARCH_SHARE, 1.0)
-        result = _relaxed(problem, result, relaxation(problem, kind.solve, rest, kind.verify, kind.nearer))
+        result = _relaxed(asked, result, relaxation(asked, kind.solve, rest, kind.verify, kind.nearer))
     if isinstance(problem, LinkageProblem):
         result = result if problem.layout is None else all_laid_out(problem.layout, result)
-        designs, remark = usable_first(problem, result.designs)
-        update = {"designs": designs, "summary": result.summary + remark, "front": front_of(designs)}
-        result = result.model_copy(update=update)
+        designs, remark = usable_first(searched_for(problem), result.designs)
+        if problem.rank_by == "planes":
+            result = fewest_planes_first(problem, result.model_copy(update={"designs": designs}))
+        else:
+            result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
+        result = result.model_copy(update={"front": front_of(result.designs)})
     told(1.0, "verified")
     return result
 

@@ -24,6 +24,9 @@ from synthesis.model.statement import (
 )
 from synthesis.model.zones import ON_EDGE, MovingZone
 
+RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes"]
+"""What designs of linkages are ordered by (docs/ranking.md)."""
+
 
 class Region(Statement):
     """A rectangle with sides along the axes, in length units."""
@@ -120,7 +123,7 @@ class LinkageProblem(StatedProblem):
         default=None, description="Lay each design out in the fewest planes in which it can be built."
     )
     space: Space | None = Field(default=None, description="The room that the linkage must fit into, with its motion.")
-    rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "quality"
+    rank_by: RankBy = "quality"
 
     @property
     def first_pose(self) -> tuple[complex, float] | None:
@@ -130,6 +133,8 @@ class LinkageProblem(StatedProblem):
     def contradicting_demands(self) -> list[Contradiction]:
         """Demands that exclude one another, or that no linkage for the task can be asked for."""
         listed = self.constraints.contradictions()
+        if self.rank_by == "planes" and self.layout is None:
+            listed.append(Contradiction("/rank_by", "planes are counted where a layout is stated; state one"))
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:

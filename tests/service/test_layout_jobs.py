@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
+from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.registry import KINDS
 from tests.service.answers import drawn, finished
-from tests.service.stated.linkages import DWELL, MOTION, QUICK_RETURN, STEERING
+from tests.service.stated.linkages import BOTH_OPEN, DWELL, LINE, MOTION, PARALLEL, QUICK_RETURN, STEERING
+from tests.service.stated.tables import TABLES
 
 BLOCK = {"link_width": 0.1, "pin_diameter": 0.05, "thickness": 5.0, "gap": 0.02}
 DRAG_LINK = {"kind": "quick_return", "time_ratio": 1.4, "stroke": 1.0, "mechanism": "drag_link_slider"}
@@ -102,6 +107,54 @@ def test_a_limit_of_planes_is_a_demand(client):
     assert missed["search"]["rejected"] == {"planes": len(kept["designs"])}
     assert missed["nearest_miss"]["gaps"] == [{"check": "planes", "value": 4.0, "limit": 3.0}]
     assert missed["nearest_miss"]["design"]["layout"]["count"] == 4
+
+
+RANKED = {
+    "motion": ({**MOTION, **BOTH_OPEN, "max_designs": 40}, 12.0),
+    "straight_line": ({**LINE, "mechanism": "auto"}, 4.0),
+    "parallel_motion": ({**PARALLEL, "include_cognates": True}, 1.0),
+    "quick_return": ({**QUICK_RETURN, "mechanism": "auto", "max_designs": 10}, 0.1),
+}
+"""Problems whose designs take different numbers of planes, or cannot all be built, and the width of their links."""
+
+
+@pytest.mark.parametrize(("problem", "width"), RANKED.values(), ids=RANKED)
+def test_fewest_planes_first(client, problem, width):
+    """The designs are those of the usual order, those in as many planes in that order; fewer are the first of them."""
+    stated = {**problem, "layout": {**BLOCK, "link_width": width, "pin_diameter": 0.5 * width}}
+    usual, by_planes, first = (
+        finished(client, {**stated, **fields})["result"]
+        for fields in ({}, {"rank_by": "planes"}, {"rank_by": "planes", "max_designs": 1})
+    )
+
+    def place(design):
+        return design["layout"]["count"] if design["layout"]["buildable"] else math.inf
+
+    assert len({*map(place, usual["designs"])}) > 1
+    assert by_planes["designs"] == sorted(usual["designs"], key=place)
+    assert first["designs"] == by_planes["designs"][:1]
+    assert "Ordered by planes" in by_planes["summary"]
+    assert set(by_planes["front"]["designs"]) <= set(range(len(by_planes["designs"])))
+
+
+def test_planes_rank_beside_other_demands(client):
+    """Beside a limit of planes, a limit of the angle and designs that fail: these come last."""
+    block = {**BLOCK, "link_width": 4.0, "pin_diameter": 2.0, "max_planes": 3}
+    demands = {"constraints": {"min_transmission_angle": 5.0}, "include_failed": True, "rank_by": "planes"}
+    designs = finished(client, {**LINE, "mechanism": "auto", "layout": block, **demands})["result"]["designs"]
+    passed = [design["verification"]["passed"] for design in designs]
+    assert passed == sorted(passed, reverse=True)
+    assert set(passed) == {True, False}
+    counts = [design["layout"]["count"] for design in designs if design["verification"]["passed"]]
+    assert counts == sorted(counts)
+    assert counts[-1] <= 3
+
+
+@pytest.mark.parametrize("kind", [name for name, kind in KINDS.items() if issubclass(kind.problem, LinkageProblem)])
+def test_planes_rank_where_a_layout_is_stated(client, kind):
+    answer = client.post("/v1/jobs", json={"problem": {**TABLES[kind][0], "rank_by": "planes"}})
+    assert answer.status_code == 422
+    assert [error["path"] for error in answer.json()["errors"]] == ["/problem/rank_by"]
 
 
 def test_the_cycle_is_looked_at_where_it_is_asked_for(client):

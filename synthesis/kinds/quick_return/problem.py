@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE
-from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.linkage_statement import LinkageProblem, RankBy
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -141,7 +141,7 @@ class QuickReturnProblem(LinkageProblem):
         description="Angle of the line O2 → O4 where the output swings, or of the slide; degrees. Left out it is 0; "
         "where O2 is left out too, what regions want.",
     )
-    rank_by: Literal["quality", "accuracy", "size", "transmission_angle"] = "transmission_angle"
+    rank_by: RankBy = "transmission_angle"
 
     @property
     def slides(self) -> bool:
