@@ -113,7 +113,7 @@ def warm_up() -> None:
     for family in families():
         family.request.example().answer()
     for mechanism in (_SLIDER_CRANK, _CLASS_III):
-        parse_request({"mechanism": mechanism}).answer()
+        parse_request({"mechanism": mechanism, "dynamics": {}}).answer()
 
 
 _SLIDER_CRANK = {

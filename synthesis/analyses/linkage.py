@@ -17,14 +17,19 @@ from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.base import AnalysisRequest, Family
 from synthesis.analyses.cycle import MAX_EFFORT, cycle_of, effort
+from synthesis.analyses.dynamics import forces_of
 from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_analysis
 from synthesis.analyses.layout import layout_of
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.mechanisms import GivenMechanism, MechanismError
+from synthesis.mechanisms.machine import dynamics_faults, token
+from synthesis.mechanisms.skeleton import skeleton_of
 from synthesis.model.answer import Answer, optional
+from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+from synthesis.model.dynamics_answer import DynamicsAnswer
 from synthesis.model.layout import LayoutSizes
-from synthesis.model.linkage_answer import Layout
+from synthesis.model.linkage_answer import Layout, Skeleton
 from synthesis.model.stated_linkage import StatedCouplerPoint
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
@@ -80,21 +85,26 @@ class LinkageAnalysisRequest(AnalysisRequest):
         default=None,
         description="Lay the mechanism out in the fewest planes in which it can be built; over the motion, as used.",
     )
+    length_unit: LengthUnit = Field(default="mm", description="Of all lengths; `dynamics` converts them.")
+    dynamics: DynamicsBlock | None = Field(
+        default=None, description="Masses and loads: the forces in all joints, the drive, and what shakes the frame."
+    )
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
         faults = self.motion.faults()
-        if not self.points:
+        if not self.points and self.dynamics is None:
             return faults
         try:
-            links = self.mechanism.mechanism().links
+            mechanism = self.mechanism.mechanism()
         except (MechanismError, KinematicsError):  # the answer says so, in its own words
             return faults
-        moving = [link for link in links if link != GROUND]
+        moving = [link for link in mechanism.links if link != GROUND]
         for name, point in self.points.items():
             if point.link not in moving:
-                token = name.replace("~", "~0").replace("/", "~1")
-                faults.append((f"/points/{token}/link", f"no link in motion; they are {', '.join(moving)}"))
+                faults.append((f"/points/{token(name)}/link", f"no link in motion; they are {', '.join(moving)}"))
+        if self.dynamics is not None:
+            faults += dynamics_faults(self.dynamics, mechanism)
         return faults
 
     def answer(self) -> dict[str, Any]:
@@ -118,11 +128,18 @@ class LinkageAnalysisRequest(AnalysisRequest):
             ends = float(at.min()), float(at.max())
             used = ends if slide else (math.radians(ends[0]), math.radians(ends[1]))
             planes["layout"] = layout_of(mechanism, self.layout, used).model_dump()
+        forces = {}
+        if self.dynamics is not None:
+            forces = {
+                "skeleton": skeleton_of(mechanism),
+                "dynamics": forces_of(mechanism, self.dynamics, self.length_unit, at, speed, motion.acceleration),
+            }
         return {
             "time": None if time is None else time.tolist(),
             **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include, points=points),
             "fourbar": more,
             **planes,
+            **forces,
         }
 
     @classmethod
@@ -231,6 +248,8 @@ class LinkageAnalysis(Answer):
     notes: list[str] = Field(description="What is left out, by the name of the field, and why.")
     fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
     layout: Layout | None = optional("The planes in which it can be built, if the request states a `layout`.")
+    skeleton: Skeleton | None = optional("The reference configuration to which the places of `dynamics` belong.")
+    dynamics: DynamicsAnswer | None = optional("Forces, if the request states `dynamics`.")
 
 
 FAMILY = Family(LinkageAnalysisRequest, LinkageAnalysis)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from itertools import combinations
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -45,6 +45,24 @@ def _made(stated: StatedSkeleton, turns: int) -> Mechanism:
         )
     except ValueError as error:
         raise MechanismError("/skeleton", str(error)) from None
+
+
+def skeleton_of(mechanism: Mechanism) -> dict[str, Any]:
+    """The skeleton of a mechanism in its reference configuration, as JSON has it."""
+
+    def pair(z: complex) -> tuple[float, float]:
+        return z.real, z.imag
+
+    return {
+        "joints": {name: pair(complex(z)) for name, z in mechanism.joints.items()},
+        "links": [{"name": name, "joints": list(listed)} for name, listed in mechanism.links.items()],
+        "slides": [
+            {"joint": s.joint, "link": s.link, "point": pair(complex(s.point)), "angle": math.degrees(float(s.angle))}
+            for s in mechanism.slides
+        ],
+        "gears": [{"links": (gear.first, gear.second), "ratio": gear.ratio} for gear in mechanism.gears],
+        "input_link": mechanism.input,
+    }
 
 
 class GivenSkeleton(Statement):

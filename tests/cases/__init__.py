@@ -117,7 +117,20 @@ def _cam_case(row: dict[str, Any]) -> Case:
     return Case(row["id"], inputs.pop("task"), row["source"], row["status"], row["note"], inputs, expected)
 
 
+def _dynamics_case(row: dict[str, Any]) -> Case:
+    expected = {
+        name: Expected(
+            value.get("likely", value["value"]), value.get("tol_likely", value["tol"]), value.get("modulo_360", False)
+        )
+        for name, value in row["expected"].items()
+        if value["status"] != "unverifiable"
+    }
+    return Case(row["id"], row["kind"], row["source"], row["status"], row["note"], row["inputs"], expected)
+
+
 def _case(row: dict[str, Any]) -> Case:
+    if "given" in row:
+        return _dynamics_case(row)
     if "task" in row.get("inputs", {}):
         return _cam_case(row)
     if "tolerance" not in row:

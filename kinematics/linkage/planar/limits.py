@@ -71,6 +71,8 @@ def holding_reference(mechanism: Mechanism, branches: list[Branch]) -> Branch | 
             ]
             if tuple(choice) == branch.signs:
                 return branch
+        elif branch.full and not steps.left and not mechanism.driven_by_slide:
+            return branch  # nothing closes: the input alone says where every link is
         elif branch.full:
             if followed_to(mechanism, np.array([at - period, at + period])).all():
                 return branch

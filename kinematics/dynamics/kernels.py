@@ -1,0 +1,208 @@
+"""The equations of the reactions at each position, put together and solved: compiled, position by position.
+
+Elimination with partial pivoting, and the condition number in the 1-norm by Hager's estimate of the norm of the inverse
+(N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, Sec. 15.2): a handful of further solutions instead of
+the inverse itself. Lengths are shares of the mechanism's size, so that forces and torques are of one kind.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Rows = NDArray[np.int64]
+
+FORCE, ALONG, TORQUE = range(3)
+"""Terms: two columns, the components of a force at a joint; a force along a direction at a joint; a couple."""
+
+ESTIMATES = 5
+"""Steps of Hager's estimate at most; it ends after two or three."""
+
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+"""How the kernels are compiled."""
+
+
+@njit(**OPTIONS)
+def solve(
+    terms: Rows,
+    coefficients: Real,
+    bases: Rows,
+    joints: Complex,
+    directions: Complex,
+    known: Real,
+    smooth: NDArray[np.bool_],
+    solutions: Real,
+    conditions: Real,
+) -> None:
+    """Solve at all positions.
+
+    Parameters
+    ----------
+    terms, coefficients, bases
+        Of the system (:mod:`system`).
+    joints : complex, shape (joints, M)
+        Joints over the mechanism's size.
+    directions : complex, shape (directions, M)
+        What terms act along.
+    known : float, shape (M, n)
+        Right-hand sides.
+    smooth : bool, shape (M,)
+        Where there is anything to solve.
+    solutions : float, shape (M, n)
+        Filled; NaN elsewhere, and where the equations are singular.
+    conditions : float, shape (M,)
+        Filled: condition numbers, infinite for singular equations.
+    """
+    count, n = known.shape
+    matrix = np.empty((n, n))
+    order = np.empty(n, np.int64)
+    work = np.empty((3, n))
+    for at in range(count):
+        solutions[at] = np.nan
+        conditions[at] = np.inf
+        if not smooth[at]:
+            continue
+        matrix[:] = 0.0
+        fill(terms, coefficients, bases, joints, directions, at, matrix)
+        norm = norm_of(matrix)
+        if not factor(matrix, order):
+            continue
+        conditions[at] = norm * inverse_norm(matrix, order, work)
+        for row in range(n):
+            solutions[at, row] = known[at, row]
+        forward(matrix, order, solutions[at])
+
+
+@njit(**OPTIONS)
+def fill(
+    terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, at: int, matrix: Real
+) -> None:
+    """Add the terms of one position to a matrix."""
+    for t in range(len(terms)):
+        kind, column, link, joint, direction = terms[t]
+        factor_of_term = coefficients[t]
+        row = 3 * link
+        if kind == TORQUE:
+            matrix[row + 2, column] += factor_of_term
+            continue
+        arm = joints[joint, at] - joints[bases[link], at]
+        if kind == FORCE:
+            matrix[row, column] += factor_of_term
+            matrix[row + 1, column + 1] += factor_of_term
+            matrix[row + 2, column] -= factor_of_term * arm.imag
+            matrix[row + 2, column + 1] += factor_of_term * arm.real
+        else:
+            d = directions[direction, at]
+            matrix[row, column] += factor_of_term * d.real
+            matrix[row + 1, column] += factor_of_term * d.imag
+            matrix[row + 2, column] += factor_of_term * (arm.real * d.imag - arm.imag * d.real)
+
+
+@njit(**OPTIONS)
+def norm_of(matrix: Real) -> float:
+    """The 1-norm: the greatest sum of a column's magnitudes."""
+    largest = 0.0
+    n = len(matrix)
+    for column in range(n):
+        total = 0.0
+        for row in range(n):
+            total += abs(matrix[row, column])
+        largest = max(largest, total)
+    return largest
+
+
+@njit(**OPTIONS)
+def factor(matrix: Real, order: Rows) -> bool:
+    """Eliminate in place with partial pivoting; False where a pivot vanishes."""
+    n = len(matrix)
+    for k in range(n):
+        pivot = k
+        for row in range(k + 1, n):
+            if abs(matrix[row, k]) > abs(matrix[pivot, k]):
+                pivot = row
+        order[k] = pivot
+        if not abs(matrix[pivot, k]) > 0.0:
+            return False
+        if pivot != k:
+            for column in range(n):
+                matrix[k, column], matrix[pivot, column] = matrix[pivot, column], matrix[k, column]
+        inverse = 1.0 / matrix[k, k]
+        for row in range(k + 1, n):
+            share = matrix[row, k]
+            if share != 0.0:
+                share *= inverse
+                matrix[row, k] = share
+                for column in range(k + 1, n):
+                    matrix[row, column] -= share * matrix[k, column]
+    return True
+
+
+@njit(**OPTIONS)
+def forward(matrix: Real, order: Rows, x: Real) -> None:
+    """Solve with the factors, in place."""
+    n = len(matrix)
+    for k in range(n):
+        pivot = order[k]
+        x[k], x[pivot] = x[pivot], x[k]
+    for k in range(n):
+        value = x[k]
+        if value != 0.0:
+            for row in range(k + 1, n):
+                x[row] -= matrix[row, k] * value
+    for k in range(n - 1, -1, -1):
+        x[k] /= matrix[k, k]
+        value = x[k]
+        if value != 0.0:
+            for row in range(k):
+                x[row] -= matrix[row, k] * value
+
+
+@njit(**OPTIONS)
+def transposed(matrix: Real, order: Rows, x: Real) -> None:
+    """Solve with the transposed factors, in place."""
+    n = len(matrix)
+    for k in range(n):
+        value = x[k]
+        for row in range(k):
+            value -= matrix[row, k] * x[row]
+        x[k] = value / matrix[k, k]
+    for k in range(n - 1, -1, -1):
+        value = x[k]
+        for row in range(k + 1, n):
+            value -= matrix[row, k] * x[row]
+        x[k] = value
+    for k in range(n - 1, -1, -1):
+        pivot = order[k]
+        x[k], x[pivot] = x[pivot], x[k]
+
+
+@njit(**OPTIONS)
+def inverse_norm(matrix: Real, order: Rows, work: Real) -> float:
+    """The 1-norm of the inverse from the factors: Hager's estimate, a lower bound that is rarely less than a third."""
+    n = len(matrix)
+    x, z, signs = work[0], work[1], work[2]
+    x[:] = 1.0 / n
+    estimate = 0.0
+    for step in range(ESTIMATES):
+        forward(matrix, order, x)
+        total = 0.0
+        for k in range(n):
+            total += abs(x[k])
+            signs[k] = 1.0 if x[k] >= 0.0 else -1.0
+        if step > 0 and total <= estimate:
+            break
+        estimate = total
+        z[:] = signs
+        transposed(matrix, order, z)
+        largest = 0
+        for k in range(n):
+            if abs(z[k]) > abs(z[largest]):
+                largest = k
+        x[:] = 0.0
+        x[largest] = 1.0
+    return estimate

@@ -1,0 +1,101 @@
+"""Loads: forces at points of links and at joints, and torques on links, constant or over the input.
+
+A load says twice what it does: as the efforts that act on links and joints, for the reactions, and as the work that it
+does for a unit of the input's motion, for the balance of power.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.places import Places, dot
+from kinematics.linkage.planar.mechanism import Complex, Real
+
+Course = Callable[[Real], NDArray[np.complex128] | NDArray[np.float64]]
+"""The strength of a load over the absolute input (radians, or a length along the input slide), of the input's shape."""
+
+
+class Effort(NamedTuple):
+    """A force on a link (or, where ``joint`` names one, on the pin of a joint) at a place, and a couple on the link."""
+
+    link: str
+    joint: str
+    at: Complex
+    force: Complex
+    couple: Real
+
+
+class Load(Protocol):
+    """What acts on the mechanism beside its own weight and inertia."""
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """The forces and couples at all positions, arrays of shape S + (N,)."""
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """Work for a unit of the input's motion, shape S + (N,); ``paced`` moves at an input speed of 1."""
+
+
+@dataclass(frozen=True)
+class PointForce:
+    """A force at a place (reference) of a link; ``turning``: its components turn with the link."""
+
+    link: str
+    place: Complex
+    course: Course
+    turning: bool = False
+
+    def _force(self, now: Places) -> Complex:
+        force = np.asarray(self.course(now.input[0]), np.complex128)
+        return force * now.turns[self.link][0] if self.turning else force
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`Load`."""
+        return [Effort(self.link, "", now.point(self.link, self.place)[0], self._force(now), np.zeros(()))]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`Load`."""
+        return dot(self._force(now), paced.point(self.link, self.place)[1])
+
+
+@dataclass(frozen=True)
+class JointForce:
+    """A force on the pin of a joint."""
+
+    joint: str
+    course: Course
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`Load`."""
+        force = np.asarray(self.course(now.input[0]), np.complex128)
+        return [Effort("", self.joint, now.joints[self.joint][0], force, np.zeros(()))]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`Load`."""
+        return dot(np.asarray(self.course(now.input[0]), np.complex128), paced.joints[self.joint][1])
+
+
+@dataclass(frozen=True)
+class Torque:
+    """A torque on a link."""
+
+    link: str
+    course: Course
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`Load`."""
+        torque = np.asarray(self.course(now.input[0]), np.float64)
+        return [Effort(self.link, "", np.zeros((), np.complex128), np.zeros((), np.complex128), torque)]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`Load`."""
+        return np.asarray(self.course(now.input[0]) * paced.spins[self.link][1], np.float64)
+
+
+def constant(strength: complex) -> Course:
+    """The course of a load that does not change."""
+    return lambda input: np.full(input.shape, strength)

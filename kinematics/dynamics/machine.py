@@ -1,0 +1,38 @@
+"""A machine: a mechanism with its masses, and all that acts on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from kinematics.dynamics.bodies import Body
+from kinematics.dynamics.loads import Load
+from kinematics.linkage.planar.mechanism import Mechanism, Real
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What the forces follow from, in units that agree with one another (SI, or any consistent set).
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+        Designs of shape S, in a length unit of their own: ``scale`` of it is the unit of everything else.
+    bodies : dict of str to Body
+        By moving link, places in the reference configuration; a link that is left out has no mass.
+    pin_masses : dict of str to float, shape S
+        Point masses by joint.
+    gravity : complex
+        Acceleration of gravity.
+    loads : tuple of Load
+        Forces, torques, springs.
+    about : complex
+        Point about which the shaking moment is taken.
+    """
+
+    mechanism: Mechanism
+    bodies: dict[str, Body] = field(default_factory=dict)
+    pin_masses: dict[str, Real] = field(default_factory=dict)
+    gravity: complex = 0j
+    loads: tuple[Load, ...] = ()
+    about: complex = 0j
+    scale: float = 1.0

@@ -1,0 +1,221 @@
+"""Inverse dynamics: the reactions at every pin, slide and gear, the drive, and what shakes the frame.
+
+Newton's and Euler's equations of every moving link, Σ F = m a_G and Σ M = I α with moments about a joint of the link
+(Norton, *Design of Machinery*, eq. 11.1), solved together at each position. Nothing here is used by :mod:`balance`,
+which finds the drive and the shaking force by work and momentum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics import kernels
+from kinematics.dynamics.loads import Effort
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places, cross
+from kinematics.dynamics.system import System, system_of
+from kinematics.linkage.planar.mechanism import GROUND, Complex, Real
+
+Mask = NDArray[np.bool_]
+
+SINGULAR = 1e12
+"""Condition number beyond which a position is a dead centre: four digits of the reactions are left at most."""
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Forces over designs × positions, shape S + (N,) each; NaN where ``solved`` is False.
+
+    Attributes
+    ----------
+    solved : bool
+        Where the equations determine all reactions.
+    condition : float
+        Condition number of the equations.
+    drive : float
+        Torque of the ground on the input link, or force along the input slide.
+    joints : dict of dict of complex
+        Force of the pin of each joint on each of its links, the ground among them.
+    slides : tuple of float
+        Force of each slide's line on its pin, along the direction turned by +90°.
+    gears : tuple of float
+        Torque of each gear pair on its second link; −ratio times that acts on the first, the rest on the ground.
+    shaking_force, shaking_moment
+        Sum of all forces of the mechanism on the ground, and their moment about the machine's point, less the drive.
+    """
+
+    solved: Mask
+    condition: Real
+    drive: Real
+    joints: dict[str, dict[str, Complex]]
+    slides: tuple[Real, ...]
+    gears: tuple[Real, ...]
+    shaking_force: Complex
+    shaking_moment: Real
+
+
+def efforts_of(machine: Machine, now: Places) -> list[Effort]:
+    """Loads, weight and the inertia of point masses (d'Alembert's force on the pin)."""
+    efforts = [effort for load in machine.loads for effort in load.efforts(now)]
+    none = np.zeros(())
+    for joint, mass in machine.pin_masses.items():
+        at, _, acceleration = now.joints[joint]
+        force = np.asarray(mass)[..., None] * (machine.gravity - acceleration)
+        efforts.append(Effort("", joint, at, force, none))
+    return efforts
+
+
+def reactions(machine: Machine, now: Places) -> Reactions:
+    """All reactions of a machine at the positions of a motion."""
+    mechanism, system = machine.mechanism, system_of(machine.mechanism)
+    shape = now.smooth.shape
+    size = _size(now)
+    efforts = efforts_of(machine, now)
+    on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
+    for effort in efforts:
+        if effort.joint:
+            on_pins[effort.joint] = on_pins[effort.joint] + effort.force
+    known = _known(machine, now, system, efforts, on_pins, size)
+    directions = np.stack(
+        [*(1j * now.direction(n)[0] for n in range(len(mechanism.slides))), _input_direction(now)]
+    ).reshape(len(mechanism.slides) + 1, -1)
+    joints = np.stack([jet[0] / size for jet in now.joints.values()]).reshape(len(mechanism.joints), -1)
+    solutions = np.empty((known.shape[0], system.columns))
+    conditions = np.empty(len(known))
+    kernels.solve(
+        system.terms,
+        system.coefficients,
+        system.bases,
+        joints,
+        directions,
+        known,
+        now.smooth.ravel(),
+        solutions,
+        conditions,
+    )
+    solutions[~(conditions < SINGULAR)] = np.nan
+    unknowns = [column.reshape(shape) for column in solutions.T]
+    return _named(machine, now, system, efforts, on_pins, unknowns, conditions.reshape(shape), size)
+
+
+def _size(now: Places) -> Real:
+    """The size of the mechanism, shape S + (1,)."""
+    places = np.stack([now.reference(joint) for joint in now.mechanism.joints])
+    size = np.abs(places - places[:1]).max(axis=0)
+    return np.asarray(np.where(size > 0.0, size, 1.0))[..., None]
+
+
+def _input_direction(now: Places) -> Complex:
+    mechanism = now.mechanism
+    if not mechanism.driven_by_slide:
+        return np.zeros(now.smooth.shape, np.complex128)
+    return np.asarray(now.direction(_input_slide(now))[0])
+
+
+def _input_slide(now: Places) -> int:
+    slides = now.mechanism.slides
+    return next(n for n, s in enumerate(slides) if s.joint == now.mechanism.input and s.link == GROUND)
+
+
+def _known(
+    machine: Machine,
+    now: Places,
+    system: System,
+    efforts: list[Effort],
+    on_pins: dict[str, Complex],
+    size: Real,
+) -> Real:
+    """Inertia less all that acts on each moving link: right-hand sides, shape (M, 3 × links)."""
+    shape = now.smooth.shape
+    rows = np.zeros((3 * len(system.moving), *shape))
+    number = {link: n for n, link in enumerate(system.moving)}
+
+    def add(link: str, at: Complex, force: Complex, couple: Real, sign: float) -> None:
+        if link == GROUND:
+            return
+        n, base = number[link], now.joints[now.base(link)][0]
+        rows[3 * n] += sign * force.real
+        rows[3 * n + 1] += sign * force.imag
+        rows[3 * n + 2] += sign * (cross(at - base, force) + couple) / size
+
+    none = np.zeros(())
+    for link, part in machine.bodies.items():
+        at, _, acceleration = now.point(link, part.cg)
+        force = np.asarray(part.mass)[..., None] * (acceleration - machine.gravity)
+        add(link, at, force, np.asarray(part.inertia)[..., None] * now.spins[link][2], 1.0)
+    for effort in efforts:
+        if not effort.joint:
+            add(effort.link, effort.at, effort.force, effort.couple, -1.0)
+    for joint, force in on_pins.items():
+        add(system.hubs[joint], now.joints[joint][0], force, none, -1.0)
+    return np.ascontiguousarray(rows.reshape(len(rows), -1).T)
+
+
+def _named(
+    machine: Machine,
+    now: Places,
+    system: System,
+    efforts: list[Effort],
+    on_pins: dict[str, Complex],
+    unknowns: list[Real],
+    condition: Real,
+    size: Real,
+) -> Reactions:
+    mechanism = machine.mechanism
+    solved = condition < SINGULAR
+    slides = tuple(unknowns[system.slides_at : system.slides_at + len(mechanism.slides)])
+    gears = tuple(size * torque for torque in unknowns[system.slides_at + len(slides) : system.columns - 1])
+    drive = unknowns[-1] if mechanism.driven_by_slide else size[..., :] * unknowns[-1]
+    on_hub = {joint: np.where(solved, force, np.nan) for joint, force in on_pins.items()}
+    for n, slide in enumerate(mechanism.slides):
+        on_hub[slide.joint] = on_hub[slide.joint] + slides[n] * 1j * now.direction(n)[0]
+    if mechanism.driven_by_slide:
+        on_hub[mechanism.input] = on_hub[mechanism.input] + drive * _input_direction(now)
+    joints: dict[str, dict[str, Complex]] = {joint: {} for joint in mechanism.joints}
+    for n, (joint, link) in enumerate(system.pins):
+        force = unknowns[2 * n] + 1j * unknowns[2 * n + 1]
+        joints[joint][link] = force
+        on_hub[joint] = on_hub[joint] - force
+    for joint, hub in system.hubs.items():
+        joints[joint][hub] = on_hub[joint]
+    force, moment = _on_ground(machine, now, efforts, joints, slides, gears, drive)
+    return Reactions(solved, condition, drive, joints, slides, gears, force, moment)
+
+
+def _on_ground(
+    machine: Machine,
+    now: Places,
+    efforts: list[Effort],
+    joints: dict[str, dict[str, Complex]],
+    slides: tuple[Real, ...],
+    gears: tuple[Real, ...],
+    drive: Real,
+) -> tuple[Complex, Real]:
+    """All that the mechanism does to the ground: force, and moment about the machine's point."""
+    mechanism = machine.mechanism
+    total = np.zeros(now.smooth.shape, np.complex128)
+    moment = np.zeros(now.smooth.shape)
+    pushes = [(now.joints[joint][0], on[GROUND]) for joint, on in joints.items() if GROUND in on]
+    for n, slide in enumerate(mechanism.slides):
+        if slide.link == GROUND:
+            pushes.append((now.joints[slide.joint][0], -slides[n] * 1j * now.direction(n)[0]))
+    if mechanism.driven_by_slide:
+        pushes.append((now.joints[mechanism.input][0], -drive * _input_direction(now)))
+    else:
+        moment = moment - drive
+    for gear, torque in zip(mechanism.gears, gears, strict=True):
+        share = {gear.second: 1.0}
+        share[gear.first] = share.get(gear.first, 0.0) - gear.ratio
+        # What acts on the two links comes from the ground's bearings; a gear that is the ground is no moving link.
+        moment = moment - torque * sum(factor for link, factor in share.items() if link != GROUND)
+    for effort in efforts:
+        if effort.link == GROUND and not effort.joint:
+            pushes.append((effort.at, effort.force))
+            moment = moment + effort.couple
+    for at, force in pushes:
+        total = total + force
+        moment = moment + cross(at - machine.about, force)
+    return total, moment

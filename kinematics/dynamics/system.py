@@ -1,0 +1,105 @@
+"""The equations of all reactions of a mechanism: which unknown acts on which link, and with what arm.
+
+Unknowns are, at each joint, the force of its pin on every link but the first that the mechanism names there, the hub;
+for each slide the force of its line on the pin, square to the line; for each gear pair the torque that couples it; last
+the drive. Equations are, for each moving link, the sums of forces and of moments (Norton 11.1). What a hub gets from
+its pin follows from the pin's own balance: it is whatever acts on the pin less its own m·a and the forces on the other
+links. Pins of three links and more need no convention so, and a mobility of 1 makes the equations square.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.kernels import ALONG, FORCE, TORQUE
+from kinematics.linkage.planar.closures import RECENT
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+
+
+@dataclass(frozen=True)
+class System:
+    """Columns and terms of the equations.
+
+    Attributes
+    ----------
+    moving : tuple of str
+        The links, three equations each.
+    hubs : dict of str to str
+        The hub of each joint.
+    pins : tuple of (joint, link)
+        Two columns each, in this order, then one by slide, one by gear pair, and the drive.
+    terms : int, shape (T, 5)
+        Kind, column, link (by number in ``moving``), joint, direction. See :mod:`kernels`.
+    coefficients : float, shape (T,)
+        What the term is multiplied by.
+    bases : int, shape (links,)
+        The joint about which a link's moments are taken.
+    columns : int
+        How many unknowns there are.
+    """
+
+    moving: tuple[str, ...]
+    hubs: dict[str, str]
+    pins: tuple[tuple[str, str], ...]
+    terms: NDArray[np.int64]
+    coefficients: NDArray[np.float64]
+    bases: NDArray[np.int64]
+    columns: int
+
+    @property
+    def slides_at(self) -> int:
+        """The first column of the slides."""
+        return 2 * len(self.pins)
+
+
+@lru_cache(maxsize=RECENT)
+def system_of(mechanism: Mechanism) -> System:
+    """The equations of a mechanism."""
+    links = mechanism.links
+    moving = tuple(link for link in links if link != GROUND)
+    number = {link: n for n, link in enumerate(moving)}
+    joint_number = {joint: n for n, joint in enumerate(mechanism.joints)}
+    hubs = {joint: next(link for link, listed in links.items() if joint in listed) for joint in mechanism.joints}
+    pins = tuple(
+        (joint, link)
+        for joint in mechanism.joints
+        for link, listed in links.items()
+        if joint in listed and link != hubs[joint]
+    )
+    terms: list[tuple[int, int, int, int, int]] = []
+    coefficients: list[float] = []
+
+    def add(kind: int, column: int, link: str, joint: int, direction: int, coefficient: float) -> None:
+        if link != GROUND and coefficient != 0.0:
+            terms.append((kind, column, number[link], joint, direction))
+            coefficients.append(coefficient)
+
+    for n, (joint, link) in enumerate(pins):
+        add(FORCE, 2 * n, link, joint_number[joint], -1, 1.0)
+        add(FORCE, 2 * n, hubs[joint], joint_number[joint], -1, -1.0)
+    column = 2 * len(pins)
+    for n, slide in enumerate(mechanism.slides):
+        add(ALONG, column, hubs[slide.joint], joint_number[slide.joint], n, 1.0)
+        add(ALONG, column, slide.link, joint_number[slide.joint], n, -1.0)
+        column += 1
+    for gear in mechanism.gears:
+        add(TORQUE, column, gear.second, -1, -1, 1.0)
+        add(TORQUE, column, gear.first, -1, -1, -gear.ratio)
+        column += 1
+    if mechanism.driven_by_slide:
+        add(ALONG, column, hubs[mechanism.input], joint_number[mechanism.input], len(mechanism.slides), 1.0)
+    else:
+        add(TORQUE, column, mechanism.input, -1, -1, 1.0)
+    return System(
+        moving,
+        hubs,
+        pins,
+        np.array(terms, np.int64).reshape(-1, 5),
+        np.array(coefficients, np.float64),
+        np.array([joint_number[mechanism.link_line(link)[0]] for link in moving], np.int64),
+        column + 1,
+    )

@@ -1,0 +1,218 @@
+"""Forces of a linkage over its motion, as plain lists in the shape of :class:`DynamicsAnswer`."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.balance import Balance, balance
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places
+from kinematics.dynamics.reactions import Reactions, reactions
+from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.drive import MechanismMotion, drive
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.analyses.peaks import Peak, Samples, peaks
+from synthesis.mechanisms.machine import first_fixed, machine_of
+from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WHOLE = 1e-9
+"""Share of a cycle by which a motion may miss it and be closed: rounding."""
+
+NO_LOAD = 1e-6
+"""Share of the largest part of a balance below which its sum is nothing that an error could be compared with."""
+
+
+class Course(NamedTuple):
+    """A machine driven to inputs: reactions, balances, and where it could be assembled."""
+
+    valid: NDArray[np.bool_]
+    speed: Real
+    reactions: Reactions
+    balance: Balance
+
+
+def forces_of(
+    mechanism: Mechanism, block: DynamicsBlock, unit: LengthUnit, at: Real, speed: Real, acceleration: float
+) -> dict[str, Any]:
+    """The answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
+    machine, warnings = machine_of(block, mechanism, unit)
+    course = _driven(machine, at, speed, acceleration)
+    found, check = course.reactions, course.balance
+    closed = _closed(mechanism, at)
+    drive_peaks, extremes = _extremes(machine, course, at, acceleration, closed)
+    about = first_fixed(mechanism) if block.moment_about is None else complex(*block.moment_about)
+    reported = _reported(machine)
+    power = found.drive * course.speed
+    with np.errstate(invalid="ignore"):
+        status = np.where(found.solved, "ok", np.where(course.valid, "dead_centre", "not_assembled"))
+    return {
+        "units": block.units,
+        "length_unit": unit,
+        "drive": found.drive.tolist(),
+        "virtual_work_drive": np.where(found.solved, check.drive, np.nan).tolist(),
+        "joints": {
+            joint: {link: _series(force) for link, force in on.items()}
+            for joint, on in found.joints.items()
+            if joint in reported
+        },
+        "slides": [
+            {"joint": slide.joint, "normal": normal.tolist()}
+            for slide, normal in zip(mechanism.slides, found.slides, strict=True)
+        ],
+        "gears": [{"torque": torque.tolist()} for torque in found.gears],
+        "shaking": {
+            "force": _series(found.shaking_force),
+            "moment": found.shaking_moment.tolist(),
+            "about": (about.real, about.imag),
+        },
+        "extremes": {
+            "drive": drive_peaks | {"mean": _mean(found.drive, closed), "rms": _rms(found.drive, closed)},
+            "joints": {joint: extremes[f"joint {joint}"] for joint in reported},
+            "shaking_force": extremes["shaking force"],
+            "shaking_moment": extremes["shaking moment"],
+        },
+        "power": {"peak": extremes["power"]["max"], "mean": _mean(power, closed)},
+        "status": status.tolist(),
+        "checks": _checks(found, check),
+        "warnings": warnings,
+    }
+
+
+def _driven(machine: Machine, at: Real, speed: Real, acceleration: float) -> Course:
+    mechanism = machine.mechanism
+    inputs = at if mechanism.driven_by_slide else np.radians(at)
+    motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration, order=2)
+    paced = drive(mechanism, inputs, order=2)
+    return _course(machine, motion, paced)
+
+
+def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion) -> Course:
+    now, by_input = Places(machine.mechanism, motion, machine.scale), Places(machine.mechanism, paced, machine.scale)
+    if machine.mechanism.driven_by_slide:
+        # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
+        by_input = Places(machine.mechanism, _slowed(paced, machine.scale), machine.scale)
+    return Course(motion.valid, now.input[1], reactions(machine, now), balance(machine, now, by_input))
+
+
+def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
+    """The motion at an input speed of 1 in the unit that is ``scale`` of the mechanism's."""
+    powers = scale ** -np.arange(3.0)
+
+    def slowed(jets: dict[str, Any]) -> dict[str, Any]:
+        return {name: jet * powers.reshape(3, *(1 for _ in jet.shape[1:])) for name, jet in jets.items()}
+
+    return MechanismMotion(
+        paced.valid,
+        paced.smooth,
+        paced.input,
+        slowed(paced.angles),
+        slowed(paced.joints),
+        slowed(paced.slides),
+        paced.sines,
+        paced.margins,
+    )
+
+
+def _closed(mechanism: Mechanism, at: Real) -> bool:
+    """Whether the motion is a whole number of cycles, once round or more."""
+    if mechanism.driven_by_slide or len(at) < 3:
+        return False
+    turns = abs(float(at[-1] - at[0])) / math.degrees(cycle(mechanism))
+    steps = np.diff(at)
+    even = float(np.ptp(steps)) <= WHOLE * float(np.abs(at[-1] - at[0]))
+    return round(turns) >= 1 and abs(turns - round(turns)) <= WHOLE * turns and even
+
+
+def _mean(values: Real, closed: bool) -> float | None:
+    """Mean over a closed cycle, its end not counted twice: the trapezoid rule."""
+    return float(values[:-1].mean()) if closed and np.isfinite(values).all() else None
+
+
+def _rms(values: Real, closed: bool) -> float | None:
+    squared = _mean(values**2, closed)
+    return None if squared is None else math.sqrt(squared)
+
+
+def _reported(machine: Machine) -> list[str]:
+    """Joints that join links, or carry a slide, a mass or a load."""
+    mechanism = machine.mechanism
+    carrying = {slide.joint for slide in mechanism.slides} | set(machine.pin_masses)
+    carrying |= {load.joint for load in machine.loads if hasattr(load, "joint")}
+    return [
+        joint
+        for joint in mechanism.joints
+        if joint in carrying or sum(joint in listed for listed in mechanism.links.values()) > 1
+    ]
+
+
+def _quantities(machine: Machine, course: Course) -> Samples:
+    """What has a peak, by name."""
+    found = course.reactions
+    return {
+        "drive": found.drive,
+        "least drive": -found.drive,
+        "power": np.abs(found.drive * course.speed),
+        "shaking force": np.abs(found.shaking_force),
+        "shaking moment": np.abs(found.shaking_moment),
+        **{
+            f"joint {joint}": np.abs(np.stack(list(found.joints[joint].values()))).max(axis=0)
+            for joint in _reported(machine)
+        },
+    }
+
+
+def _extremes(
+    machine: Machine, course: Course, at: Real, acceleration: float, closed: bool
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Of the drive, and of everything else by name."""
+
+    def measure(inputs: Real, speeds: Real, machine: Machine) -> Samples:
+        return _quantities(machine, _driven(machine, inputs, speeds, acceleration))
+
+    speed = course.speed / (machine.scale if machine.mechanism.driven_by_slide else 1.0)
+    found = peaks(at, speed, _quantities(machine, course), partial(measure, machine=machine), closed)
+
+    def listed(peak: Peak) -> dict[str, float]:
+        return {"max": peak.value, "at": peak.at}
+
+    least = found["least drive"]
+    drive_peaks = {**listed(found["drive"]), "min": -least.value, "at_min": least.at}
+    return drive_peaks, {name: listed(peak) for name, peak in found.items()}
+
+
+def _checks(found: Reactions, check: Balance) -> dict[str, float | None]:
+    """Largest differences of the two routes, as shares of the peaks."""
+    if not found.solved.any():
+        return {"virtual_work": None, "momentum": None}
+    known = found.solved
+    reach = max(_peak(found.drive[known]), NO_LOAD * _peak(check.scale[known]))
+    force, moment = (_peak(values[known]) for values in (found.shaking_force, found.shaking_moment))
+    carried = max((_peak(values[known]) for on in found.joints.values() for values in on.values()), default=0.0)
+    force, moment = max(force, NO_LOAD * carried), max(moment, NO_LOAD * _peak(check.scale[known]), NO_LOAD * reach)
+    return {
+        "virtual_work": _share(_peak((found.drive - check.drive)[known]), reach),
+        "momentum": max(
+            _share(_peak((found.shaking_force - check.shaking_force)[known]), force),
+            _share(_peak((found.shaking_moment - check.shaking_moment)[known]), moment),
+        ),
+    }
+
+
+def _peak(values: Real | Complex) -> float:
+    return float(np.abs(values).max())
+
+
+def _share(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else 0.0
+
+
+def _series(force: Complex) -> dict[str, list[float]]:
+    return {"x": force.real.tolist(), "y": force.imag.tolist()}

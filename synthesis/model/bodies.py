@@ -1,0 +1,130 @@
+"""What the links of a linkage weigh, as a client states it: by mass properties, or by shape. Data alone."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from synthesis.model.dimension import LENGTH, MASS
+from synthesis.model.statement import Degrees, NonNegative, Point, PositiveLength, PositiveNumber, Statement
+
+MOST_CORNERS = 500
+"""Corners of a stated polygon at most."""
+
+Name = Annotated[str, Field(min_length=1, max_length=50)]
+
+
+class PolarPlace(Statement):
+    """A place on a link by its distance from the link's first joint, and its angle from the line to the second one."""
+
+    distance: Annotated[NonNegative, LENGTH]
+    angle: Degrees = 0.0
+
+    @property
+    def vector(self) -> complex:
+        """The place in the link's frame."""
+        return cmath.rect(self.distance, math.radians(self.angle))
+
+
+Place = Annotated[
+    Annotated[Point, Tag("<point>")] | Annotated[PolarPlace, Tag("<polar>")],
+    Discriminator(lambda stated: "<polar>" if isinstance(stated, dict | PolarPlace) else "<point>"),
+]
+"""A place on a link in the reference configuration: in the plane's coordinates, or from the link's first joint."""
+
+
+class Part(Statement):
+    """A prism or a (hollow) cylinder that is part of a link."""
+
+    form: Literal["prism", "cylinder"]
+    at: Place = Field(description="Its centre, in the reference configuration.")
+    length: PositiveLength = Field(description="Of a prism in the plane; of a cylinder along its axis.")
+    width: PositiveLength | None = Field(default=None, description="Of a prism, in the plane.")
+    thickness: PositiveLength | None = Field(default=None, description="Of a prism, square to the plane.")
+    diameter: PositiveLength | None = Field(default=None, description="Of a cylinder.")
+    bore: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="Inner diameter of a cylinder.")
+    axis: Literal["normal", "in_plane"] = Field(default="normal", description="Of a cylinder, to the plane or in it.")
+    density: PositiveNumber | None = Field(default=None, description="By default the shape's.")
+
+    @model_validator(mode="after")
+    def _sizes(self) -> Self:
+        needed = {"prism": ("width", "thickness"), "cylinder": ("diameter",)}
+        for form, names in needed.items():
+            for name in names:
+                if (getattr(self, name) is None) == (form == self.form):
+                    raise ValueError(f"a {self.form} has {' and '.join(needed[self.form])} beside its length")
+        if self.bore > 0.0 and self.bore >= (self.diameter or 0.0):
+            raise ValueError("a bore is of a cylinder, and narrower than that")
+        return self
+
+
+class Shape(Statement):
+    """A link's shape: a bar or the hull of its joints by a `width`, a `polygon`, or `parts`.
+
+    Without a polygon a link of two joints is a bar, and one of more the convex hull of its joints widened by half the
+    width all round.
+    """
+
+    density: PositiveNumber
+    thickness: PositiveLength | None = Field(default=None, description="Of the plate; not of parts.")
+    width: PositiveLength | None = None
+    ends: Literal["round", "square"] = Field(default="round", description="Of a bar of two joints.")
+    overhang: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="By which a bar with square ends stands over its joints."
+    )
+    polygon: list[Place] | None = Field(
+        default=None, min_length=3, max_length=MOST_CORNERS, description="Corners in order, in the reference."
+    )
+    holes: dict[Name, PositiveLength] = Field(
+        default={}, max_length=20, description="Diameters by joint; each takes its disc away."
+    )
+    parts: list[Part] = Field(default=[], max_length=50, description="Prisms and cylinders, added to the plate.")
+
+    @model_validator(mode="after")
+    def _one_plate(self) -> Self:
+        if self.width is not None and self.polygon is not None:
+            raise ValueError("give a width or a polygon, not both")
+        plate = self.width is not None or self.polygon is not None
+        if not plate and not self.parts:
+            raise ValueError("give a width, a polygon, or parts")
+        if plate != (self.thickness is not None):
+            raise ValueError("a plate of a width or a polygon has a thickness; parts have their own")
+        if not plate and self.holes:
+            raise ValueError("holes are taken from a plate; give it a width or a polygon")
+        if self.ends == "square" and self.width is None:
+            raise ValueError("ends are those of a bar of a width")
+        if self.overhang > 0.0 and self.ends != "square":
+            raise ValueError("an overhang is that of square ends")
+        return self
+
+
+class StatedBody(Statement):
+    """A moving link's mass: given with the centre of gravity and the moment of inertia about it, or from a shape."""
+
+    mass: Annotated[NonNegative, MASS] | None = None
+    cg: Place | None = Field(default=None, description="Centre of gravity in the reference configuration.")
+    inertia: NonNegative | None = Field(default=None, description="Moment of inertia about the centre of gravity.")
+    shape: Shape | None = None
+
+    @model_validator(mode="after")
+    def _given_or_shaped(self) -> Self:
+        given: list[Any] = [self.mass, self.cg, self.inertia]
+        if self.shape is not None:
+            if given != [None, None, None]:
+                raise ValueError("give the mass properties or a shape, not both")
+            return self
+        if self.mass is None:
+            raise ValueError("give a mass, or a shape")
+        if self.mass > 0.0 and self.cg is None:
+            raise ValueError("a mass needs its centre of gravity, `cg`")
+        return self
+
+
+class PointMass(Statement):
+    """A mass at a joint, such as a piston."""
+
+    joint: Name
+    mass: Annotated[NonNegative, MASS]

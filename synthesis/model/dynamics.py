@@ -1,0 +1,60 @@
+"""The block ``dynamics`` of a statement: masses and loads (docs/dynamics.md). Data alone."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from synthesis.model.bodies import Name, PointMass, StatedBody
+from synthesis.model.loads import StatedLoad
+from synthesis.model.statement import Degrees, NonNegative, Point, Statement
+
+LengthUnit = Literal["mm", "cm", "m", "in"]
+
+METRES: dict[str, float] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+"""Length units in metres."""
+
+
+class Gravity(Statement):
+    """Acceleration of gravity."""
+
+    magnitude: NonNegative = Field(default=9.80665, description="m/s², or in the consistent units.")
+    angle: Degrees = Field(default=270.0, description="Direction in which it pulls.")
+
+    @property
+    def vector(self) -> complex:
+        """Its components."""
+        return cmath.rect(self.magnitude, math.radians(self.angle))
+
+
+class DrivenSlide(Statement):
+    """The slide that drives, by its number."""
+
+    slide: Annotated[int, Field(strict=True, ge=0, le=9)]
+
+
+class DynamicsBlock(Statement):
+    """What a linkage weighs and carries, and which forces are wanted."""
+
+    units: Literal["si", "consistent"] = Field(
+        default="si",
+        description="`si`: kg, N, N·m, kg·m², s; places, widths and diameters in the length unit. "
+        "`consistent`: nothing is converted.",
+    )
+    gravity: Gravity | None = None
+    bodies: dict[Name, StatedBody] = Field(default={}, max_length=20, description="By moving link.")
+    point_masses: list[PointMass] = Field(default=[], max_length=40)
+    loads: list[StatedLoad] = Field(default=[], max_length=50)
+    drive: Literal["torque"] | DrivenSlide | None = Field(
+        default=None, description="What drives; it must be what the mechanism states."
+    )
+    moment_about: Point | None = Field(
+        default=None, description="Point about which the shaking moment is taken; by default the first fixed pivot."
+    )
+
+    def scale(self, unit: LengthUnit) -> float:
+        """The length unit in the unit of forces over stiffnesses: metres, or as it is."""
+        return METRES[unit] if self.units == "si" else 1.0

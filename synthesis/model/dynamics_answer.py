@@ -1,0 +1,108 @@
+"""Forces of a linkage in motion, as an answer has them: arrays over the positions, null where there are none."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from synthesis.model.answer import Answer
+from synthesis.model.dimension import FORCE, LENGTH, OUTPUT, Dimension
+
+Series = list[float | None]
+
+
+class ForceSeries(Answer):
+    """Components of a force over the positions."""
+
+    x: Annotated[Series, FORCE]
+    y: Annotated[Series, FORCE]
+
+
+class SlideForces(Answer):
+    """What the line of a slide does to the pin on it."""
+
+    joint: str
+    normal: Annotated[Series, FORCE] = Field(
+        description="Along the slide's direction turned by +90°; the opposite acts on the line's link."
+    )
+
+
+class GearTorques(Answer):
+    """The torque that a gear pair puts on its second link; −ratio times that acts on the first."""
+
+    torque: Annotated[Series, Dimension.TORQUE]
+
+
+class Shaking(Answer):
+    """Sum of the forces of the mechanism on the frame, and their moment about a point less the drive's torque."""
+
+    force: ForceSeries
+    moment: Annotated[Series, Dimension.TORQUE]
+    about: Annotated[tuple[float, float], LENGTH]
+
+
+class DriveExtremes(Answer):
+    """Greatest and least drive, refined between the positions; mean and rms over a closed cycle, else null."""
+
+    max: float | None
+    at: Annotated[float | None, OUTPUT] = Field(description="Input angle (degrees) or place of the input slide.")
+    min: float | None
+    at_min: Annotated[float | None, OUTPUT]
+    mean: float | None
+    rms: float | None
+
+
+class Peak(Answer):
+    """The greatest magnitude, refined between the positions, and the input at which it stands."""
+
+    max: float | None
+    at: Annotated[float | None, OUTPUT]
+
+
+class Extremes(Answer):
+    """Extremes over the motion."""
+
+    drive: DriveExtremes
+    joints: dict[str, Peak] = Field(description="Of the largest force of each joint's pin on one of its links.")
+    shaking_force: Peak
+    shaking_moment: Peak
+
+
+class Power(Answer):
+    """Drive times speed of the input: greatest magnitude, and mean over a closed cycle."""
+
+    peak: float | None
+    mean: float | None
+
+
+class BalanceChecks(Answer):
+    """Largest disagreement of the reactions with balances that know none, as shares of the peaks."""
+
+    virtual_work: float | None = Field(description="Drive by reactions against the balance of energy.")
+    momentum: float | None = Field(
+        description="Shaking force and moment by reactions against the balances of momentum and angular momentum."
+    )
+
+
+Status = Literal["ok", "not_assembled", "dead_centre"]
+
+
+class DynamicsAnswer(Answer):
+    """Forces over the motion, in the units of the request; null where `status` is not `ok`."""
+
+    units: Literal["si", "consistent"]
+    length_unit: Literal["mm", "cm", "m", "in"] = Field(
+        description="Of the request's lengths; forces of `si` were formed in metres."
+    )
+    drive: Series = Field(description="Torque of the ground on the input link, or force along the input slide.")
+    virtual_work_drive: Series = Field(description="The same from the balance of energy.")
+    joints: dict[str, dict[str, ForceSeries]] = Field(description="Force of each joint's pin on each of its links.")
+    slides: list[SlideForces]
+    gears: list[GearTorques]
+    shaking: Shaking
+    extremes: Extremes
+    power: Power
+    status: list[Status]
+    checks: BalanceChecks
+    warnings: list[str]

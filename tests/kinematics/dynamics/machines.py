@@ -1,0 +1,62 @@
+"""Random machines: mechanisms of every type with masses, loads and a motion that all follow from a seed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinematics.dynamics import Body, JointForce, Load, Machine, Places, PointForce, Torque, constant
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+
+Rng = np.random.Generator
+
+GRAVITY = complex(1.7, -9.6)
+
+
+def masses(rng: Rng, mechanism: Mechanism) -> tuple[dict[str, Body], dict[str, np.ndarray]]:
+    """Bodies of all links but one, and point masses at a few joints."""
+    n = mechanism.shape
+    moving = [link for link in mechanism.links if link != GROUND]
+    weightless = moving[int(rng.integers(len(moving)))] if len(moving) > 1 else ""
+    bodies = {
+        link: Body(rng.uniform(0.1, 2.0, n), rng.normal(size=n) + 1j * rng.normal(size=n), rng.uniform(0.1, 1.0, n))
+        for link in moving
+        if link != weightless
+    }
+    joints = list(mechanism.joints)
+    heavy = rng.choice(joints, size=min(2, len(joints)), replace=False)
+    return bodies, {str(joint): rng.uniform(0.1, 1.0, n) for joint in heavy}
+
+
+def loads(rng: Rng, mechanism: Mechanism) -> tuple[Load, ...]:
+    """A force that turns with its link and one that does not, a force on a joint, a torque."""
+    moving = [link for link in mechanism.links if link != GROUND]
+
+    def strength() -> complex:
+        return complex(*rng.normal(size=2)) * 10.0
+
+    def place() -> np.ndarray:
+        return np.asarray(rng.normal(size=mechanism.shape) + 1j * rng.normal(size=mechanism.shape))
+
+    links = rng.choice(moving, size=3)
+    return (
+        PointForce(str(links[0]), place(), constant(strength()), True),
+        PointForce(str(links[1]), place(), constant(strength())),
+        JointForce(str(rng.choice(list(mechanism.joints))), constant(strength())),
+        Torque(str(links[2]), constant(strength().real)),
+    )
+
+
+def machine(rng: Rng, mechanism: Mechanism) -> Machine:
+    """A machine of all sorts of masses and loads."""
+    bodies, pin_masses = masses(rng, mechanism)
+    return Machine(mechanism, bodies, pin_masses, GRAVITY, loads(rng, mechanism), complex(*rng.normal(size=2)))
+
+
+def moved(
+    mechanism: Mechanism, reach: float = 0.3, count: int = 5, speed: float = 2.0, acceleration: float = 3.0
+) -> tuple[Places, Places]:
+    """Places about the reference as the input moves, and at an input speed of 1."""
+    at = np.asarray(mechanism.reference_input)[..., None] + np.linspace(-reach, reach, count)
+    now = drive(mechanism, at, speed=speed, acceleration=acceleration, order=2)
+    return Places(mechanism, now), Places(mechanism, drive(mechanism, at, order=2))
