@@ -20,6 +20,30 @@ export function numberBox(value, fallback, set) {
   return box;
 }
 
+/** Points as text, one to a line. @param {any} points */
+export function lines(points) {
+  return Array.isArray(points) ? points.map((point) => (Array.isArray(point) ? point.join(", ") : String(point))).join("\n") : "";
+}
+
+/**
+ * Points of the plane, one to a line: `120, 35`. What is no number stays as it is written, and the service says so.
+ * @param {any} value @param {(value: any) => void} set
+ */
+export function pointsBox(value, set) {
+  const box = el("textarea", { rows: 4, spellcheck: "false", placeholder: "0, 0\n100, 0\n100, 50", oninput: () => {
+    const points = box.value.split("\n").map((/** @type {string} */ line) => line.trim()).filter(Boolean);
+    set(points.length ? points.map((/** @type {string} */ line) => line.split(/[,;\s]+/).filter(Boolean).map(plain)) : undefined);
+  } });
+  box.value = lines(value);
+  return box;
+}
+
+/** A number where the text is one. @param {string} text */
+export function plain(text) {
+  const value = Number(text);
+  return Number.isFinite(value) ? value : text;
+}
+
 let ids = 0;
 
 /**

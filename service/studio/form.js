@@ -5,7 +5,7 @@
  * default holds. Each control carries its JSON pointer as `data-path`, by which errors find it.
  */
 
-import { choice, choices, numberBox, stockBox } from "./controls.js";
+import { choice, choices, numberBox, plain, pointsBox, stockBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
 import { table } from "./table.js";
@@ -90,6 +90,8 @@ function field(sheet, schema, name, owner, path, required) {
       return labelled(name, unit, note, path, required, textBox(value, fallback, set, plain));
     case "numbers":
       return labelled(name, unit, note, path, required, textBox(value, fallback, set, (text) => numbers(text, what.options)));
+    case "points":
+      return labelled(name, unit, note ? `${note} One point to a line, as in 120, 35.` : "One point to a line, as in 120, 35.", path, required, pointsBox(value, set));
     case "stock":
       return labelled(name, unit, `${note} As in 20, 24 × 3, 30.`, path, required, stockBox(value, set));
     case "table":
@@ -278,12 +280,6 @@ function textBox(value, fallback, set, read) {
     oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())) });
   if (value !== undefined && value !== null) box.value = written(value);
   return box;
-}
-
-/** A number where the text is one. @param {string} text */
-function plain(text) {
-  const value = Number(text);
-  return Number.isFinite(value) ? value : text;
 }
 
 /** `0, open` or `90`; what is no number stays as it is written, and the service says so. @param {string} text @param {Schema[]} options */

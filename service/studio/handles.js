@@ -75,7 +75,7 @@ function motion(problem) {
 /** @param {any} problem @returns {Stated} */
 function path(problem) {
   const pivots = problem.fixed_pivots;
-  return { handles: [...listed(problem.points, "points", "Point", false), ...point(pivots, "input", "O2", "Fixed pivot O2", false), ...point(pivots, "output", "O4", "Fixed pivot O4", false)],
+  return { handles: [...listed(problem.points, "points", "Point", false), ...chosenPivots(problem)],
     lines: () => [problem.points.map((/** @type {any} */ one) => [one.x, one.y])], word: "point", freehand: true,
     add: (x, y) => problem.points.push({ x, y }),
     offers: pivots ? [{ text: "Leave the pivots open", make: () => (problem.fixed_pivots = null) }]
@@ -178,6 +178,12 @@ function assembled(linkage) {
     return { O2: /** @type {Point} */ ([...pivots.input]), O4: /** @type {Point} */ ([...pivots.output]), A, B, P: [A[0] + at.distance * Math.cos(heading), A[1] + at.distance * Math.sin(heading)] };
   }
   return null;
+}
+
+/** The fixed pivots of a function's linkage, where they are chosen: they lie in the plane and not in its graph. @param {any} problem @returns {Handle[]} */
+export function chosenPivots(problem) {
+  const pivots = problem.fixed_pivots;
+  return [...point(pivots, "input", "O2", "Fixed pivot O2", false), ...point(pivots, "output", "O4", "Fixed pivot O4", false)];
 }
 
 /** Pairs of a function as points of its graph. @param {any} problem @returns {Stated} */

@@ -19,11 +19,11 @@ export function drawn(skeleton) {
 }
 
 export class Linkage {
-  /** @param {View} view @param {any} skeleton @param {{names?: boolean, faint?: boolean}} [manner] */
-  constructor(view, skeleton, { names = true, faint = false } = {}) {
+  /** @param {View} view @param {any} skeleton @param {{names?: boolean, faint?: boolean, classes?: Record<string, string>}} [manner] classes of links by their names */
+  constructor(view, skeleton, { names = true, faint = false, classes = {} } = {}) {
     this.view = view;
     this.links = skeleton.links.filter((/** @type {any} */ link) => link.name !== "ground").map((/** @type {any} */ link) =>
-      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""}` }) }));
+      ({ joints: link.joints, path: svg("path", { class: `link ${link.name === skeleton.input_link ? "input" : ""} ${classes[link.name] ?? ""}` }) }));
     this.slides = (skeleton.slides ?? []).map((/** @type {any} */ slide) => this.slide(skeleton, slide));
     this.pins = drawn(skeleton).map((name) => ({ name,
       dot: svg("circle", { class: name === "P" ? "point" : "pin", r: name === "P" ? 5 : 4 }),

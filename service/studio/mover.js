@@ -4,9 +4,12 @@ import { Circuits, others, telling, track } from "./circuits.js";
 import { el, shown, svg, words } from "./dom.js";
 import { Gauge } from "./gauge.js";
 import { Linkage, drawn, grounded } from "./linkage.js";
-import { Player, between } from "./player.js";
+import { Planes, planeClass } from "./planes.js";
+import { Player, between, within } from "./player.js";
 import { plots } from "./plots.js";
 import { judged, moved, parts } from "./quantities.js";
+import { RoomView } from "./room_view.js";
+import { Sweep, jointsAt, placeOf, rangeOf } from "./sweep.js";
 import { View } from "./view.js";
 
 const WIDTH = 640;
@@ -28,13 +31,19 @@ export class Mover {
     this.count = motion.input_angle.length;
     this.targets = demanded(problem, design);
     const name = telling(this.skeleton);
-    const points = [...around, ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)), ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
+    this.room = new RoomView(problem, design.mechanism);
+    const points = [...around, ...this.room.extent, ...Object.keys(motion.joints).flatMap((joint) => this.track(joint)), ...this.targets.map((one) => /** @type {Point} */ ([one.x, one.y])),
       ...others(circuits).flatMap((branch) => track(branch, name))];
     this.view = new View(points, WIDTH, HEIGHT, 34);
-    this.linkage = new Linkage(this.view, this.skeleton);
+    const planes = design.layout?.planes ?? {};
+    this.linkage = new Linkage(this.view, this.skeleton, { classes: Object.fromEntries(Object.entries(planes).map(([name, plane]) => [name, planeClass(Number(plane))])) });
     this.circuits = new Circuits(this.view, this.skeleton, circuits);
-    this.player = new Player({ count: this.count, closed: returns(motion, this.count), label: "Input",
+    const closed = returns(motion, this.count);
+    this.player = new Player({ count: this.count, closed, label: "Input",
       reading: (at) => this.reading(at), show: (at) => this.show(at) });
+    const range = rangeOf(motion, this.room.cycle ? null : design.metrics?.used_range ?? design.metrics?.used_stroke, closed);
+    this.sweep = new Sweep(this.view, this.skeleton, this.room, (at) => jointsAt(motion, at), range, () => this.player.keep(this.sweep.on ? range : null));
+    this.planes = design.layout && problem.layout ? new Planes(this.view, design, problem, (input) => this.player.lead(within(placeOf(motion.input_angle, input, closed), this.count - 1))) : null;
     this.gauge = motion.transmission_angle?.some((/** @type {any} */ one) => one !== null)
       ? new Gauge("Transmission angle", motion.transmission_angle, {
         limit: problem.constraints?.min_transmission_angle, used: partly(design) ? design.metrics.min_transmission_angle : null }) : null;
@@ -56,7 +65,7 @@ export class Mover {
     const still = grounded(skeleton);
     const moving = drawn(skeleton).filter((name) => !still.includes(name));
     this.picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "img", "aria-label": "The linkage in motion" },
-      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.circuits.node,
+      svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), this.sweep.node, this.room.draw(view), this.circuits.node,
       ...moving.map((name) => svg("path", { class: name === "P" ? "curve" : "trail", d: view.path(this.track(name)) })),
       ...this.toggles(), ...this.targets.map((one, k) => this.target(one, k)), this.linkage.node);
     this.drags(still);
@@ -71,8 +80,8 @@ export class Mover {
     const pick = el("select", { id: "part", onchange: () => choose(pick.value) },
       ...choices.map((part) => el("option", { value: part }, words(part))));
     place.replaceChildren(
-      el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.gauge?.node, this.circuits.control)),
-      this.player.row,
+      el("div", { class: "stage" }, this.picture, el("div", { class: "beside" }, this.gauge?.node, this.sweep.control, this.circuits.control)),
+      ...this.room.legend, this.player.row, ...(this.planes ? [this.planes.node] : []),
       el("div", { class: "row" }, el("label", { for: "part" }, "Plots of"), pick,
         el("span", { class: "note" }, "Rates are by the radian of the input; click in a plot to go there.")), box);
     if (choices.length) choose(choices[0]);
@@ -135,13 +144,10 @@ export class Mover {
 
   /** Show the motion at a place of its arrays, between samples on a straight line. @param {number} at */
   show(at) {
-    /** @type {Record<string, Point | null>} */
-    const now = {};
-    for (const [name, { x, y }] of Object.entries(/** @type {Record<string, Track>} */ (this.motion.joints))) {
-      const across = between(x, at);
-      now[name] = across === null ? null : [across, Number(between(y, at))];
-    }
+    const now = jointsAt(this.motion, at);
     this.linkage.show(now);
+    this.room.show(now);
+    this.planes?.show(now);
     this.circuits.show(between(this.motion.input_angle, at));
     this.gauge?.show(between(this.motion.transmission_angle, at));
     for (const mark of this.marks) mark.show(at);

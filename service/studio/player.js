@@ -26,6 +26,8 @@ export class Player {
     this.rate = 1;
     this.playing = false;
     this.frame = 0;
+    /** Where it goes back and forth, instead of over all of it. @type {[number, number] | null} */
+    this.range = null;
     this.last = moved.count - 1;
     this.button = el("button", { type: "button", class: "small", onclick: () => (this.playing ? this.stop() : this.play()) }, "Play");
     this.slider = el("input", { type: "range", id: scrub, min: 0, max: this.last, step: "any", value: 0,
@@ -44,9 +46,10 @@ export class Player {
       el("label", { for: speeds }, "Speed"), speed);
   }
 
-  /** Begin: at the first sample, and moving unless the system asks for little motion. */
+  /** Begin: at the first place, and moving unless the system asks for little motion. */
   begin() {
-    this.seek(0);
+    this.sense = 1;
+    this.seek(this.range?.[0] ?? 0);
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
   }
 
@@ -56,9 +59,17 @@ export class Player {
     this.seek(Math.min(this.last, Math.max(0, at)));
   }
 
+  /** Keep to a part of the motion, and play it: where the motion comes back, the part may lie beyond its ends. @param {[number, number] | null} range */
+  keep(range) {
+    this.range = range;
+    if (range) this.begin();
+    else this.at = within(this.at, this.last);
+  }
+
   /** @param {number} at */
   seek(at) {
     this.at = at;
+    if (!this.moved.endless) at = within(at, this.last);
     this.slider.value = this.moved.endless && at > this.last ? at % this.last : at;
     const reading = this.moved.reading(at);
     this.reading.value = reading;
@@ -70,16 +81,18 @@ export class Player {
     if (this.playing) return;
     this.playing = true;
     this.button.textContent = "Pause";
+    if (this.range) this.at = this.range[0] + within(this.at - this.range[0], this.last);
     let before = performance.now();
     const step = (/** @type {number} */ now) => {
       if (!this.playing) return;
       let at = this.at + (this.sense * this.rate * this.last * Math.max(0, now - before)) / 1000 / CYCLE_S;
       before = now;
+      const [from, to] = this.range ?? [0, this.last];
       if (this.moved.endless) at = Math.max(0, at);
-      else if (this.moved.closed) at %= this.last;
-      else if (at > this.last || at < 0) {
-        this.sense = -this.sense;
-        at = Math.min(this.last, Math.max(0, at));
+      else if (this.moved.closed && !this.range) at %= this.last;
+      else if (at > to || at < from) {
+        this.sense = at > to ? -1 : 1;
+        at = Math.min(to, Math.max(from, at));
       }
       this.seek(at);
       this.frame = requestAnimationFrame(step);
@@ -92,6 +105,11 @@ export class Player {
     cancelAnimationFrame(this.frame);
     this.button.textContent = "Play";
   }
+}
+
+/** A place beyond the arrays of a motion that comes back, within them. @param {number} at @param {number} last */
+export function within(at, last) {
+  return at >= 0 && at <= last ? at : at - last * Math.floor(at / last);
 }
 
 /**

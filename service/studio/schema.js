@@ -5,7 +5,7 @@
 /**
  * Of one field: which control states it.
  * @typedef {object} Kinded
- * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "text" | "stock" | "object" | "union" | "table" | "map" | "shapes" | "json" | "fixed"} control
+ * @property {"choice" | "choices" | "flag" | "number" | "numbers" | "points" | "text" | "stock" | "object" | "union" | "table" | "map" | "shapes" | "json" | "fixed"} control
  * @property {Schema[]} options what the value may be, null apart
  * @property {boolean} nullable
  * @property {string[]} [choices]
@@ -93,6 +93,7 @@ export function kinded(schema, root) {
     if (members.length && members.every((/** @type {Schema} */ one) => one.type === "object")) {
       return is("table", { item: rows[0], count: array.prefixItems?.length });
     }
+    if (members.length && members.every((/** @type {Schema} */ one) => listOfNumbers(one, root))) return is("points");
     if (members.length && members.every((/** @type {Schema} */ one) => one.enum)) return is("choices", { choices: members[0].enum });
     if (members.some(counted)) return is("stock");
   }
@@ -160,5 +161,5 @@ export function columns(item, root) {
 /** The properties of a row that are more than a cell can state. @param {Schema} option @param {Schema} root @returns {string[]} */
 export function beyond(option, root) {
   return Object.entries(option.properties).filter(([, schema]) =>
-    ["shapes", "table", "object", "union", "map", "json"].includes(kinded(schema, root).control)).map(([name]) => name);
+    ["shapes", "table", "object", "union", "map", "points", "json"].includes(kinded(schema, root).control)).map(([name]) => name);
 }

@@ -39,7 +39,7 @@ function kind() {
  */
 function show({ form = true, sketch = true, json = true } = {}) {
   if (form) fill(fields, kind().schema, problem, (rebuilt) => edited({ form: rebuilt }));
-  if (sketch) canvas(byId("sketch"), problem, (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }));
+  if (sketch) canvas(byId("sketch"), problem, "space" in kind().schema.properties, (rebuilt) => edited({ form: rebuilt, sketch: rebuilt }));
   if (json) {
     text.value = JSON.stringify(problem, null, 2);
     text.removeAttribute("aria-invalid");

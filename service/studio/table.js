@@ -23,7 +23,8 @@ export function table(sheet, item, rows, path, count) {
     } }, "×"))), ...more(sheet, item, row, `${path}/${k}`, heads.length + 2, k)];
   const onpaste = (/** @type {ClipboardEvent} */ event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
-    if (!/[\t\n]/.test(text.trim())) return;
+    // Lines that are pasted into a field of many lines are lines of its own.
+    if (!/[\t\n]/.test(text.trim()) || event.target instanceof HTMLTextAreaElement) return;
     event.preventDefault();
     const at = /** @type {HTMLElement} */ (event.target).dataset.path ?? `${path}/${rows.length}/${heads[0].name}`;
     const [first, column] = at.slice(path.length + 1).split("/");

@@ -1,7 +1,11 @@
 /** A statement on a canvas: what it places in the plane is dragged, turned, added and removed, and curves are sketched. */
 
 import { el, shown, svg } from "./dom.js";
-import { stated } from "./handles.js";
+import { stroke } from "./freehand.js";
+import { grid } from "./grid.js";
+import { chosenPivots, stated } from "./handles.js";
+import { areas } from "./room.js";
+import { RoomEditor } from "./room_editor.js";
 import { View } from "./view.js";
 
 /** @typedef {import("./handles.js").Handle} Handle */
@@ -10,24 +14,68 @@ const WIDTH = 640;
 const HEIGHT = 380;
 const ARM = 44;
 
-/** How many points a sketched curve becomes. */
-const SKETCHED = 24;
+/** How much nearer or farther a press of a button takes the view. */
+const ZOOM = 1.5;
+
+/** What is drawn along by less, pixels of the picture, was a click. */
+const CLICK = 4;
 
 /**
- * @param {HTMLElement} place @param {any} problem changed in place
+ * What of a canvas outlives its being made anew.
+ * @typedef {object} Kept
+ * @property {any} problem whose view it is
+ * @property {View | null} view
+ * @property {boolean} led whether somebody has led the view somewhere; otherwise all is to be seen
+ * @property {import("./room_editor.js").Memory} room
+ */
+
+/** @type {WeakMap<HTMLElement, Kept>} */
+const kept = new WeakMap();
+
+/**
+ * @param {HTMLElement} place @param {any} problem changed in place @param {boolean} roomy whether the problem may state the room
  * @param {(rebuilt: boolean) => void} changed
  */
-export function canvas(place, problem, changed) {
+export function canvas(place, problem, roomy, changed) {
   const found = readable(problem);
-  if (!found) return place.replaceChildren();
-  const { handles, lines, word, add, offers } = found;
-  const view = new View(handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), WIDTH, HEIGHT, 80);
+  const before = kept.get(place);
+  const memory = before && before.problem === problem ? before : { problem, view: null, led: false, room: { role: before?.room.role } };
+  before?.room.pen?.leave();
+  kept.set(place, memory);
+  const graph = problem.kind === "function";
+  const grip = place.contains(document.activeElement) ? document.activeElement?.getAttribute("data-grip") : null;
+  place.replaceChildren(...(found ? drawnPlane(place, problem, found, roomy && !graph, memory, changed) : []),
+    // The graph of a function is not the plane in which its linkage lies.
+    ...(graph && roomy ? drawnPlane(place, problem, bare(problem), true, memory, changed) : []));
+  if (grip) /** @type {SVGElement | null} */ (place.querySelector(`[data-grip="${CSS.escape(grip)}"]`))?.focus({ preventScroll: true });
+}
+
+/** A plane in which nothing is placed but the fixed pivots, where they are chosen. @param {any} problem @returns {import("./handles.js").Stated} */
+function bare(problem) {
+  return { handles: chosenPivots(problem), lines: () => [], offers: [] };
+}
+
+/**
+ * A picture of a plane, and what is done in it.
+ * @param {HTMLElement} place @param {any} problem @param {import("./handles.js").Stated} found @param {boolean} roomy @param {Kept} memory
+ * @param {(rebuilt: boolean) => void} changed
+ */
+function drawnPlane(place, problem, { handles, lines, word, add, offers, freehand }, roomy, memory, changed) {
+  const corners = roomy ? areas(problem.space).flatMap((area) => area.extent) : [];
+  const points = [...handles.flatMap(({ get, name }) => (name === "ground" ? [] : [get()])), ...corners];
+  const view = roomy && memory.view && (memory.led || memory.view.suits(points)) ? memory.view : new View(points, WIDTH, HEIGHT, corners.length ? 40 : 80);
+  if (roomy) memory.view = view;
+  const led = (/** @type {boolean} */ somewhere) => {
+    Object.assign(memory, { view: somewhere ? view : null, led: somewhere });
+    canvas(place, problem, roomy, changed);
+  };
   const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "canvas", role: "group", "aria-label": "The problem in the plane" });
   const trail = svg("path", { class: "trail" });
   const pen = svg("path", { class: "pen" });
-  picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...grid(view), trail, pen);
+  const room = roomy ? new RoomEditor(picture, view, problem, memory.room, changed) : null;
+  picture.append(svg("rect", { class: "paper", width: WIDTH, height: HEIGHT }), ...grid(view), ...(room ? [room.node] : []), trail, pen);
   const redraw = () => trail.setAttribute("d", lines().map((/** @type {any} */ line) => view.path(line)).join(""));
-  const drawn = handles.map((handle) => held(handle, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
+  const drawn = handles.map((handle, k) => held(handle, `${word ?? "handle"}${k}`, view, picture, () => drawn.forEach((one) => one.show()), redraw, changed));
   picture.append(...drawn.map((one) => one.group));
   for (const one of drawn) one.show();
   redraw();
@@ -42,26 +90,57 @@ export function canvas(place, problem, changed) {
       if (!mode.checked) put(view.under(picture, event));
     });
   }
-  if (found.freehand) {
-    picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
-      if (mode.checked) sketched(event, view, picture, pen, problem, changed);
-    });
-  }
-  const focused = [...place.querySelectorAll(".target")].indexOf(/** @type {Element} */ (document.activeElement));
+  picture.addEventListener("pointerdown", (/** @type {PointerEvent} */ event) => {
+    if (mode.checked) {
+      stroke(event, view, picture, pen, (way) => {
+        problem.points = way.map(([x, y]) => ({ x, y }));
+        changed(true);
+      });
+    } else if (roomy) pan(event, view, picture, () => led(true));
+  });
   const last = handles.at(-1)?.get() ?? [0, 0];
   const size = (0.4 * WIDTH) / view.scale;
   const how = `Drag to move${handles.some((one) => one.turn) ? ", drag the end to turn" : ""}${add ? "; double-click adds one" : ""}.`;
   // An empty plane says nothing: what may be placed in it stands below.
-  picture.toggleAttribute("hidden", !handles.length && !add);
-  place.replaceChildren(picture, el("div", { class: "row" },
+  picture.toggleAttribute("hidden", !handles.length && !add && !roomy);
+  return [picture, el("div", { class: "row" },
     add && el("button", { type: "button", class: "small", onclick: () => put([last[0] + 40 / view.scale, last[1]]) }, `Add a ${word}`),
     ...offers.map(({ text, make }) => el("button", { type: "button", class: "small", onclick: () => {
       make([view.rounded(view.middle[0]), view.rounded(view.middle[1])], view.rounded(size));
       changed(true);
     } }, text)),
-    found.freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
-    handles.length > 0 && el("span", { class: "note" }, how)));
-  if (focused >= 0) /** @type {SVGElement[]} */ ([...place.querySelectorAll(".target")])[focused]?.focus();
+    freehand && el("label", { class: "flag", for: "freehand" }, mode, "Draw freehand"),
+    roomy && zooming(view, led), handles.length > 0 && el("span", { class: "note" }, how)), ...(room ? [room.tools] : [])];
+}
+
+/** Buttons that take the view nearer or farther, and back to all there is. @param {View} view @param {(somewhere: boolean) => void} led */
+function zooming(view, led) {
+  const button = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ act) =>
+    el("button", { type: "button", class: "small", "aria-label": label, title: label, onclick: act }, text);
+  const by = (/** @type {number} */ factor) => () => {
+    view.scale *= factor;
+    led(true);
+  };
+  return el("div", { class: "zoom" }, button("−", "Farther", by(1 / ZOOM)), button("+", "Nearer", by(ZOOM)), button("Fit", "Fit everything", () => led(false)));
+}
+
+/** The plane is taken along where nothing lies. @param {PointerEvent} event @param {View} view @param {SVGSVGElement} picture @param {() => void} seen */
+function pan(event, view, picture, seen) {
+  const { clientX, clientY } = event;
+  const size = picture.getScreenCTM()?.a ?? 1;
+  const gone = new AbortController();
+  let by = [0, 0];
+  picture.setPointerCapture(event.pointerId);
+  picture.addEventListener("pointermove", (now) => {
+    by = [(now.clientX - clientX) / size, (now.clientY - clientY) / size];
+    if (Math.hypot(...by) >= CLICK) picture.setAttribute("viewBox", `${-by[0]} ${-by[1]} ${WIDTH} ${HEIGHT}`);
+  }, { signal: gone.signal });
+  picture.addEventListener("lostpointercapture", () => {
+    gone.abort();
+    if (Math.hypot(...by) < CLICK) return;
+    view.middle = [view.middle[0] - by[0] / view.scale, view.middle[1] + by[1] / view.scale];
+    seen();
+  }, { once: true });
 }
 
 /** What can be held; nothing while the JSON is not what its kind has. @param {any} problem */
@@ -78,17 +157,17 @@ function readable(problem) {
 
 /**
  * A handle on the canvas: a dot, and a knob where it turns.
- * @param {Handle} handle @param {View} view @param {SVGSVGElement} picture
+ * @param {Handle} handle @param {string} key @param {View} view @param {SVGSVGElement} picture
  * @param {() => void} all shows all handles: some hang together @param {() => void} redraw draws what is between them
  * @param {(rebuilt: boolean) => void} changed
  */
-function held(handle, view, picture, all, redraw, changed) {
+function held(handle, key, view, picture, all, redraw, changed) {
   const { name, label, turn } = handle;
   const line = svg("line", { class: "arm" });
   const knob = turn && svg("circle", { class: "knob", r: 7 });
   const dot = svg("circle", { class: "dot", r: 8 });
   const text = svg("text", { dx: 12, dy: 20 }, name);
-  const group = svg("g", { class: "target", tabindex: 0, role: "button" }, line, text, dot, knob);
+  const group = svg("g", { class: "target", tabindex: 0, role: "button", "data-grip": key }, line, text, dot, knob);
   const show = () => {
     const [x, y] = handle.get();
     const [u, v] = view.at(x, y);
@@ -151,62 +230,4 @@ function held(handle, view, picture, all, redraw, changed) {
     altered();
   });
   return { group, show };
-}
-
-/** A stroke becomes points at equal distances. @param {PointerEvent} event @param {View} view @param {SVGSVGElement} picture @param {SVGElement} pen @param {any} problem @param {(rebuilt: boolean) => void} changed */
-function sketched(event, view, picture, pen, problem, changed) {
-  /** @type {[number, number][]} */
-  const stroke = [view.under(picture, event)];
-  picture.setPointerCapture(event.pointerId);
-  const move = (/** @type {PointerEvent} */ now) => {
-    stroke.push(view.under(picture, now));
-    pen.setAttribute("d", view.path(stroke));
-  };
-  picture.addEventListener("pointermove", move);
-  picture.addEventListener("lostpointercapture", () => {
-    picture.removeEventListener("pointermove", move);
-    pen.removeAttribute("d");
-    const points = evenly(stroke, SKETCHED);
-    if (points.length < 3) return;
-    problem.points = points.map(([x, y]) => ({ x: view.rounded(x), y: view.rounded(y) }));
-    changed(true);
-  }, { once: true });
-}
-
-/** Points at equal distances along a stroke. @param {[number, number][]} stroke @param {number} count @returns {[number, number][]} */
-export function evenly(stroke, count) {
-  const along = [0];
-  for (let k = 1; k < stroke.length; k++) {
-    along.push(along[k - 1] + Math.hypot(stroke[k][0] - stroke[k - 1][0], stroke[k][1] - stroke[k - 1][1]));
-  }
-  const length = along[along.length - 1];
-  if (!(length > 0)) return [];
-  /** @type {[number, number][]} */
-  const points = [];
-  for (let k = 0, n = 1; k < count; k++) {
-    const s = (length * k) / (count - 1);
-    while (n < stroke.length - 1 && along[n] < s) n++;
-    const share = along[n] > along[n - 1] ? (s - along[n - 1]) / (along[n] - along[n - 1]) : 0;
-    const [before, after] = [stroke[n - 1], stroke[n]];
-    points.push([before[0] + share * (after[0] - before[0]), before[1] + share * (after[1] - before[1])]);
-  }
-  return points;
-}
-
-/** Lines at round coordinates. @param {View} view */
-function grid(view) {
-  const step = view.step(70);
-  const [west, north] = view.middle.map((m, c) => m + ((c ? 1 : -1) * (c ? HEIGHT : WIDTH)) / 2 / view.scale);
-  const lines = [];
-  for (let k = Math.ceil(west / step); lines.length < 60; k++) {
-    const [u] = view.at(k * step, 0);
-    if (u > WIDTH) break;
-    lines.push(svg("line", { class: "grid", x1: u, x2: u, y1: 0, y2: HEIGHT }), svg("text", { class: "tick", x: u + 3, y: HEIGHT - 5 }, shown(k * step)));
-  }
-  for (let k = Math.floor(north / step), first = lines.length; lines.length < first + 60; k--) {
-    const [, v] = view.at(0, k * step);
-    if (v > HEIGHT) break;
-    lines.push(svg("line", { class: "grid", x1: 0, x2: WIDTH, y1: v, y2: v }), svg("text", { class: "tick", x: 4, y: v - 4 }, shown(k * step)));
-  }
-  return lines;
 }

@@ -23,6 +23,16 @@ export class View {
     this.height = height;
   }
 
+  /** Whether points lie in the picture, and fill a fair part of it. @param {Point[]} points */
+  suits(points) {
+    const places = points.map((point) => this.at(...point)).filter((place) => place.every(Number.isFinite));
+    const us = places.map(([u]) => u);
+    const vs = places.map(([, v]) => v);
+    const [west, east, north, south] = [Math.min(...us), Math.max(...us), Math.min(...vs), Math.max(...vs)];
+    return west >= 0 && east <= this.width && north >= 0 && south <= this.height
+      && (places.length < 2 || Math.max((east - west) / this.width, (south - north) / this.height) > 0.15);
+  }
+
   /** @param {number} x @param {number} y @returns {Point} */
   at(x, y) {
     return [this.width / 2 + this.scale * (x - this.middle[0]), this.height / 2 - this.scale * (y - this.middle[1])];

@@ -1,0 +1,276 @@
+/** The room on the canvas of a statement: areas are drawn, chosen, moved, shaped and removed, with the pointer and by keys. */
+
+import { lines } from "./controls.js";
+import { el, shown, svg } from "./dom.js";
+import { hatched, legend, outline } from "./hatch.js";
+import { Pen } from "./pen.js";
+import { areas, rolesOf, stateArea } from "./room.js";
+
+/** @typedef {[number, number]} Point */
+/** @typedef {import("./room.js").Area} Area */
+/** @typedef {import("./room.js").Tool} Tool */
+
+/** What is dragged by less, pixels of the picture, is not moved. */
+const CLICK = 3;
+
+const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);
+
+/**
+ * What outlives a canvas that is made anew.
+ * @typedef {object} Memory
+ * @property {string} [chosen] JSON pointer of the area that is chosen
+ * @property {string} [role] that is drawn next
+ * @property {Pen | null} [pen]
+ */
+
+export class RoomEditor {
+  /**
+   * @param {SVGSVGElement} picture @param {import("./view.js").View} view @param {any} problem changed in place
+   * @param {Memory} memory @param {(rebuilt: boolean) => void} changed
+   */
+  constructor(picture, view, problem, memory, changed) {
+    this.picture = picture;
+    this.view = view;
+    this.problem = problem;
+    this.memory = memory;
+    this.changed = changed;
+    this.areas = areas(problem.space);
+    memory.pen?.leave();
+    memory.pen = null;
+    this.node = svg("g", { class: "room" }, ...this.areas.map((area) => this.held(area)));
+    this.said = el("p", { class: "note", role: "status" });
+    this.tools = this.bar();
+    this.rest();
+  }
+
+  get chosen() {
+    return this.areas.find((one) => one.path === this.memory.chosen);
+  }
+
+  /** What draws: the role first, then the shape. */
+  bar() {
+    const { memory } = this;
+    const roles = rolesOf(this.problem);
+    const role = () => roles.find((one) => one.name === pick.value) ?? roles[0];
+    const pick = el("select", { id: "room-role", onchange: () => {
+      memory.role = pick.value;
+      this.rest();
+      fit();
+    } }, ...roles.map((one) => el("option", { value: one.name }, one.text)));
+    pick.value = roles.some((one) => one.name === memory.role) ? memory.role : roles[0].name;
+    const buttons = TOOLS.map((tool) => el("button", { type: "button", class: "small", "aria-pressed": "false", "data-tool": tool, onclick: () => {
+      const again = memory.pen?.tool === tool;
+      this.rest();
+      if (!again) this.take(role(), tool);
+    } }, tool.charAt(0).toUpperCase() + tool.slice(1)));
+    const fit = () => buttons.forEach((button, k) => (button.disabled = !role().tools.includes(TOOLS[k])));
+    fit();
+    this.remover = el("button", { type: "button", class: "small", disabled: !this.chosen, onclick: () => {
+      if (this.chosen) this.remove(this.chosen);
+    } }, "Delete");
+    const used = roles.filter((one) => this.areas.some((area) => area.role === one));
+    return el("fieldset", { class: "choice", id: "room-tools" }, el("legend", {}, "Room"),
+      el("div", { class: "row" }, el("label", { for: "room-role" }, "Draw"), pick,
+        el("div", { class: "row", role: "group", "aria-label": "Shape" }, ...buttons), this.remover),
+      this.said, used.length > 0 && legend(used));
+  }
+
+  /** Take the pen. @param {import("./room.js").Role} role @param {Tool} tool */
+  take(role, tool) {
+    this.memory.pen = new Pen(this.picture, this.view, role.name, tool, {
+      tell: (text) => (this.said.textContent = text), left: () => this.rest(),
+      done: (zone) => {
+        this.memory.chosen = stateArea(this.problem, role, zone);
+        this.rest();
+        this.changed(true);
+      } });
+    this.tools.querySelector(`[data-tool="${tool}"]`)?.setAttribute("aria-pressed", "true");
+    this.picture.classList.add("drawing");
+    // What is drawn on must be seen.
+    this.picture.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Put the pen away. */
+  rest() {
+    this.memory.pen?.leave();
+    this.memory.pen = null;
+    this.picture.classList.remove("drawing");
+    this.hint();
+    for (const button of this.tools.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", "false");
+  }
+
+  /** What can be done now. */
+  hint() {
+    const { chosen } = this;
+    this.said.textContent = !chosen ? "Say what is drawn, choose a shape, and draw it in the picture."
+      : `${chosen.label}: drag it or its ${chosen.circle ? "radius" : "corners"}${chosen.free ? "; double-click a side for another corner" : ""}.`;
+  }
+
+  /** @param {Area} area */
+  choose(area) {
+    if (this.memory.chosen === area.path) return;
+    this.memory.chosen = area.path;
+    this.node.replaceChildren(...this.areas.map((one) => this.held(one)));
+    this.remover.disabled = false;
+    this.hint();
+  }
+
+  /** @param {Area} area */
+  remove(area) {
+    area.remove();
+    this.memory.chosen = undefined;
+    this.changed(true);
+  }
+
+  /** An area that can be taken hold of, with its corners where it is chosen. @param {Area} area */
+  held(area) {
+    const chosen = area.path === this.memory.chosen;
+    const shape = hatched(area.role.name);
+    const mark = svg("text", { class: `area-mark ${area.role.name}` }, area.role.mark);
+    const body = svg("g", { class: `held ${chosen ? "chosen" : ""}`, tabindex: 0, role: "button", "data-grip": area.path }, shape, mark);
+    const altered = () => {
+      show();
+      this.tell(area);
+      this.changed(false);
+    };
+    const grips = chosen ? this.grips(area, altered) : [];
+    const show = () => {
+      shape.setAttribute("d", outline(this.view, area));
+      const [u, v] = this.view.at(...area.top);
+      mark.setAttribute("x", u);
+      mark.setAttribute("y", v);
+      const what = area.circle ? `circle of radius ${shown(area.circle.radius)}` : `${area.corners.length} corners`;
+      body.setAttribute("aria-label", `${area.label}, ${what}. Arrow keys move it, Delete removes it.`);
+      for (const grip of grips) grip.show();
+    };
+    this.dragged(body, () => this.choose(area), (by) => area.shift(by, (value) => this.view.rounded(value)), altered, area.path);
+    body.addEventListener("focus", () => {
+      if (!body.matches(":focus-visible") || this.memory.chosen === area.path) return;
+      this.choose(area);
+      this.focus(area.path);
+    });
+    if (area.free) body.addEventListener("dblclick", (/** @type {MouseEvent} */ event) => this.split(area, event));
+    this.keyed(body, (by) => area.shift(by, (value) => this.view.rounded(value)), () => this.remove(area), altered);
+    show();
+    return svg("g", {}, body, ...grips.map((one) => one.node));
+  }
+
+  /** The fields of the form go with what is moved. @param {Area} area */
+  tell(area) {
+    const { path, circle } = area;
+    const shape = ["box", "body"].includes(area.role.name) ? "" : "/polygon";
+    const says = circle ? { [`${path}/circle/center`]: circle.center.join(", "), [`${path}/circle/radius`]: String(circle.radius) }
+      : { [path + shape]: lines(area.role.name === "box" ? area.value : area.corners) };
+    for (const [field, text] of Object.entries(says)) {
+      const box = document.querySelector(`[data-path="${field}"]`);
+      if (box instanceof HTMLInputElement || box instanceof HTMLTextAreaElement) box.value = text;
+    }
+  }
+
+  /** A double click on a side makes another corner. @param {Area} area @param {MouseEvent} event */
+  split(area, event) {
+    event.stopPropagation();
+    const at = this.view.under(this.picture, event);
+    const { corners } = area;
+    const away = corners.map((corner, k) => distance(at, corner, corners[(k + 1) % corners.length]));
+    const k = away.indexOf(Math.min(...away));
+    if (this.view.scale * away[k] > 10) return;
+    area.insert(k, [this.view.rounded(at[0]), this.view.rounded(at[1])]);
+    this.changed(true);
+  }
+
+  /** The corners of an area, or the end of a circle's radius. @param {Area} area @param {() => void} all shows all of it */
+  grips(area, all) {
+    const { circle, view } = { circle: area.circle, view: this.view };
+    const places = circle ? [{ name: `Radius of ${area.label}`, get: () => /** @type {Point} */ ([circle.center[0] + circle.radius, circle.center[1]]), put: (/** @type {Point} */ [x, y]) => {
+      const radius = Number(Math.hypot(x - circle.center[0], y - circle.center[1]).toPrecision(4));
+      if (radius > 0) circle.radius = radius;
+    } }] : area.corners.map((_, k) => ({ name: `Corner ${k + 1} of ${area.label}`, get: () => area.corners[k], put: (/** @type {Point} */ point) => area.put(k, point) }));
+    return places.map(({ name, get, put }, k) => {
+      const key = `${area.path}#${k}`;
+      const dot = svg("circle", { class: "corner", r: 5 });
+      const hit = svg("circle", { class: "hit" });
+      const node = svg("g", { class: "grip", tabindex: 0, role: "button", "data-grip": key }, hit, dot);
+      const show = () => {
+        const [x, y] = get();
+        const [u, v] = view.at(x, y);
+        for (const one of [dot, hit]) {
+          one.setAttribute("cx", u);
+          one.setAttribute("cy", v);
+        }
+        const more = area.free && area.corners.length > 3 ? ", Delete removes it" : "";
+        node.setAttribute("aria-label", `${name}: x ${shown(x)}, y ${shown(y)}. Arrow keys move it${more}.`);
+      };
+      const by = (/** @type {Point} */ [dx, dy]) => {
+        const [x, y] = get();
+        put([view.rounded(x + dx), view.rounded(y + dy)]);
+      };
+      this.dragged(node, () => {}, by, all, key);
+      this.keyed(node, by, () => {
+        area.drop(k);
+        this.changed(true);
+      }, all);
+      return { node, show };
+    });
+  }
+
+  /**
+   * What is dragged by the pointer: each step is taken from where it was let go.
+   * @param {SVGElement} grip @param {() => void} taken @param {(by: Point) => void} move @param {() => void} show @param {string} key
+   */
+  dragged(grip, taken, move, show, key) {
+    grip.addEventListener("pointerdown", (event) => {
+      event.stopPropagation();
+      const { picture, view } = this;
+      let before = view.under(picture, event);
+      let moved = false;
+      const gone = new AbortController();
+      const { signal } = gone;
+      // Wherever the pointer goes: the grip itself may be drawn anew when it is chosen.
+      document.addEventListener("pointermove", (now) => {
+        const at = view.under(picture, now);
+        const by = /** @type {Point} */ ([at[0] - before[0], at[1] - before[1]].map((one) => view.rounded(one)));
+        if (!moved && view.scale * Math.hypot(...by) < CLICK) return;
+        moved = true;
+        before = [before[0] + by[0], before[1] + by[1]];
+        move(by);
+        show();
+      }, { signal });
+      const end = () => {
+        gone.abort();
+        taken();
+        if (moved) this.changed(true);
+        else this.focus(key);
+      };
+      document.addEventListener("pointerup", end, { signal });
+      document.addEventListener("pointercancel", end, { signal });
+    });
+  }
+
+  /** @param {SVGElement} grip @param {(by: Point) => void} move @param {() => void} remove @param {() => void} show */
+  keyed(grip, move, remove, show) {
+    grip.addEventListener("keydown", (event) => {
+      const step = this.view.step(event.shiftKey ? 1 : 10);
+      const by = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+      if (by) {
+        move(/** @type {Point} */ (by));
+        show();
+      } else if (event.key === "Delete" || event.key === "Backspace") remove();
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  /** @param {string} key */
+  focus(key) {
+    /** @type {SVGElement | null} */ (this.picture.querySelector(`[data-grip="${CSS.escape(key)}"]`))?.focus({ preventScroll: true });
+  }
+}
+
+/** From a point to the side between two corners. @param {Point} point @param {Point} from @param {Point} to */
+function distance([x, y], [ax, ay], [bx, by]) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const share = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+  return Math.hypot(x - ax - share * dx, y - ay - share * dy);
+}
