@@ -1,0 +1,199 @@
+"""A room as numbers for compiled fits: what a linkage must keep clear of, stay within, and have its pivots in.
+
+The block ``space`` of a statement becomes one vector in task coordinates, :func:`packed`. Of a linkage's joints along
+its motion :mod:`synthesis.fit.room_margins` makes margins of it, in this order:
+
+============ ======================================= ==========================================================
+demand       margins                                 value, in task sizes
+============ ======================================= ==========================================================
+pivot zones  one for each pivot that has zones       how far it lies within the nearest of them
+box          four for each window of the motion      how far the parts lie within a side
+obstacles    one for each window, part and obstacle  distance of the outlines, less the clearance; less than
+                                                     nothing by the depth of the overlap
+============ ======================================= ==========================================================
+
+The motion is taken in :data:`WINDOWS` windows of :data:`STEPS` steps each, and within a window the nearest place
+counts, looked for between the steps too. So rows are few, and what counts may move along the motion while a fit
+descends. Obstacles and the body are convex pieces (:mod:`synthesis.fit.convex_pieces`).
+
+Everything is aimed at a little more narrowly than it is checked (:data:`AIM`), so that the sweep of the finished
+linkage (:mod:`synthesis.proof.space`), which shares nothing with this, finds it kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.fit.convex_pieces import convex_pieces
+from synthesis.model.space import Space
+from synthesis.model.zones import MovingZone, Zone
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+WINDOWS, STEPS = 12, 4
+"""Windows of the motion, and steps in each."""
+
+AIM = 1e-4
+"""Share of the task's size by which everything is kept more narrowly than it is checked."""
+
+NARROW = 0.2
+"""Of a zone that is small beside that: the share of its half width by which it is drawn in at most."""
+
+O2, A, B, O4, P, TURN = range(6)
+"""The joints, in the order in which margins take their places, and behind them the turn e^{iα} of a carried body."""
+
+PLACES = 6
+
+FOURBAR_PARTS = ((O2, A), (O4, B), (A, B, P))
+"""Parts of a fourbar with a coupler point; with an outline of the body the coupler is A, B alone."""
+
+MOST_GROUPS = 24
+"""Pieces of obstacles, and of the body, that have margins of their own; of more, those of an outline share them."""
+
+(
+    COUNT, HALF, WANTED, LEFT, RIGHT, LOW, HIGH, BOXED, FIRST_X, FIRST_Y,
+    CYCLE, PARTS, BODY, GROUPS, PIECES, ZONED, ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT,
+) = range(20)  # fmt: skip
+"""Places of a room's numbers: how many margins it has; half of a link's width; the distance to be kept; the box, and
+whether there is one; P of the body as it is drawn; whether the whole cycle counts; how many parts, groups of the body's
+pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; and where each of these tables
+begins."""
+
+HEADER = 20
+
+NONE = np.zeros(0)
+"""No room."""
+
+
+def packed(
+    space: Space | None,
+    origin: complex,
+    size: float,
+    *,
+    parts: Sequence[Sequence[int]] = FOURBAR_PARTS,
+    first: complex | None = None,
+    pivots: Sequence[int] = (O2, O4, A, B),
+) -> Real:
+    """A room in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty where nothing is demanded.
+
+    Parameters
+    ----------
+    space : Space or None
+        What is stated.
+    origin, size : complex and float
+        Of the task.
+    parts : sequence of joints
+        The moving links by their joints, one to three each. With an outline of the body, and ``first``, P belongs to
+        none.
+    first : complex, optional
+        P of the body as it is drawn, in the problem's coordinates, of a linkage that carries one.
+    pivots : four joints
+        The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage does not have.
+    """
+    if space is None:
+        return NONE
+    zones = _zones(space, origin, size, pivots, first is not None)
+    moves = space.swept
+    carries = space.body is not None and first is not None
+    links = [[joint for joint in part if not (carries and joint == P)] for part in parts] if moves else []
+    body: list[list[float]] = []
+    if moves and space.body is not None and carries:
+        outline = np.array([complex(*corner) for corner in space.body.outline])
+        body = _pieces([((outline - origin) / size, 0.0)])
+    obstacles = [] if not moves else [((points - origin) / size, radius / size) for points, radius in _outlines(space)]
+    pieces = _pieces(obstacles)
+    if not zones and not moves:
+        return NONE
+    groups = len({piece[0] for piece in pieces})
+    bodies = len({piece[0] for piece in body})
+    windows = WINDOWS * (4 if space.box is not None else 0) + WINDOWS * (len(links) + bodies) * groups
+    header = np.zeros(HEADER)
+    header[COUNT] = len(zones) + windows
+    header[HALF], header[WANTED] = 0.5 * space.link_width / size, space.clearance / size + AIM
+    header[LEFT : HIGH + 1] = -np.inf, np.inf, -np.inf, np.inf
+    if space.box is not None:
+        (left, low), (right, high) = space.box
+        header[LEFT : HIGH + 1] = (
+            (left - origin.real) / size + AIM, (right - origin.real) / size - AIM,
+            (low - origin.imag) / size + AIM, (high - origin.imag) / size - AIM,
+        )  # fmt: skip
+    header[BOXED], header[CYCLE] = space.box is not None, space.over == "cycle"
+    if first is not None:
+        header[FIRST_X], header[FIRST_Y] = (first.real - origin.real) / size, (first.imag - origin.imag) / size
+    header[PARTS], header[BODY], header[GROUPS] = len(links), bodies, groups
+    header[PIECES], header[ZONED] = len(pieces), len(zones)
+    tables: list[list[list[float]]] = [
+        [one for listed in zones for one in listed],
+        [[float(len(link)), *map(float, link), *[-1.0] * (3 - len(link))] for link in links],
+        body,
+        pieces,
+    ]
+    numbers = [header]
+    at = HEADER
+    for place, table in zip((ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT), tables, strict=True):
+        header[place] = at
+        # Each table ends with the mark of no further record.
+        numbers.append(np.array([value for record in table for value in record] + [-1.0]))
+        at += len(numbers[-1])
+    return np.concatenate(numbers)
+
+
+def _outlines(space: Space) -> list[tuple[Complex, float]]:
+    return [zone.outline for zone in space.obstacles]
+
+
+def _pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
+    """Records of convex pieces: group, radius, middle, reach about it, number of corners, corners."""
+    listed: list[tuple[int, Complex, float]] = []
+    for number, (corners, radius) in enumerate(outlines):
+        pieces, beyond = convex_pieces(corners, 1.0)
+        listed += [(number, piece, radius + beyond) for piece in pieces]
+    alone = len(listed) <= MOST_GROUPS
+    records = []
+    for n, (number, piece, radius) in enumerate(listed):
+        middle = complex(piece.mean())
+        reach = float(np.abs(piece - middle).max())
+        group = float(n if alone else number)
+        head = [group, radius, middle.real, middle.imag, reach, float(len(piece))]
+        records.append([*head, *np.ascontiguousarray(piece).view(np.float64).tolist()])
+    return records
+
+
+def _zones(space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool) -> list[list[list[float]]]:
+    """Of each pivot that has zones the records: joint, on the body or not, radius, margin, count of corners, these."""
+    fixed, moving = space.fixed_pivots, space.moving_pivots
+    demanded = (
+        fixed.input if fixed else None,
+        fixed.output if fixed else None,
+        moving.input if moving else None,
+        moving.output if moving else None,
+    )
+    tables = []
+    for zones, joint in zip(demanded, pivots, strict=True):
+        if zones is None or joint < 0:
+            continue
+        records = []
+        for zone in [zones] if isinstance(zones, Zone) else zones:
+            corners, radius = zone.outline
+            corners = _anticlockwise((corners - origin) / size)
+            half = radius / size if len(corners) == 1 else _half_width(zone) / size
+            on_body = carries and isinstance(zone, MovingZone) and zone.frame == "body"
+            head = [float(joint), float(on_body), radius / size, min(AIM, NARROW * half), float(len(corners))]
+            records.append([*head, *corners.view(np.float64).tolist()])
+        tables.append(records)
+    return tables
+
+
+def _half_width(zone: Zone) -> float:
+    """About half of how wide a polygon is where it is widest."""
+    left, right, low, high = zone.bounds
+    return zone.size / (2.0 * max(right - left, high - low))
+
+
+def _anticlockwise(corners: Complex) -> Complex:
+    area = float((corners.conj() * np.roll(corners, -1)).imag.sum())
+    return np.ascontiguousarray(corners if area >= 0.0 else corners[::-1])

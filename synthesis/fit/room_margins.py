@@ -1,0 +1,508 @@
+"""Margins of a room along a motion, and their derivatives by whatever moves the joints.
+
+A motion is given by where its joints are at equal steps: shape (n, 6), in the order O2, A, B, O4, P and, of a linkage
+that carries a body, the turn e^{iα} of the body from how it is drawn. Between the steps joints, and corners of the
+body, lie on parabolas through three of their places. Each margin has a *row*: the step k beside which its nearest
+place is, the share t of a step that it is off (−1 to 1), and weights w with which
+
+    d(margin) = Σ_s L_s(t) Re Σ_j w̄_j dz_{s,j}        over the steps s = k − 1, k, k + 1,
+
+L_s being Lagrange's of the parabola, and dz of the turn i e^{iα} dα. :func:`derivative` takes the sum. Margins of zones
+have k = −1: they are of the first position, which is given by itself.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import OPTIONS
+from synthesis.fit.room import (
+    BODY_AT,
+    BOXED,
+    COUNT,
+    FIRST_X,
+    FIRST_Y,
+    GROUPS,
+    HALF,
+    LEFT,
+    PARTS,
+    PARTS_AT,
+    PIECES,
+    PIECES_AT,
+    PLACES,
+    STEPS,
+    TURN,
+    WANTED,
+    WINDOWS,
+    ZONES_AT,
+    P,
+)
+from synthesis.fit.separation import inside, separation
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Whole = NDArray[np.int64]
+
+STEP, SHARE, WEIGHTS = 0, 1, 2
+"""Places in a row: k, t, and the weights as pairs of numbers."""
+
+ROW = WEIGHTS + 2 * PLACES
+"""Numbers of a row."""
+
+FAR = 0.25
+"""Distances beyond this, in task sizes, are not told apart."""
+
+CLOSE = 0.1
+"""Margins above this, in task sizes, are lower bounds without a row: no limit bears a load there."""
+
+NARROWINGS, SAME = 4, 1e-3
+"""Places between steps that are looked at for the nearest, at most; what is nearer to it than the second, as a share of
+a step, is the same place."""
+
+
+@njit(**OPTIONS)
+def margins_of(room: Real) -> int:
+    """How many margins a room has."""
+    return int(room[COUNT]) if len(room) else 0
+
+
+@njit(**OPTIONS)
+def steps_of(ring: bool) -> int:
+    """At how many steps a motion is given; that of a whole turn ends one before it comes back to where it began."""
+    return WINDOWS * STEPS + (0 if ring else 1)
+
+
+@njit(**OPTIONS)
+def room_margins(room: Real, places: Complex, ring: bool, home: Complex, values: Real, rows: Real) -> None:
+    """The margins of a motion, and their rows.
+
+    Parameters
+    ----------
+    room : float, shape (r,)
+        Of :func:`synthesis.fit.room.packed`, not empty.
+    places : complex, shape (n, 6)
+        Joints, and the body's turn, at ``n = steps_of(ring)`` equal steps of the motion, in task coordinates. What the
+        linkage does not have is not looked at.
+    ring : bool
+        Whether the motion goes on from its end at its beginning.
+    home : complex, shape (6,)
+        The same in the first position.
+    values, rows : float, shapes (margins_of(room),) and (margins_of(room), ROW)
+        Written.
+    """
+    rows[:] = 0.0
+    first = _of_zones(room, home, values, rows)
+    if room[BOXED] > 0.0:
+        first = _of_box(room, places, ring, values, rows, first)
+    if room[GROUPS] > 0.0:
+        _of_obstacles(room, places, ring, values, rows, first)
+
+
+@njit(**OPTIONS)
+def derivative(row: Real, ring: bool, slopes: Complex, home: Complex, out: Real) -> None:
+    """The derivatives of a margin by m unknowns from those of the joints.
+
+    Parameters
+    ----------
+    row : float, shape (ROW,)
+        Of the margin.
+    ring : bool
+        As for :func:`room_margins`.
+    slopes : complex, shape (n, 6, m)
+        Derivatives of the places at the steps. Only those of :func:`parabola` are looked at.
+    home : complex, shape (6, m)
+        The same of the first position.
+    out : float, shape (m,)
+        Written.
+    """
+    out[:] = 0.0
+    if row[STEP] < 0.0:
+        add_derivative(row, 1.0, home, out)
+        return
+    at, shares = parabola(int(row[STEP]), row[SHARE], ring, len(slopes))
+    for s in range(3):
+        if shares[s] != 0.0:
+            add_derivative(row, shares[s], slopes[at[s]], out)
+
+
+@njit(**OPTIONS)
+def add_derivative(row: Real, share: float, slopes: Complex, out: Real) -> None:
+    """Add to ``out`` what the places of one step contribute, their derivatives being ``slopes`` (6, m)."""
+    for j in range(PLACES):
+        x, y = share * row[WEIGHTS + 2 * j], share * row[WEIGHTS + 2 * j + 1]
+        if x != 0.0 or y != 0.0:
+            for i in range(len(out)):
+                out[i] += x * slopes[j, i].real + y * slopes[j, i].imag
+
+
+@njit(**OPTIONS)
+def parabola(step: int, share: float, ring: bool, n: int) -> tuple[tuple[int, int, int], tuple[float, float, float]]:
+    """The steps whose places make up the place a share of a step off a step, and how much of each."""
+    k = step if ring else min(max(step, 1), n - 2)
+    t = share + (step - k)
+    return ((k - 1) % n, k, (k + 1) % n), (0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0))
+
+
+@njit(**OPTIONS)
+def _between(places: Complex, step: int, share: float, ring: bool, out: Complex) -> None:
+    at, shares = parabola(step, share, ring, len(places))
+    for j in range(PLACES):
+        out[j] = shares[0] * places[at[0], j] + shares[1] * places[at[1], j] + shares[2] * places[at[2], j]
+
+
+@njit(**OPTIONS)
+def _put(row: Real, joint: int, weight: complex) -> None:
+    row[WEIGHTS + 2 * joint] += weight.real
+    row[WEIGHTS + 2 * joint + 1] += weight.imag
+
+
+@njit(**OPTIONS)
+def _of_zones(room: Real, home: Complex, values: Real, rows: Real) -> int:
+    """How far pivots lie within the nearest of their zones; returns the number of these margins."""
+    at, m, pivot = int(room[ZONES_AT]), -1, -1
+    drawn = complex(room[FIRST_X], room[FIRST_Y])
+    while room[at] >= 0.0:
+        joint, on_body, radius, aim = int(room[at]), room[at + 1] > 0.0, room[at + 2], room[at + 3]
+        corners = room[at + 5 : at + 5 + 2 * int(room[at + 4])].view(np.complex128)
+        at += 5 + 2 * len(corners)
+        if joint != pivot:
+            pivot, m = joint, m + 1
+            values[m] = -math.inf
+        z = home[joint]
+        if on_body:
+            z = drawn + (home[joint] - home[P]) * home[TURN].conjugate()
+        if len(corners) == 1:
+            offset = z - corners[0]
+            depth, toward = radius - abs(offset), 1.0 + 0j
+            if abs(offset) > 0.0:
+                toward = -offset / abs(offset)
+        else:
+            depth, toward = inside(z, corners)
+        if depth - aim > values[m]:
+            values[m] = depth - aim
+            rows[m, :] = 0.0
+            rows[m, STEP] = -1.0
+            if on_body:
+                _put(rows[m], joint, toward * home[TURN])
+                _put(rows[m], P, -toward * home[TURN])
+                _put(rows[m], TURN, toward.conjugate() * (home[joint] - home[P]))
+            else:
+                _put(rows[m], joint, toward)
+    return m + 1
+
+
+@njit(**OPTIONS)
+def _nearer(before: float, here: float, after: float) -> float:
+    """Where between steps −1 and 1 a margin is least, by the parabola through three; 0 where it does not bend up."""
+    bend = before - 2.0 * here + after
+    if not bend > 0.0 or before < here or after < here:
+        return 0.0
+    return 0.5 * (before - after) / bend
+
+
+@njit(**OPTIONS)
+def _span(room: Real, window: int, ring: bool, n: int) -> tuple[int, int]:
+    """The steps of a window, from and to before; the last takes the end of the motion too."""
+    last = n if not ring and window == WINDOWS - 1 else (window + 1) * STEPS
+    return window * STEPS, last
+
+
+@njit(**OPTIONS)
+def _side_of(room: Real, here: Complex, side: int) -> tuple[float, int, complex]:
+    """How far the parts lie within a side of the box, the joint that is nearest to it, and of a corner of the body its
+    place on that, else 0."""
+    axis, toward = side // 2, 1.0 if side % 2 == 0 else -1.0
+    limit, half = room[LEFT + side], room[HALF]
+    least, joint, corner = math.inf, -1, 0j
+    at = int(room[PARTS_AT])
+    while room[at] >= 0.0:
+        for k in range(int(room[at])):
+            j = int(room[at + 1 + k])
+            place = here[j].real if axis == 0 else here[j].imag
+            if toward * (place - limit) - half < least:
+                least, joint = toward * (place - limit) - half, j
+        at += 4
+    at = int(room[BODY_AT])
+    drawn = complex(room[FIRST_X], room[FIRST_Y])
+    while room[at] >= 0.0:
+        count = int(room[at + 5])
+        for k in range(count):
+            own = complex(room[at + 6 + 2 * k], room[at + 7 + 2 * k]) - drawn
+            z = here[P] + here[TURN] * own
+            place = z.real if axis == 0 else z.imag
+            if toward * (place - limit) < least:
+                least, joint, corner = toward * (place - limit), P, own
+        at += 6 + 2 * count
+    return least, joint, corner
+
+
+@njit(**OPTIONS)
+def _of_box(room: Real, places: Complex, ring: bool, values: Real, rows: Real, first: int) -> int:
+    """How far the parts lie within each side of the box in each window; returns the number of the next margin."""
+    n = len(places)
+    depths = np.empty((4, n))
+    for step in range(n):
+        for side in range(4):
+            depths[side, step], _, _ = _side_of(room, places[step], side)
+    here = np.empty(PLACES, np.complex128)
+    for window in range(WINDOWS):
+        begin, end = _span(room, window, ring, n)
+        for side in range(4):
+            step = begin + int(np.argmin(depths[side, begin:end]))
+            share = 0.0
+            if ring or 0 < step < n - 1:
+                share = _nearer(depths[side, (step - 1) % n], depths[side, step], depths[side, (step + 1) % n])
+            _between(places, step, share, ring, here)
+            values[first], joint, corner = _side_of(room, here, side)
+            row = rows[first]
+            row[STEP], row[SHARE] = float(step), share
+            weight = (1.0 if side % 2 == 0 else -1.0) * (1.0 + 0j if side < 2 else 1j)
+            _put(row, joint, weight)
+            _put(row, TURN, weight * corner.conjugate())
+            first += 1
+    return first
+
+
+@njit(**OPTIONS)
+def _core(room: Real, part: int, record: int, here: Complex, core: Complex) -> int:
+    """The corners of a part: link ``part``, or where it is −1 the piece of the body at ``record``; their number."""
+    if part >= 0:
+        at = int(room[PARTS_AT]) + 4 * part
+        count = int(room[at])
+        for k in range(count):
+            core[k] = here[int(room[at + 1 + k])]
+        return count
+    count = int(room[record + 5])
+    drawn = complex(room[FIRST_X], room[FIRST_Y])
+    for k in range(count):
+        core[k] = here[P] + here[TURN] * (complex(room[record + 6 + 2 * k], room[record + 7 + 2 * k]) - drawn)
+    return count
+
+
+@njit(**OPTIONS)
+def _of_obstacles(room: Real, places: Complex, ring: bool, values: Real, rows: Real, first: int) -> None:
+    """The least distance of each part from each group of obstacles in each window, less what is wanted."""
+    links, groups = int(room[PARTS]), int(room[GROUPS])
+    record = int(room[BODY_AT])
+    longest, end = 3, record
+    while room[end] >= 0.0:
+        longest = max(longest, int(room[end + 5]))
+        end += 6 + 2 * int(room[end + 5])
+    core, here, weights = np.empty(longest, np.complex128), np.empty(PLACES, np.complex128), np.empty(longest)
+    pieces = np.empty(int(room[PIECES]), np.int64)
+    at = int(room[PIECES_AT])
+    for k in range(len(pieces)):
+        pieces[k] = at
+        at += 6 + 2 * int(room[at + 5])
+    numbers = np.empty((groups, 4))
+    for part in range(links):
+        _of_part(room, part, -1, pieces, places, ring, core, here, weights, numbers, True, values, rows, first)
+        first += WINDOWS * groups
+    group, fresh = -1.0, True
+    while room[record] >= 0.0:
+        if room[record] != group:
+            if group >= 0.0:
+                first += WINDOWS * groups
+            group, fresh = room[record], True
+        _of_part(room, -1, record, pieces, places, ring, core, here, weights, numbers, fresh, values, rows, first)
+        fresh = False
+        record += 6 + 2 * int(room[record + 5])
+
+
+@njit(**OPTIONS)
+def _gap(room: Real, core: Complex, radius: float, piece: int, weights: Real) -> tuple[float, complex]:
+    """Signed distance of a part from a piece less what is wanted, and its direction."""
+    corners = room[piece + 6 : piece + 6 + 2 * int(room[piece + 5])].view(np.complex128)
+    apart, normal = separation(core, corners, weights)
+    return apart - radius - room[piece + 1] - room[WANTED], normal
+
+
+@njit(**OPTIONS)
+def _moved(room: Real, part: int, record: int, one: Complex, other: Complex) -> float:
+    """How far corners of a part are from where they were, at most."""
+    if part < 0:
+        middle = complex(room[record + 2], room[record + 3]) - complex(room[FIRST_X], room[FIRST_Y])
+        about = abs(one[P] - other[P] + middle * (one[TURN] - other[TURN]))
+        return float(about + room[record + 4] * abs(one[TURN] - other[TURN]))
+    at, most = int(room[PARTS_AT]) + 4 * part, 0.0
+    for k in range(int(room[at])):
+        joint = int(room[at + 1 + k])
+        most = max(most, abs(one[joint] - other[joint]))
+    return most
+
+
+@njit(**OPTIONS)
+def _of_part(
+    room: Real,
+    part: int,
+    record: int,
+    pieces: Whole,
+    places: Complex,
+    ring: bool,
+    core: Complex,
+    here: Complex,
+    weights: Real,
+    nearest: Real,
+    fresh: bool,
+    values: Real,
+    rows: Real,
+    first: int,
+) -> None:
+    """The margins of one part from each group of pieces in each window, from number ``first`` on.
+
+    Where the part shares its margins with others, ``fresh`` tells the first of them. ``nearest`` is scratch: of each
+    group the least gap, its step and its piece. In a window the middle is looked at first: from there no gap changes by
+    more than the part moves.
+    """
+    n, groups = len(places), len(nearest)
+    radius = room[HALF] if part >= 0 else 0.0
+    moves, at_middle = np.empty(STEPS + 1), np.empty(len(pieces))
+    for window in range(WINDOWS):
+        begin, end = _span(room, window, ring, n)
+        middle = (begin + end) // 2
+        nearest[:, 0], nearest[:, 1] = FAR, -1.0
+        farthest = 0.0
+        for step in range(begin, end):
+            moves[step - begin] = _moved(room, part, record, places[step], places[middle])
+            farthest = max(farthest, moves[step - begin])
+        count = _core(room, part, record, places[middle], core)
+        for k in range(len(pieces)):
+            piece = pieces[k]
+            group = int(room[piece])
+            at_middle[k] = _gap_bound(room, core[:count], radius, piece)
+            if at_middle[k] - farthest < CLOSE:
+                at_middle[k], _ = _gap(room, core[:count], radius, piece, weights[:count])
+            if at_middle[k] - farthest >= CLOSE:
+                nearest[group, 0] = min(nearest[group, 0], at_middle[k] - farthest)
+            elif at_middle[k] < nearest[group, 0]:
+                nearest[group, 0], nearest[group, 1], nearest[group, 2] = at_middle[k], float(middle), float(piece)
+        for step in range(begin, end):
+            if step == middle:
+                continue
+            known = False
+            for k in range(len(pieces)):
+                piece = pieces[k]
+                group = int(room[piece])
+                if at_middle[k] - moves[step - begin] >= min(nearest[group, 0], CLOSE):
+                    continue
+                if not known:
+                    count, known = _core(room, part, record, places[step], core), True
+                gap, _ = _gap(room, core[:count], radius, piece, weights[:count])
+                if gap < nearest[group, 0]:
+                    nearest[group, 0], nearest[group, 1], nearest[group, 2] = gap, float(step), float(piece)
+        for group in range(groups):
+            number = first + window * groups + group
+            if fresh:
+                values[number] = FAR
+            if nearest[group, 0] >= values[number]:
+                continue
+            values[number] = nearest[group, 0]
+            rows[number] = 0.0
+            if nearest[group, 0] >= CLOSE or nearest[group, 1] < 0.0:
+                continue
+            _nearest_row(
+                room, part, record, int(nearest[group, 2]), places, int(nearest[group, 1]), ring, core, here, weights,
+                radius, nearest[group, 0], values, rows, number,
+            )  # fmt: skip
+
+
+@njit(**OPTIONS)
+def _gap_bound(room: Real, core: Complex, radius: float, piece: int) -> float:
+    """A lower bound of the gap, by the circles around both."""
+    middle, reach = core.mean(), 0.0
+    for corner in core:
+        reach = max(reach, abs(corner - middle))
+    apart = abs(middle - complex(room[piece + 2], room[piece + 3])) - reach - room[piece + 4]
+    return float(apart - radius - room[piece + 1] - room[WANTED])
+
+
+@njit(**OPTIONS)
+def _gap_at(
+    room: Real,
+    part: int,
+    record: int,
+    piece: int,
+    places: Complex,
+    step: int,
+    share: float,
+    ring: bool,
+    core: Complex,
+    here: Complex,
+    weights: Real,
+    radius: float,
+) -> tuple[float, complex]:
+    """The gap and its direction a share of a step off a step; ``here``, ``core`` and ``weights`` are written."""
+    _between(places, step, share, ring, here)
+    count = _core(room, part, record, here, core)
+    gap: tuple[float, complex] = _gap(room, core[:count], radius, piece, weights[:count])
+    return gap
+
+
+@njit(**OPTIONS)
+def _nearest_row(
+    room: Real,
+    part: int,
+    record: int,
+    piece: int,
+    places: Complex,
+    step: int,
+    ring: bool,
+    core: Complex,
+    here: Complex,
+    weights: Real,
+    radius: float,
+    gap: float,
+    values: Real,
+    rows: Real,
+    number: int,
+) -> None:
+    """A margin and its row, from the step at which it is least: there, or between that and its neighbours."""
+    n = len(places)
+    left, middle, right = -1.0, 0.0, 1.0
+    if not ring:
+        left, right = (0.0 if step == 0 else -1.0), (0.0 if step == n - 1 else 1.0)
+    at_middle = gap
+    at_left, _ = _gap_at(room, part, record, piece, places, step, left, ring, core, here, weights, radius)
+    at_right, _ = _gap_at(room, part, record, piece, places, step, right, ring, core, here, weights, radius)
+    for _ in range(NARROWINGS if left < 0.0 < right else 0):
+        if at_left < at_middle or at_right < at_middle:
+            break
+        share = _lowest(left, at_left, middle, at_middle, right, at_right)
+        if abs(share - middle) < SAME:
+            break
+        value, _ = _gap_at(room, part, record, piece, places, step, share, ring, core, here, weights, radius)
+        if (share < middle) == (value < at_middle):
+            # What lies to the right of the lower of the two is given up.
+            right, at_right = (middle, at_middle) if value < at_middle else (share, value)
+        else:
+            left, at_left = (middle, at_middle) if value < at_middle else (share, value)
+        if value < at_middle:
+            middle, at_middle = share, value
+    value, normal = _gap_at(room, part, record, piece, places, step, middle, ring, core, here, weights, radius)
+    values[number] = value
+    row = rows[number]
+    row[:] = 0.0
+    row[STEP], row[SHARE] = float(step), middle
+    if part >= 0:
+        at = int(room[PARTS_AT]) + 4 * part
+        for k in range(int(room[at])):
+            _put(row, int(room[at + 1 + k]), weights[k] * normal)
+        return
+    _put(row, P, normal)
+    drawn = complex(room[FIRST_X], room[FIRST_Y])
+    for k in range(int(room[record + 5])):
+        own = complex(room[record + 6 + 2 * k], room[record + 7 + 2 * k]) - drawn
+        _put(row, TURN, weights[k] * normal * own.conjugate())
+
+
+@njit(**OPTIONS)
+def _lowest(left: float, at_left: float, middle: float, at_middle: float, right: float, at_right: float) -> float:
+    """Where the parabola through three places is lowest; in the longer half where it does not bend up."""
+    one, two = (middle - left) * (at_middle - at_right), (middle - right) * (at_middle - at_left)
+    if one == two:
+        return 0.5 * (middle + (left if middle - left > right - middle else right))
+    return float(middle - 0.5 * ((middle - left) * one - (middle - right) * two) / (one - two))
