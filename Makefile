@@ -4,7 +4,7 @@
 # make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
-# make campaign  the checks with thousands of random problems: a quarter of them, or all with SHARE=1
+# make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
@@ -65,7 +65,7 @@ test-browser: $(STAMP) $(NODE)
 	$(BIN)/pytest -m browser $(SPREAD) --ignore $(TIMED)
 	$(BIN)/pytest -m browser $(TIMED)
 
-SHARE := 0.25
+SHARE := 0.1
 
 campaign: $(STAMP)
 	$(BIN)/pytest -m campaign --campaign-share $(SHARE) $(SPREAD)

@@ -30,6 +30,12 @@ def pytest_configure(config):
     campaign.choose(config.getoption("--campaign-share"))
 
 
+def pytest_collection_modifyitems(config, items):
+    items[:], left_out = campaign.thinned(items)
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def engines():
     """Ends whatever engines the tests have started."""

@@ -19,13 +19,13 @@ pytestmark = [pytest.mark.campaign, pytest.mark.timeout(600)]
 MANY = sampled(10_000)
 """Designs of each type whose closure, and whose derivatives, are measured."""
 
-ELIMINATIONS = 25
+ELIMINATIONS = sampled(100)
 """Designs of each type with two dyads or more whose branches are compared; of those with one, five times as many."""
 
-FROM_ANOTHER_LINK = 50
+FROM_ANOTHER_LINK = sampled(200)
 """Designs of each type that no dyads close from its input, whose circuits are compared."""
 
-CONTINUATIONS = 2
+CONTINUATIONS = sampled(8)
 """Designs of each of these types that are followed too; each costs some seconds."""
 
 
