@@ -157,6 +157,10 @@ def test_peaucellier_draws_a_straight_line() -> None:
     assert np.median(across[on & found.smooth]) < 1e-13
 
 
+SETS = 6
+"""Designs of each type of which every assembly is looked for."""
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -167,23 +171,23 @@ def test_peaucellier_draws_a_straight_line() -> None:
 )
 def test_every_assembly_and_no_other(name: str) -> None:
     """At each input the configurations of all choices are those that Newton's iteration finds from random starts."""
-    rng, mechanism = batch(name, 6, 8)
+    rng, mechanism = batch(name, 6, SETS)
     constraints = Constraints.of(mechanism)
-    unit = constraints.size if mechanism.driven_by_slide else np.ones(8)
+    unit = constraints.size if mechanism.driven_by_slide else np.ones(SETS)
     steps = decompose(mechanism).steps
     closing = [k for k, step in enumerate(steps) if step.has_two_solutions]
     counts = set()
     for way in (0.7, -1.9):
         every, sure = [], []
         for choice in np.ndindex(*(2,) * len(closing)):
-            signs = [np.ones(8, int)] * len(steps)
+            signs = [np.ones(SETS, int)] * len(steps)
             for k, sign in zip(closing, choice, strict=True):
-                signs[k] = np.full(8, 1 - 2 * sign)
+                signs[k] = np.full(SETS, 1 - 2 * sign)
             found = drive(mechanism, (mechanism.reference_input + way * unit)[:, None], signs=tuple(signs), order=0)
             every.append(constraints.pack({j: z[0, :, 0] for j, z in found.joints.items()}, way))
             margins = np.array([margin[0, :, 0] for margin in found.margins.values()])
             sure.append(np.nan_to_num(np.abs(margins), nan=1.0).min(axis=0) > 1e-3)
-        for design in range(8):
+        for design in range(SETS):
             if not all(s[design] for s in sure):
                 continue
             mine = [x[design] for x in every if np.isfinite(x[design]).all()]
