@@ -7,10 +7,11 @@ links with two derivatives. From them :func:`reactions` solves Newton's and Eule
 
 from kinematics.dynamics.balance import Balance, balance
 from kinematics.dynamics.bodies import Body, body
-from kinematics.dynamics.loads import JointForce, Load, PointForce, Torque, constant
+from kinematics.dynamics.loads import JointForce, Load, PointForce, Resistance, Torque, TurningResistance, constant
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import Reactions, reactions
+from kinematics.dynamics.springs import Spring, TorsionSpring
 
 __all__ = [
     "Balance",
@@ -21,7 +22,11 @@ __all__ = [
     "Places",
     "PointForce",
     "Reactions",
+    "Resistance",
+    "Spring",
     "Torque",
+    "TorsionSpring",
+    "TurningResistance",
     "balance",
     "body",
     "constant",

@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics.places import Places, dot
+from kinematics.linkage.planar.drive import RealJet
 from kinematics.linkage.planar.mechanism import Complex, Real
 
-Course = Callable[[Real], NDArray[np.complex128] | NDArray[np.float64]]
-"""The strength of a load over the absolute input (radians, or a length along the input slide), of the input's shape."""
+Course = Callable[[RealJet], NDArray[np.complex128] | NDArray[np.float64]]
+"""The strength of a load over the input: its absolute value (radians, or a length along the input slide), speed and
+acceleration, of shape (3,) + S + (N,); the strengths are of shape S + (N,)."""
 
 
 class Effort(NamedTuple):
@@ -50,7 +52,7 @@ class PointForce:
     turning: bool = False
 
     def _force(self, now: Places) -> Complex:
-        force = np.asarray(self.course(now.input[0]), np.complex128)
+        force = np.asarray(self.course(now.input), np.complex128)
         return force * now.turns[self.link][0] if self.turning else force
 
     def efforts(self, now: Places) -> list[Effort]:
@@ -71,12 +73,12 @@ class JointForce:
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`Load`."""
-        force = np.asarray(self.course(now.input[0]), np.complex128)
+        force = np.asarray(self.course(now.input), np.complex128)
         return [Effort("", self.joint, now.joints[self.joint][0], force, np.zeros(()))]
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`Load`."""
-        return dot(np.asarray(self.course(now.input[0]), np.complex128), paced.joints[self.joint][1])
+        return dot(np.asarray(self.course(now.input), np.complex128), paced.joints[self.joint][1])
 
 
 @dataclass(frozen=True)
@@ -88,14 +90,71 @@ class Torque:
 
     def efforts(self, now: Places) -> list[Effort]:
         """See :class:`Load`."""
-        torque = np.asarray(self.course(now.input[0]), np.float64)
+        torque = np.asarray(self.course(now.input), np.float64)
         return [Effort(self.link, "", np.zeros((), np.complex128), np.zeros((), np.complex128), torque)]
 
     def work(self, now: Places, paced: Places) -> Real:
         """See :class:`Load`."""
-        return np.asarray(self.course(now.input[0]) * paced.spins[self.link][1], np.float64)
+        return np.asarray(self.course(now.input) * paced.spins[self.link][1], np.float64)
 
 
 def constant(strength: complex) -> Course:
     """The course of a load that does not change."""
-    return lambda input: np.full(input.shape, strength)
+    return lambda input: np.full(input.shape[1:], strength)
+
+
+@dataclass(frozen=True)
+class Resistance:
+    """A force on the pin of a joint against its motion: along its path, or along a slide of the ground.
+
+    It is ``forward`` where the joint moves along the slide's direction, or, without a slide, where the input moves
+    positively; ``backward`` otherwise, and nothing at rest.
+    """
+
+    joint: str
+    forward: float
+    backward: float
+    slide: int | None = None
+
+    def _force(self, now: Places) -> Complex:
+        velocity = now.joints[self.joint][1]
+        moves = np.abs(velocity) > now.rest
+        velocity = np.where(moves, velocity, 0.0)
+        if self.slide is None:
+            ahead = now.input[1] > 0.0
+            along = velocity / np.where(moves, np.abs(velocity), 1.0)
+        else:
+            direction = now.direction(self.slide)[0]
+            ahead = dot(direction, velocity) > 0.0
+            along = np.where(ahead, direction, -direction)
+        return np.where(moves, -np.where(ahead, self.forward, self.backward) * along, 0.0)
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`Load`."""
+        return [Effort("", self.joint, now.joints[self.joint][0], self._force(now), np.zeros(()))]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`Load`."""
+        return dot(self._force(now), paced.joints[self.joint][1])
+
+
+@dataclass(frozen=True)
+class TurningResistance:
+    """A torque on a link against its rotation: ``forward`` where it turns counter-clockwise; nothing at rest."""
+
+    link: str
+    forward: float
+    backward: float
+
+    def _torque(self, now: Places) -> Real:
+        spin = now.spins[self.link][1]
+        still = np.abs(spin) <= now.turning_rest
+        return np.where(still, 0.0, np.where(spin > 0.0, -self.forward, self.backward))
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`Load`."""
+        return [Effort(self.link, "", np.zeros((), np.complex128), np.zeros((), np.complex128), self._torque(now))]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`Load`."""
+        return np.asarray(self._torque(now) * paced.spins[self.link][1])

@@ -13,6 +13,9 @@ import numpy as np
 from kinematics.linkage.planar.drive import Jet, MechanismMotion, RealJet
 from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
 
+REST = 1e-12
+"""Speed, as a share of the mechanism's size times the input's speed, up to which a point is at rest: rounding."""
+
 
 class Places:
     """A mechanism in motion, in lengths of a unit of one's choice.
@@ -41,6 +44,24 @@ class Places:
             spin = jet[:3].copy()
             spin[0] -= mechanism.link_angle(link)[..., None]
             self.spins[link] = spin
+
+    @cached_property
+    def size(self) -> Real:
+        """The size of the mechanism, shape S + (1,)."""
+        places = np.stack([self.reference(joint) for joint in self.mechanism.joints])
+        size = np.abs(places - places[:1]).max(axis=0)
+        return np.asarray(np.where(size > 0.0, size, 1.0))[..., None]
+
+    @property
+    def rest(self) -> Real:
+        """Speed up to which a point is at rest."""
+        speed = np.abs(self.input[1])
+        return np.asarray(REST * (speed if self.mechanism.driven_by_slide else speed * self.size))
+
+    @property
+    def turning_rest(self) -> Real:
+        """Rotational speed up to which a link is at rest."""
+        return np.asarray(self.rest / self.size)
 
     def reference(self, joint: str) -> Complex:
         """The place of a joint in the reference, shape S."""

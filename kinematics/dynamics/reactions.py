@@ -33,6 +33,8 @@ class Reactions:
     ----------
     solved : bool
         Where the equations determine all reactions.
+    determined : bool
+        Where the loads are numbers: a spring whose ends meet has no direction. Elsewhere nothing is solved.
     condition : float
         Condition number of the equations.
     drive : float
@@ -48,6 +50,7 @@ class Reactions:
     """
 
     solved: Mask
+    determined: Mask
     condition: Real
     drive: Real
     joints: dict[str, dict[str, Complex]]
@@ -72,7 +75,7 @@ def reactions(machine: Machine, now: Places) -> Reactions:
     """All reactions of a machine at the positions of a motion."""
     mechanism, system = machine.mechanism, system_of(machine.mechanism)
     shape = now.smooth.shape
-    size = _size(now)
+    size = now.size
     efforts = efforts_of(machine, now)
     on_pins: dict[str, Complex] = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
     for effort in efforts:
@@ -85,6 +88,7 @@ def reactions(machine: Machine, now: Places) -> Reactions:
     joints = np.stack([jet[0] / size for jet in now.joints.values()]).reshape(len(mechanism.joints), -1)
     solutions = np.empty((known.shape[0], system.columns))
     conditions = np.empty(len(known))
+    determined: Mask = np.asarray(np.isfinite(known).all(axis=1))
     kernels.solve(
         system.terms,
         system.coefficients,
@@ -92,20 +96,23 @@ def reactions(machine: Machine, now: Places) -> Reactions:
         joints,
         directions,
         known,
-        now.smooth.ravel(),
+        now.smooth.ravel() & determined,
         solutions,
         conditions,
     )
     solutions[~(conditions < SINGULAR)] = np.nan
     unknowns = [column.reshape(shape) for column in solutions.T]
-    return _named(machine, now, system, efforts, on_pins, unknowns, conditions.reshape(shape), size)
-
-
-def _size(now: Places) -> Real:
-    """The size of the mechanism, shape S + (1,)."""
-    places = np.stack([now.reference(joint) for joint in now.mechanism.joints])
-    size = np.abs(places - places[:1]).max(axis=0)
-    return np.asarray(np.where(size > 0.0, size, 1.0))[..., None]
+    return _named(
+        machine,
+        now,
+        system,
+        efforts,
+        on_pins,
+        unknowns,
+        np.asarray(determined.reshape(shape)),
+        conditions.reshape(shape),
+        size,
+    )
 
 
 def _input_direction(now: Places) -> Complex:
@@ -161,6 +168,7 @@ def _named(
     efforts: list[Effort],
     on_pins: dict[str, Complex],
     unknowns: list[Real],
+    determined: Mask,
     condition: Real,
     size: Real,
 ) -> Reactions:
@@ -182,7 +190,7 @@ def _named(
     for joint, hub in system.hubs.items():
         joints[joint][hub] = on_hub[joint]
     force, moment = _on_ground(machine, now, efforts, joints, slides, gears, drive)
-    return Reactions(solved, condition, drive, joints, slides, gears, force, moment)
+    return Reactions(solved, determined, condition, drive, joints, slides, gears, force, moment)
 
 
 def _on_ground(

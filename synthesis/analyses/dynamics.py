@@ -13,18 +13,22 @@ from kinematics.dynamics.balance import Balance, balance
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
 from kinematics.dynamics.reactions import Reactions, reactions
-from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from synthesis.analyses.peaks import Peak, Samples, peaks
+from synthesis.mechanisms.courses import repeated_after
 from synthesis.mechanisms.machine import first_fixed, machine_of
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+from synthesis.model.loads import FULL_TURN
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 WHOLE = 1e-9
 """Share of a cycle by which a motion may miss it and be closed: rounding."""
+
+AGAIN = 1e-6
+"""Share of its peak by which the drive may differ at the ends of a cycle: rounding, magnified near a toggle."""
 
 NO_LOAD = 1e-6
 """Share of the largest part of a balance below which its sum is nothing that an error could be compared with."""
@@ -34,6 +38,7 @@ class Course(NamedTuple):
     """A machine driven to inputs: reactions, balances, and where it could be assembled."""
 
     valid: NDArray[np.bool_]
+    smooth: NDArray[np.bool_]
     speed: Real
     reactions: Reactions
     balance: Balance
@@ -46,13 +51,11 @@ def forces_of(
     machine, warnings = machine_of(block, mechanism, unit)
     course = _driven(machine, at, speed, acceleration)
     found, check = course.reactions, course.balance
-    closed = _closed(mechanism, at)
+    closed = _closed(mechanism, at, found.drive, repeated_after(block, mechanism))
     drive_peaks, extremes = _extremes(machine, course, at, acceleration, closed)
     about = first_fixed(mechanism) if block.moment_about is None else complex(*block.moment_about)
     reported = _reported(machine)
     power = found.drive * course.speed
-    with np.errstate(invalid="ignore"):
-        status = np.where(found.solved, "ok", np.where(course.valid, "dead_centre", "not_assembled"))
     return {
         "units": block.units,
         "length_unit": unit,
@@ -80,7 +83,7 @@ def forces_of(
             "shaking_moment": extremes["shaking moment"],
         },
         "power": {"peak": extremes["power"]["max"], "mean": _mean(power, closed)},
-        "status": status.tolist(),
+        "status": _status(course),
         "checks": _checks(found, check),
         "warnings": warnings,
     }
@@ -99,7 +102,7 @@ def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion) -
     if machine.mechanism.driven_by_slide:
         # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
         by_input = Places(machine.mechanism, _slowed(paced, machine.scale), machine.scale)
-    return Course(motion.valid, now.input[1], reactions(machine, now), balance(machine, now, by_input))
+    return Course(motion.valid, motion.smooth, now.input[1], reactions(machine, now), balance(machine, now, by_input))
 
 
 def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
@@ -121,14 +124,24 @@ def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
     )
 
 
-def _closed(mechanism: Mechanism, at: Real) -> bool:
-    """Whether the motion is a whole number of cycles, once round or more."""
-    if mechanism.driven_by_slide or len(at) < 3:
+def _status(course: Course) -> list[str]:
+    found = course.reactions
+    undetermined = course.valid & course.smooth & ~found.determined
+    reasons = [~course.valid, undetermined, ~found.solved]
+    return [str(status) for status in np.select(reasons, ["not_assembled", "load_undetermined", "dead_centre"], "ok")]
+
+
+def _closed(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:
+    """Whether the motion is a whole number of cycles of so many turns, and what drives it is again what it was."""
+    if mechanism.driven_by_slide or len(at) < 3 or not turns:
         return False
-    turns = abs(float(at[-1] - at[0])) / math.degrees(cycle(mechanism))
+    cycles = abs(float(at[-1] - at[0])) / (FULL_TURN * turns)
     steps = np.diff(at)
     even = float(np.ptp(steps)) <= WHOLE * float(np.abs(at[-1] - at[0]))
-    return round(turns) >= 1 and abs(turns - round(turns)) <= WHOLE * turns and even
+    whole = round(cycles) >= 1 and abs(cycles - round(cycles)) <= WHOLE * cycles
+    # A torsion spring that is wound up turn by turn has no cycle.
+    known = drive[np.isfinite(drive)]
+    return even and whole and len(known) > 0 and bool(abs(drive[-1] - drive[0]) <= AGAIN * _peak(known))
 
 
 def _mean(values: Real, closed: bool) -> float | None:

@@ -6,18 +6,23 @@ Everything is formed in the unit of the forces: in metres for SI, else in the le
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body, body, joined, slenderness_faults
-from kinematics.dynamics.loads import JointForce, Load, PointForce, Torque, constant
+from kinematics.dynamics.loads import JointForce, Load, PointForce, Resistance, Torque, TurningResistance
 from kinematics.dynamics.machine import Machine
-from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from kinematics.dynamics.springs import NO_LENGTH, Spring, TorsionSpring, rotation_near
+from kinematics.errors import MechanismError as KinematicsError
+from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
+from synthesis.mechanisms.courses import course_faults, course_of, gas_force, ground_slide, table_faults
 from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
 from synthesis.model.dynamics import DrivenSlide, DynamicsBlock, LengthUnit
 from synthesis.model.loads import StatedLoad
+from synthesis.model.springs import StatedSpring
 
 Fault = tuple[str, str]
 
@@ -69,7 +74,34 @@ def _faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
             yield f"/dynamics/loads/{n}/link", no_link
         if load.joint is not None and load.joint not in mechanism.joints:
             yield f"/dynamics/loads/{n}/joint", no_joint
+        yield from _course_faults(f"/dynamics/loads/{n}", load, mechanism)
+    for n, spring in enumerate(block.springs):
+        yield from _spring_faults(f"/dynamics/springs/{n}", spring, mechanism)
     yield from _drive_faults(block, mechanism)
+
+
+def _course_faults(path: str, load: StatedLoad, mechanism: Mechanism) -> Iterator[Fault]:
+    for name, course in (("force", load.force), ("torque", load.torque)):
+        if course is not None:
+            for below, detail in course_faults(course, mechanism):
+                yield f"{path}/{name}{below}", detail
+    gas = None if load.force is None else load.force.gas
+    if gas is not None:
+        yield from table_faults(np.array(gas.pressure), float(gas.cycle), f"{path}/force/gas/pressure")
+
+
+def _spring_faults(path: str, spring: StatedSpring, mechanism: Mechanism) -> Iterator[Fault]:
+    no_link = f"no link; they are {', '.join(mechanism.links)}"
+    if spring.ends is not None:
+        first, second = (end.link for end in spring.ends)
+        listed, between = [f"{path}/ends/0/link", f"{path}/ends/1/link"], f"{path}/ends"
+    else:
+        first, second = spring.links or ("", "")
+        listed, between = [f"{path}/links/0", f"{path}/links/1"], f"{path}/links"
+    missing = [place for place, link in zip(listed, (first, second), strict=True) if link not in mechanism.links]
+    yield from ((place, no_link) for place in missing)
+    if first == second:
+        yield between, f"a spring acts between two links; both of its ends are on {first}"
 
 
 def _drive_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
@@ -89,7 +121,7 @@ def machine_of(block: DynamicsBlock, mechanism: Mechanism, unit: LengthUnit) -> 
     Raises
     ------
     BlockError
-        For a shape that leaves no mass.
+        For a shape that leaves no mass, gas on no piston, or a spring without direction.
     """
     scale = block.scale(unit)
     reader = _Reader(mechanism, scale)
@@ -116,7 +148,10 @@ def machine_of(block: DynamicsBlock, mechanism: Mechanism, unit: LengthUnit) -> 
         bodies,
         {joint: np.asarray(mass) for joint, mass in masses.items()},
         0j if block.gravity is None else block.gravity.vector,
-        tuple(reader.load(load) for load in block.loads),
+        (
+            *(reader.load(f"/dynamics/loads/{n}", load) for n, load in enumerate(block.loads)),
+            *(reader.spring(f"/dynamics/springs/{n}", spring) for n, spring in enumerate(block.springs)),
+        ),
         scale * about,
         scale,
     )
@@ -140,6 +175,9 @@ class _Reader:
         """A place on a link, in the reference configuration."""
         if not isinstance(stated, PolarPlace):
             return self.scale * complex(*stated)
+        if len(self.mechanism.links[link]) < 2:
+            # A ground of slides has no line of its own: x is its direction.
+            return self.scale * (first_fixed(self.mechanism) + stated.vector)
         first, second = (complex(self.mechanism.joints[joint]) for joint in self.mechanism.links[link][:2])
         return self.scale * (first + stated.vector * (second - first) / abs(second - first))
 
@@ -185,15 +223,56 @@ class _Reader:
             in_plane=part.axis == "in_plane",
         )
 
-    def load(self, stated: StatedLoad) -> Load:
-        """A load of the analysis core."""
+    def load(self, path: str, stated: StatedLoad) -> Load:
+        """A load of the analysis core; ``path`` is its own below the request."""
         if stated.torque is not None:
-            return Torque(str(stated.link), constant(stated.torque.constant))
+            resisting, link = stated.torque.against_motion, str(stated.link)
+            if resisting is not None:
+                return TurningResistance(link, resisting.forward, resisting.backward)
+            return Torque(link, course_of(stated.torque, self.mechanism, self.scale))
         assert stated.force is not None
-        course = constant(complex(*stated.force.constant))
         if stated.joint is not None:
-            return JointForce(stated.joint, course)
+            resisting = stated.force.against_motion
+            if resisting is not None:
+                slide = ground_slide(self.mechanism, stated.joint)
+                return Resistance(stated.joint, resisting.forward, resisting.backward, slide)
+            if stated.force.gas is not None:
+                try:
+                    return gas_force(stated.force.gas, self.mechanism, stated.joint, self.scale)
+                except ValueError as error:
+                    raise BlockError(f"{path}/force/gas", str(error)) from None
+            return JointForce(stated.joint, course_of(stated.force, self.mechanism, self.scale))
         assert stated.link is not None
         assert stated.point is not None
         place = np.asarray(self.place(stated.link, stated.point))
+        course = course_of(stated.force, self.mechanism, self.scale)
         return PointForce(stated.link, place, course, stated.frame == "link")
+
+    def spring(self, path: str, stated: StatedSpring) -> Load:
+        """A spring of the analysis core; ``path`` is its own below the request."""
+        if stated.ends is None:
+            links = stated.links or (GROUND, GROUND)
+            rate, free = stated.torsion or 0.0, math.radians(stated.free_angle)
+            return TorsionSpring(links, rate, free, stated.damping, self._rotation(path, links))
+        first, second = (np.asarray(self.place(end.link, end.point)) for end in stated.ends)
+        size = self.scale * max(
+            abs(complex(a - b)) for a in self.mechanism.joints.values() for b in self.mechanism.joints.values()
+        )
+        if abs(complex(second - first)) <= NO_LENGTH * size and (stated.free_length > 0.0 or stated.preload != 0.0):
+            raise BlockError(f"{path}/ends", "both ends are at one place in the reference: the force has no direction")
+        return Spring(
+            (stated.ends[0].link, stated.ends[1].link),
+            (first, second),
+            stated.rate,
+            self.scale * stated.free_length,
+            stated.preload,
+            stated.damping,
+            stated.one_sided or None,
+        )
+
+    def _rotation(self, path: str, links: tuple[str, str]) -> Callable[[Real], Real]:
+        try:
+            period = math.inf if self.mechanism.driven_by_slide else cycle(self.mechanism)
+        except KinematicsError as error:
+            raise BlockError(path, f"how far the spring is wound cannot be told: {error}") from None
+        return rotation_near(self.mechanism, links, period)

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from synthesis.model.bodies import Name, PointMass, StatedBody
 from synthesis.model.loads import StatedLoad
+from synthesis.model.springs import StatedSpring
 from synthesis.model.statement import Degrees, NonNegative, Point, Statement
 
 LengthUnit = Literal["mm", "cm", "m", "in"]
@@ -48,6 +49,7 @@ class DynamicsBlock(Statement):
     bodies: dict[Name, StatedBody] = Field(default={}, max_length=20, description="By moving link.")
     point_masses: list[PointMass] = Field(default=[], max_length=40)
     loads: list[StatedLoad] = Field(default=[], max_length=50)
+    springs: list[StatedSpring] = Field(default=[], max_length=50, description="Springs and dampers between two links.")
     drive: Literal["torque"] | DrivenSlide | None = Field(
         default=None, description="What drives; it must be what the mechanism states."
     )

@@ -85,7 +85,7 @@ class BalanceChecks(Answer):
     )
 
 
-Status = Literal["ok", "not_assembled", "dead_centre"]
+Status = Literal["ok", "not_assembled", "dead_centre", "load_undetermined"]
 
 
 class DynamicsAnswer(Answer):

@@ -171,7 +171,7 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     """Sweep, and name what comes out."""
     length, *shape = inputs.shape
     flat = len(own), shape[-1]
-    moved = np.ascontiguousarray(inputs.reshape(length, *flat).swapaxes(0, 1))
+    moved = inputs.reshape(length, *flat).swapaxes(0, 1).copy()
     moved[:, 0] -= program.reference_input[own, None]
     given = _class_iii(mechanism, program, own, moved) if program.class_iii else np.empty((0, 0, 0, 0))
     points = np.empty((len(mechanism.joints), length, *flat), np.complex128)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinematics.dynamics import Body, JointForce, Load, Machine, Places, PointForce, Torque, constant
+from kinematics.dynamics.loads import Resistance, TurningResistance
+from kinematics.dynamics.springs import Spring, TorsionSpring
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 
@@ -29,7 +31,7 @@ def masses(rng: Rng, mechanism: Mechanism) -> tuple[dict[str, Body], dict[str, n
 
 
 def loads(rng: Rng, mechanism: Mechanism) -> tuple[Load, ...]:
-    """A force that turns with its link and one that does not, a force on a joint, a torque."""
+    """A force that turns with its link and one that does not, a force on a joint, a torque, and what resists."""
     moving = [link for link in mechanism.links if link != GROUND]
 
     def strength() -> complex:
@@ -44,13 +46,31 @@ def loads(rng: Rng, mechanism: Mechanism) -> tuple[Load, ...]:
         PointForce(str(links[1]), place(), constant(strength())),
         JointForce(str(rng.choice(list(mechanism.joints))), constant(strength())),
         Torque(str(links[2]), constant(strength().real)),
+        Resistance(str(rng.choice(list(mechanism.joints))), 3.0, 5.0),
+        TurningResistance(str(rng.choice(moving)), 2.0, 1.0),
+    )
+
+
+def springs(rng: Rng, mechanism: Mechanism) -> tuple[Load, ...]:
+    """A spring to the ground with a damper, one between two links that only pulls, and one that turns."""
+    moving = [link for link in mechanism.links if link != GROUND]
+
+    def place() -> np.ndarray:
+        return np.asarray(rng.normal(size=mechanism.shape) + 1j * rng.normal(size=mechanism.shape))
+
+    first, second = (str(link) for link in rng.choice([GROUND, *moving], size=2, replace=False))
+    return (
+        Spring((GROUND, str(rng.choice(moving))), (place(), place()), 5.0, 0.7, 0.4, 0.3),
+        Spring((first, second), (place(), place()), 8.0, 1.5, damping=0.2, one_sided="pull"),
+        TorsionSpring((first, second), 4.0, 0.2, 0.5),
     )
 
 
 def machine(rng: Rng, mechanism: Mechanism) -> Machine:
     """A machine of all sorts of masses and loads."""
     bodies, pin_masses = masses(rng, mechanism)
-    return Machine(mechanism, bodies, pin_masses, GRAVITY, loads(rng, mechanism), complex(*rng.normal(size=2)))
+    acting = (*loads(rng, mechanism), *springs(rng, mechanism))
+    return Machine(mechanism, bodies, pin_masses, GRAVITY, acting, complex(*rng.normal(size=2)))
 
 
 def moved(

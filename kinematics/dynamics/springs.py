@@ -1,0 +1,165 @@
+"""Springs and dampers between two links: along the line between two points, or against the links' relative rotation.
+
+For the reactions a spring is a pair of forces (or couples) that follow from its length and its rate of lengthening;
+for the balance of energy it takes its tension times the lengthening for a unit of the input, which needs no direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from kinematics.dynamics.loads import Effort
+from kinematics.dynamics.places import Places, dot
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import GROUND, Complex, Mechanism, Real
+
+NO_LENGTH = 1e-12
+"""Length of a spring, as a share of the mechanism's size, below which it has no direction: rounding."""
+
+FINE = 720
+"""Positions a turn at which a rotation is followed: between two of them no link turns half round, but at a toggle."""
+
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring with a damper beside it, between a place (reference) of one link and one of another.
+
+    Its tension is ``rate`` (L − ``free_length``) + ``preload`` + ``damping`` dL/dt. One that only pulls (or pushes)
+    bears nothing where the spring alone would push (pull), and its damper never turns the force round.
+    """
+
+    links: tuple[str, str]
+    places: tuple[Complex, Complex]
+    rate: float
+    free_length: float = 0.0
+    preload: float = 0.0
+    damping: float = 0.0
+    one_sided: Literal["pull", "push"] | None = None
+
+    def _span(self, places: Places) -> tuple[Complex, Complex]:
+        """From the first end to the second one, and its rate."""
+        first, second = (places.point(link, place) for link, place in zip(self.links, self.places, strict=True))
+        return np.asarray(second[0] - first[0]), np.asarray(second[1] - first[1])
+
+    def _tension(self, length: Real, lengthening: Real) -> Real:
+        spring = self.rate * (length - self.free_length) + self.preload
+        total = spring + self.damping * lengthening
+        if self.one_sided == "pull":
+            return np.where(spring > 0.0, np.maximum(total, 0.0), 0.0)
+        if self.one_sided == "push":
+            return np.where(spring < 0.0, np.minimum(total, 0.0), 0.0)
+        return np.asarray(total)
+
+    @property
+    def _through_zero(self) -> bool:
+        """Whether the force has a limit where both ends meet: it is the rate times the span, whatever its direction."""
+        return self.free_length == 0.0 and self.preload == 0.0 and self.damping == 0.0
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`kinematics.dynamics.loads.Load`; NaN where both ends meet and the force has no direction."""
+        span, rate = self._span(now)
+        length = np.abs(span)
+        met = length <= NO_LENGTH * now.size
+        with np.errstate(invalid="ignore"):  # complex NaN, where the mechanism cannot be assembled
+            unit = np.where(met, 0.0 if self._through_zero else np.nan, span / np.where(met, 1.0, length))
+        pull = np.asarray(self._tension(length, dot(unit, rate)) * unit, np.complex128)
+        none = np.zeros(())
+        return [
+            Effort(link, "", now.point(link, place)[0], sense * pull, none)
+            for link, place, sense in zip(self.links, self.places, (1.0, -1.0), strict=True)
+        ]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`kinematics.dynamics.loads.Load`: −tension × the lengthening, L' = (L²)' / 2 L."""
+        length = np.abs(self._span(now)[0])
+        span, by_input = self._span(paced)
+        safe = np.where(length > 0.0, length, 1.0)
+        lengthening = (span.real * by_input.real + span.imag * by_input.imag) / safe
+        return np.asarray(-self._tension(length, lengthening * now.input[1]) * lengthening)
+
+
+@dataclass(frozen=True)
+class TorsionSpring:
+    """A spring and a damper between two links that turn: −``rate`` (rotation − ``free``) − ``damping`` × its rate.
+
+    The rotation is that of the second link against the first one, from the reference, radians; the torque acts on the
+    second link, its opposite on the first. ``near`` gives the rotation at an input to within half a turn, where it may
+    be more than that; without it a rotation is taken between −π and π where a link's angle is known by its sine and
+    cosine only.
+    """
+
+    links: tuple[str, str]
+    rate: float
+    free: float = 0.0
+    damping: float = 0.0
+    near: Callable[[Real], Real] | None = None
+
+    def _torque(self, now: Places) -> Real:
+        first, second = (now.spins[link] for link in self.links)
+        rotation = second[0] - first[0]
+        if self.near is not None:
+            rotation = rotation + TURN * np.round((self.near(now.input[0]) - rotation) / TURN)
+        return np.asarray(-self.rate * (rotation - self.free) - self.damping * (second[1] - first[1]))
+
+    def efforts(self, now: Places) -> list[Effort]:
+        """See :class:`kinematics.dynamics.loads.Load`."""
+        torque, nowhere = self._torque(now), np.zeros((), np.complex128)
+        return [
+            Effort(link, "", nowhere, nowhere, sense * torque)
+            for link, sense in zip(self.links, (-1.0, 1.0), strict=True)
+        ]
+
+    def work(self, now: Places, paced: Places) -> Real:
+        """See :class:`kinematics.dynamics.loads.Load`."""
+        first, second = (paced.spins[link] for link in self.links)
+        return np.asarray(self._torque(now) * (second[1] - first[1]))
+
+
+def rotation_near(mechanism: Mechanism, links: tuple[str, str], period: float) -> Callable[[Real], Real]:
+    """The rotation of one link against another of one design, followed from the reference over the input.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        One design that a link drives, or a slide.
+    links : tuple of str
+        First and second link.
+    period : float
+        Input after which the mechanism repeats, radians; infinite where a slide drives.
+
+    Returns
+    -------
+    callable
+        Rotation by input, to within half a turn. Where the mechanism cannot be assembled it is that of the nearest
+        input towards the reference.
+    """
+    start = float(mechanism.reference_input)
+    if not np.isfinite(period):
+        # A link between toggles of a slide swings; that it would turn more than half round is told by no position.
+        return lambda input: np.zeros(input.shape)
+    count = round(FINE * period / TURN)
+    at = start + np.linspace(-period, period, 2 * count + 1)
+    angles = drive(mechanism, at, order=0).angles
+    turned = {
+        link: np.zeros(len(at)) if link == GROUND else angles[link][0] - float(mechanism.link_angle(link))
+        for link in links
+    }
+    rotation = turned[links[1]] - turned[links[0]]
+    for side in (rotation[count:], rotation[count::-1]):
+        step = np.diff(side, prepend=0.0)
+        step -= TURN * np.round(step / TURN)
+        side[:] = np.cumsum(np.where(np.isnan(step), 0.0, step))
+    wound = rotation[-1], rotation[0]
+
+    def near(input: Real) -> Real:
+        periods = np.trunc((input - start) / period)
+        within = np.interp(input - periods * period, at, rotation)
+        return np.asarray(within + np.where(periods > 0.0, periods * wound[0], -periods * wound[1]))
+
+    return near

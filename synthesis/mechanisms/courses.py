@@ -1,0 +1,173 @@
+"""Loads of the analysis core from stated ones: tables over the input, resistance, and gas on a piston.
+
+Tables are told in the units of a statement; courses take the core's input (radians, or metres along the input slide).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from kinematics.dynamics.loads import Course, JointForce
+from kinematics.errors import MechanismError as KinematicsError
+from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.drive import RealJet, drive
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
+from synthesis.model.dynamics import DynamicsBlock
+from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse
+
+Fault = tuple[str, str]
+
+CLOSES = 1e-9
+"""Share of a table's largest value by which its first and last rows may differ and be one."""
+
+STEPS = 360
+"""Positions of a turn between which a dead centre is found by Newton's method."""
+
+
+def turns_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> int:
+    """Turns of the input after which a table repeats."""
+    return course.turns or round(cycle(mechanism) / (2.0 * math.pi))
+
+
+def repeated_after(block: DynamicsBlock, mechanism: Mechanism) -> int:
+    """Turns of the input after which the mechanism and all its loads repeat; 0 where none do, or a slide drives."""
+    if mechanism.driven_by_slide:
+        return 0
+    try:
+        turns = [round(cycle(mechanism) / (2.0 * math.pi))]
+    except KinematicsError:
+        return 0
+    for load in block.loads:
+        course = load.force or load.torque
+        if course is not None and course.table is not None:
+            turns.append(turns_of(course, mechanism))
+        if load.force is not None and load.force.gas is not None:
+            turns.append(load.force.gas.cycle // round(FULL_TURN))
+    return math.lcm(*turns)
+
+
+def course_faults(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> Iterator[Fault]:
+    """What a table over the input contradicts: (path below the course, detail)."""
+    if course.table is None:
+        return
+    slide = mechanism.driven_by_slide
+    if slide != (course.by == "input_position"):
+        yield "/by", "a slide drives this mechanism" if slide else "the angle of a link drives this mechanism"
+        return
+    if slide:
+        if course.interpolation != "linear":
+            yield "/interpolation", "the place of a slide is not periodic; take linear"
+        if course.turns is not None:
+            yield "/turns", "a slide does not turn"
+        return
+    try:
+        period = FULL_TURN * turns_of(course, mechanism)
+    except KinematicsError as error:
+        yield "/turns", f"state it: {error}"
+        return
+    yield from table_faults(np.array(course.table), period, "/table")
+
+
+def table_faults(table: Real, period: float, path: str) -> Iterator[Fault]:
+    """A table that is longer than its period, or whose ends contradict each other."""
+    span = float(table[-1, 0] - table[0, 0])
+    if span > period:
+        yield path, f"the rows span {span:g}°, more than the {period:g}° after which they repeat"
+    elif span == period and (np.abs(table[-1, 1:] - table[0, 1:]) > CLOSES * np.abs(table[:, 1:]).max()).any():
+        yield path, "the last row is the first one a cycle on, and must be equal to it"
+
+
+def tabulated(table: Real, period: float, interpolation: Interpolation) -> Course:
+    """The course of a table over the absolute input angle (degrees), periodic; complex where it has two values."""
+    angles, values = table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
+    if angles[-1] - angles[0] < period:
+        angles, values = np.append(angles, angles[0] + period), np.append(values, values[0])
+    else:
+        values = np.append(values[:-1], values[0])
+    start = angles[0]
+    if interpolation == "linear":
+        return lambda input: np.interp(start + (np.degrees(input[0]) - start) % period, angles, values)
+    spline = CubicSpline(angles, values, bc_type="periodic")
+    return lambda input: np.asarray(spline(start + (np.degrees(input[0]) - start) % period))
+
+
+def along_slide(table: Real, scale: float) -> Course:
+    """The course of a table over the place of the input slide, in lengths of which ``scale`` is the core's unit."""
+    places, values = scale * table[:, 0], table[:, 1] if table.shape[1] == 2 else table[:, 1] + 1j * table[:, 2]
+    return lambda input: np.interp(input[0], places, values)
+
+
+def course_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism, scale: float) -> Course:
+    """The course of a stated table or constant."""
+    if course.table is not None:
+        table = np.array(course.table, np.float64)
+        if course.by == "input_position":
+            return along_slide(table, scale)
+        return tabulated(table, FULL_TURN * turns_of(course, mechanism), course.interpolation)
+    stated = course.constant
+    value = complex(*stated) if isinstance(stated, tuple) else float(stated or 0.0)
+    return lambda input: np.full(input.shape[1:], value)
+
+
+def ground_slide(mechanism: Mechanism, joint: str) -> int | None:
+    """The slide of the ground that carries a joint."""
+    return next((n for n, s in enumerate(mechanism.slides) if s.joint == joint and s.link == GROUND), None)
+
+
+def top_dead_centre(mechanism: Mechanism, slide: int) -> tuple[float, complex]:
+    """Input angle in [0, 2π) where a joint on a slide of the ground is farthest from the crank, and the way from there.
+
+    Raises
+    ------
+    ValueError
+        Where no crank turns through, or the joint does not move.
+    """
+    if mechanism.driven_by_slide:
+        raise ValueError("gas acts on a piston that a crank moves; a slide drives this mechanism")
+    name = mechanism.slide_names[slide]
+    at = 2.0 * math.pi * np.arange(STEPS) / STEPS
+    motion = drive(mechanism, at, order=0)
+    if not motion.valid.all():
+        raise ValueError("gas acts on a piston that a crank moves; the input does not turn through")
+    along = motion.slides[name][0]
+    line = mechanism.slides[slide]
+    direction = complex(np.exp(1j * line.angle))
+    pivot = complex(mechanism.joints[mechanism.input_pivot])
+    centre = ((pivot - complex(line.point)) * direction.conjugate()).real
+    outward = 1.0 if abs(along.max() - centre) >= abs(along.min() - centre) else -1.0
+    step = 2.0 * math.pi / STEPS
+    top = float(at[np.argmax(outward * along)])
+    for _ in range(4):
+        _, velocity, acceleration = drive(mechanism, [top], order=2).slides[name][:, 0]
+        if not np.isfinite(acceleration) or acceleration == 0.0:
+            break
+        top -= float(np.clip(velocity / acceleration, -step, step))
+    return top % (2.0 * math.pi), -outward * direction
+
+
+def gas_force(gas: GasPressure, mechanism: Mechanism, joint: str, scale: float) -> JointForce:
+    """Pressure times area on the pin of a joint.
+
+    Raises
+    ------
+    ValueError
+        Where the joint is not on a slide of the ground, or no crank moves it.
+    """
+    slide = ground_slide(mechanism, joint)
+    if slide is None:
+        raise ValueError(f"gas acts on a piston; the joint {joint} is on no slide of the ground")
+    top, way = top_dead_centre(mechanism, slide)
+    area = math.pi / 4.0 * (scale * gas.bore) ** 2
+    pressure = tabulated(np.array(gas.pressure, np.float64), float(gas.cycle), gas.interpolation)
+    phase = math.radians(gas.phase)
+
+    def force(input: RealJet) -> NDArray[np.complex128]:
+        sense = np.where(input[1] < 0.0, -1.0, 1.0)
+        return np.asarray(way * area * pressure(np.asarray([sense * (input[0] - top) + phase])), np.complex128)
+
+    return JointForce(joint, force)
