@@ -74,8 +74,9 @@ def _solved(task: Task, *, told: bool) -> _Run:
     result = solve(problem)
     wall, spent = time.perf_counter() - clock, time.process_time() - begun
     passed = [design for design in result.designs if design.verification.passed]
-    if told or not passed:
-        verdict = f"{len(passed)} designs" if passed else "NONE"
+    good = [design for design in passed if task.good(design)]
+    if told or not good:
+        verdict = f"{len(good)} designs" if good else "NONE"
         print(f"{task.number:>4} {task.group}: {verdict}, {spent:.2f} s CPU. {result.summary}", flush=True)
     broken = 0
     for n, design in enumerate(passed):
@@ -83,7 +84,7 @@ def _solved(task: Task, *, told: bool) -> _Run:
         broken += bool(faults)
         if faults:
             print(f"{task.number:>4} {task.group}: design {n} VIOLATES: {'; '.join(faults)}", flush=True)
-    return _Run(bool(passed), wall, spent, len(passed), broken)
+    return _Run(bool(good), wall, spent, len(passed), broken)
 
 
 def _line(name: str, runs: list[_Run]) -> str:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 Statement = dict[str, Any]
+
+
+def always(_design: Any) -> bool:
+    """What is demanded of a design beyond its checks where that is nothing."""
+    return True
 
 
 class Task(NamedTuple):
@@ -20,11 +26,14 @@ class Task(NamedTuple):
         What it counts with in the table.
     statement : dict
         As a client posts it.
+    good : callable
+        Whether a design of the answer counts as one.
     """
 
     number: int
     group: str
     statement: Statement
+    good: Callable[[Any], bool] = always
 
 
 def generator(seed: int, number: int) -> np.random.Generator:

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from benchmarks.fit.room import hulls, polygons
-from benchmarks.independent.drive import Complex, Drive
+from benchmarks.independent.drive import Complex, Drive, Real
 from benchmarks.independent.room import shape_of
 
 STEP = 0.05
@@ -73,6 +73,10 @@ def violations(statement: dict[str, Any], design: Any) -> list[str]:
                 broken.append(f"{name} {apart:.4g} from obstacle {n}")
     if frame is not None:
         broken += frame.missed(statement["positions"], design, slack)
+    elif statement["kind"] == "path":
+        broken += _missed_points(statement, design, drive, begin, slack)
+    else:
+        broken += _missed_pairs(statement["pairs"], design, drive, begin)
     return broken
 
 
@@ -81,6 +85,55 @@ def _range(drive: Drive, design: Any) -> tuple[float, float]:
     begin, end = (math.radians(angle) for angle in design.metrics.used_range)
     away = math.remainder(begin - drive.reference, math.tau)
     return away, away + end - begin
+
+
+def _at_targets(design: Any, drive: Drive, begin: float) -> tuple[Real, Complex | None]:
+    """Inputs at which targets are said to be met, radians, and all joints there; None where they are not reached."""
+    inputs = np.radians([target.input_angle for target in design.targets])
+    turns = begin + inputs - math.radians(design.metrics.used_range[0])
+    if not drive.follow(float(turns.min()), float(turns.max())):
+        return inputs, None
+    return inputs, drive.at(turns)
+
+
+def _missed_points(statement: dict[str, Any], design: Any, drive: Drive, begin: float, slack: float) -> list[str]:
+    """Points that P misses by more than is allowed or, without tolerances, told; and crank angles and order."""
+    inputs, at = _at_targets(design, drive, begin)
+    if at is None:
+        return ["cannot be driven to its targets"]
+    broken = []
+    for n, (point, place) in enumerate(zip(statement["points"], at[:, drive.names.index("P")], strict=True)):
+        gap = abs(complex(place) - complex(point["x"], point["y"]))
+        allowed = point.get("tolerance", design.targets[n].point_residual)
+        if gap > allowed + slack:
+            broken.append(f"point {n} missed by {gap:.4g}")
+    steps = np.diff(inputs)
+    if not (np.all(steps >= -ROUNDING) or np.all(steps <= ROUNDING)):
+        broken.append("points are not met in order")
+    if statement.get("timing") == "prescribed":
+        wanted = np.radians([point["crank_angle"] for point in statement["points"]])
+        off = (inputs - inputs[0]) - (wanted - wanted[0])
+        if np.abs(off - math.tau * np.round(off / math.tau)).max() > ROUNDING:
+            broken.append("points are not met at their crank angles")
+    return broken
+
+
+def _missed_pairs(pairs: list[dict[str, float]], design: Any, drive: Drive, begin: float) -> list[str]:
+    """Pairs that are missed by more than is told, read off the links themselves from the first pair on."""
+    inputs, at = _at_targets(design, drive, begin)
+    if at is None:
+        return ["cannot be driven to its targets"]
+    arm = at[:, drive.names.index("B")] - at[:, drive.names.index("O4")]
+    told = [target.error for target in design.targets]
+    scales = design.dials.input.scale, design.dials.output.scale
+    broken = []
+    for n, (pair, place) in enumerate(zip(pairs, arm, strict=True)):
+        turned = math.degrees(inputs[n] - inputs[0]) - scales[0] * (pair["input"] - pairs[0]["input"])
+        moved = math.degrees(cmath.phase(complex(place / arm[0]))) - scales[1] * (pair["output"] - pairs[0]["output"])
+        off = math.remainder(moved - (told[n] - told[0]), 360.0)
+        if max(abs(math.remainder(turned, 360.0)), abs(off)) > math.degrees(ROUNDING):
+            broken.append(f"pair {n} is off by {turned:.4g}° and {off:.4g}°")
+    return broken
 
 
 def _outside_zones(space: dict[str, Any], drive: Drive, frame: _Body | None, slack: float) -> list[str]:
