@@ -114,6 +114,8 @@ def warm_up() -> None:
         family.request.example().answer()
     for mechanism in (_SLIDER_CRANK, _CLASS_III):
         parse_request({"mechanism": mechanism, "dynamics": {}}).answer()
+    rubbing = {"friction": {"pins": {"B": {"mu": 0.1, "radius": 0.1}}}}
+    parse_request({"mechanism": _SLIDER_CRANK, "motion": {"at": 30.0}, "dynamics": rubbing}).answer()
 
 
 _SLIDER_CRANK = {

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kinematics.dynamics.friction import NO_RUBBING, Rubbing
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, cross, dot
 from kinematics.linkage.planar.drive import Jet
@@ -32,8 +33,12 @@ class Balance(NamedTuple):
     scale: Real
 
 
-def balance(machine: Machine, now: Places, paced: Places) -> Balance:
-    """The balances of a machine at positions ``now``, with ``paced`` the same at an input speed of 1."""
+def balance(machine: Machine, now: Places, paced: Places, rubbing: Rubbing = NO_RUBBING) -> Balance:
+    """The balances of a machine at positions ``now``, with ``paced`` the same at an input speed of 1.
+
+    What friction takes is the reactions' own (``rubbing``): no balance of energy knows it. Inside the mechanism it
+    leaves momentum as it is.
+    """
     q1, q2 = now.input[1], now.input[2]
     masses: list[tuple[Real, Jet]] = [
         (np.asarray(part.mass)[..., None], paced.point(link, part.cg)) for link, part in machine.bodies.items()
@@ -63,7 +68,7 @@ def balance(machine: Machine, now: Places, paced: Places) -> Balance:
         for effort in load.efforts(now):
             force = force + effort.force
             moment = moment + cross(effort.at - machine.about, effort.force) + effort.couple
-    parts = [inertia * q2, 0.5 * inertia_rate * q1**2, -weight, *(-work for work in works)]
+    parts = [inertia * q2, 0.5 * inertia_rate * q1**2, -weight, *(-work for work in works), -rubbing.work(paced)]
     return Balance(
         np.asarray(sum(parts)),
         force - momentum * q2 - momentum_rate * q1**2,

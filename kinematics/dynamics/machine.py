@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from kinematics.dynamics.bodies import Body
+from kinematics.dynamics.friction import Friction
 from kinematics.dynamics.loads import Load
 from kinematics.linkage.planar.mechanism import Mechanism, Real
 
@@ -25,6 +26,8 @@ class Machine:
         Acceleration of gravity.
     loads : tuple of Load
         Forces, torques, springs.
+    friction : Friction
+        Of pins and slides.
     about : complex
         Point about which the shaking moment is taken.
     """
@@ -36,3 +39,4 @@ class Machine:
     loads: tuple[Load, ...] = ()
     about: complex = 0j
     scale: float = 1.0
+    friction: Friction = field(default_factory=Friction)

@@ -8,11 +8,14 @@ which finds the drive and the shaking force by work and momentum.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics import kernels
+from kinematics.dynamics.friction import Rubbing, contacts_of, factors_of, still, wrenches
+from kinematics.dynamics.friction_kernels import solve_rubbing
 from kinematics.dynamics.loads import Effort
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, cross
@@ -45,6 +48,10 @@ class Reactions:
         Force of each slide's line on its pin, along the direction turned by +90°.
     gears : tuple of float
         Torque of each gear pair on its second link; −ratio times that acts on the first, the rest on the ground.
+    rubbing : Rubbing
+        Friction of each contact.
+    jammed : bool
+        Where friction leaves no solution, or several.
     shaking_force, shaking_moment
         Sum of all forces of the mechanism on the ground, and their moment about the machine's point, less the drive.
     """
@@ -58,6 +65,8 @@ class Reactions:
     gears: tuple[Real, ...]
     shaking_force: Complex
     shaking_moment: Real
+    rubbing: Rubbing
+    jammed: Mask
 
 
 def efforts_of(machine: Machine, now: Places) -> list[Effort]:
@@ -82,37 +91,65 @@ def reactions(machine: Machine, now: Places) -> Reactions:
         if effort.joint:
             on_pins[effort.joint] = on_pins[effort.joint] + effort.force
     known = _known(machine, now, system, efforts, on_pins, size)
-    directions = np.stack(
-        [*(1j * now.direction(n)[0] for n in range(len(mechanism.slides))), _input_direction(now)]
-    ).reshape(len(mechanism.slides) + 1, -1)
+    slides = len(mechanism.slides)
+    along = [now.direction(n)[0] for n in range(slides)]
+    directions = np.stack([*(1j * line for line in along), _input_direction(now), *along]).reshape(2 * slides + 1, -1)
     joints = np.stack([jet[0] / size for jet in now.joints.values()]).reshape(len(mechanism.joints), -1)
-    solutions = np.empty((known.shape[0], system.columns))
-    conditions = np.empty(len(known))
+    solutions, conditions = np.empty((known.shape[0], system.columns)), np.empty(len(known))
     determined: Mask = np.asarray(np.isfinite(known).all(axis=1))
-    kernels.solve(
-        system.terms,
-        system.coefficients,
-        system.bases,
-        joints,
-        directions,
-        known,
-        now.smooth.ravel() & determined,
-        solutions,
-        conditions,
-    )
-    solutions[~(conditions < SINGULAR)] = np.nan
-    unknowns = [column.reshape(shape) for column in solutions.T]
-    return _named(
-        machine,
-        now,
-        system,
-        efforts,
-        on_pins,
-        unknowns,
-        np.asarray(determined.reshape(shape)),
+    posed = now.smooth.ravel() & determined
+    jammed, stick = np.zeros(len(known), np.bool_), np.zeros(shape, np.bool_)
+    frictions = np.empty((0, len(known)))
+    equations = system.terms, system.coefficients, system.bases
+    contacts = contacts_of(mechanism, system, machine.friction)
+    if contacts:
+        columns = np.array([contact.columns for contact in contacts], np.int64)
+        factors = np.stack([np.broadcast_to(factors_of(c, now, size), shape) for c in contacts]).reshape(
+            len(contacts), -1
+        )
+        stick = np.logical_or.reduce([np.broadcast_to(still(c, now), shape) for c in contacts])
+        frictions = np.empty(factors.shape)
+        wrench = wrenches(contacts, mechanism, system, slides + 1)
+        solve_rubbing(
+            *equations,
+            *wrench,
+            columns,
+            factors,
+            joints,
+            directions,
+            known,
+            posed,
+            solutions,
+            conditions,
+            frictions,
+            jammed,
+        )
+    else:
+        kernels.solve(*equations, joints, directions, known, posed, solutions, conditions)
+    singular = ~(conditions < SINGULAR)
+    solutions[singular], frictions[:, singular], jammed[singular] = np.nan, np.nan, False
+    values = [
+        friction.reshape(shape) * (1.0 if c.slide >= 0 else size)
+        for c, friction in zip(contacts, frictions, strict=True)
+    ]
+    outcome = _Outcome(
+        [column.reshape(shape) for column in solutions.T],
         conditions.reshape(shape),
-        size,
+        np.asarray(determined.reshape(shape)),
+        np.asarray(jammed.reshape(shape)),
+        Rubbing(contacts, tuple(values), np.asarray(stick)),
     )
+    return _named(machine, now, system, efforts, on_pins, outcome, size)
+
+
+class _Outcome(NamedTuple):
+    """What the kernels have found, over positions of shape S + (N,)."""
+
+    unknowns: list[Real]
+    condition: Real
+    determined: Mask
+    jammed: Mask
+    rubbing: Rubbing
 
 
 def _input_direction(now: Places) -> Complex:
@@ -167,19 +204,18 @@ def _named(
     system: System,
     efforts: list[Effort],
     on_pins: dict[str, Complex],
-    unknowns: list[Real],
-    determined: Mask,
-    condition: Real,
+    outcome: _Outcome,
     size: Real,
 ) -> Reactions:
-    mechanism = machine.mechanism
-    solved = condition < SINGULAR
+    mechanism, unknowns = machine.mechanism, outcome.unknowns
+    solved = (outcome.condition < SINGULAR) & ~outcome.jammed
     slides = tuple(unknowns[system.slides_at : system.slides_at + len(mechanism.slides)])
     gears = tuple(size * torque for torque in unknowns[system.slides_at + len(slides) : system.columns - 1])
     drive = unknowns[-1] if mechanism.driven_by_slide else size[..., :] * unknowns[-1]
     on_hub = {joint: np.where(solved, force, np.nan) for joint, force in on_pins.items()}
-    for n, slide in enumerate(mechanism.slides):
-        on_hub[slide.joint] = on_hub[slide.joint] + slides[n] * 1j * now.direction(n)[0]
+    lines = _lines(now, slides, outcome.rubbing)
+    for slide, force in zip(mechanism.slides, lines, strict=True):
+        on_hub[slide.joint] = on_hub[slide.joint] + force
     if mechanism.driven_by_slide:
         on_hub[mechanism.input] = on_hub[mechanism.input] + drive * _input_direction(now)
     joints: dict[str, dict[str, Complex]] = {joint: {} for joint in mechanism.joints}
@@ -189,8 +225,29 @@ def _named(
         on_hub[joint] = on_hub[joint] - force
     for joint, hub in system.hubs.items():
         joints[joint][hub] = on_hub[joint]
-    force, moment = _on_ground(machine, now, efforts, joints, slides, gears, drive)
-    return Reactions(solved, determined, condition, drive, joints, slides, gears, force, moment)
+    force, moment = _on_ground(machine, now, efforts, joints, lines, gears, drive, outcome.rubbing)
+    return Reactions(
+        solved,
+        outcome.determined,
+        outcome.condition,
+        drive,
+        joints,
+        slides,
+        gears,
+        force,
+        moment,
+        outcome.rubbing,
+        outcome.jammed,
+    )
+
+
+def _lines(now: Places, slides: tuple[Real, ...], rubbing: Rubbing) -> list[Complex]:
+    """Force of each slide's line on its pin: normal force and friction."""
+    forces = [normal * 1j * now.direction(n)[0] for n, normal in enumerate(slides)]
+    for contact, friction in zip(rubbing.contacts, rubbing.frictions, strict=True):
+        if contact.slide >= 0:
+            forces[contact.slide] = forces[contact.slide] + friction * now.direction(contact.slide)[0]
+    return forces
 
 
 def _on_ground(
@@ -198,18 +255,22 @@ def _on_ground(
     now: Places,
     efforts: list[Effort],
     joints: dict[str, dict[str, Complex]],
-    slides: tuple[Real, ...],
+    lines: list[Complex],
     gears: tuple[Real, ...],
     drive: Real,
+    rubbing: Rubbing,
 ) -> tuple[Complex, Real]:
     """All that the mechanism does to the ground: force, and moment about the machine's point."""
     mechanism = machine.mechanism
     total = np.zeros(now.smooth.shape, np.complex128)
     moment = np.zeros(now.smooth.shape)
     pushes = [(now.joints[joint][0], on[GROUND]) for joint, on in joints.items() if GROUND in on]
-    for n, slide in enumerate(mechanism.slides):
+    for slide, force in zip(mechanism.slides, lines, strict=True):
         if slide.link == GROUND:
-            pushes.append((now.joints[slide.joint][0], -slides[n] * 1j * now.direction(n)[0]))
+            pushes.append((now.joints[slide.joint][0], -force))
+    for contact, friction in zip(rubbing.contacts, rubbing.frictions, strict=True):
+        if contact.slide < 0 and GROUND in (contact.link, contact.against):
+            moment = moment + (friction if contact.link == GROUND else -friction)
     if mechanism.driven_by_slide:
         pushes.append((now.joints[mechanism.input][0], -drive * _input_direction(now)))
     else:

@@ -42,6 +42,7 @@ class Course(NamedTuple):
     speed: Real
     reactions: Reactions
     balance: Balance
+    dissipated: Real
 
 
 def forces_of(
@@ -67,10 +68,11 @@ def forces_of(
             if joint in reported
         },
         "slides": [
-            {"joint": slide.joint, "normal": normal.tolist()}
-            for slide, normal in zip(mechanism.slides, found.slides, strict=True)
+            {"joint": slide.joint, "normal": normal.tolist(), "friction": friction.tolist()}
+            for slide, normal, friction in zip(mechanism.slides, found.slides, _slide_frictions(found), strict=True)
         ],
         "gears": [{"torque": torque.tolist()} for torque in found.gears],
+        **({} if block.friction is None else {"friction": _friction(course)}),
         "shaking": {
             "force": _series(found.shaking_force),
             "moment": found.shaking_moment.tolist(),
@@ -102,7 +104,10 @@ def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion) -
     if machine.mechanism.driven_by_slide:
         # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
         by_input = Places(machine.mechanism, _slowed(paced, machine.scale), machine.scale)
-    return Course(motion.valid, motion.smooth, now.input[1], reactions(machine, now), balance(machine, now, by_input))
+    found = reactions(machine, now)
+    check = balance(machine, now, by_input, found.rubbing)
+    taken = -found.rubbing.work(now)
+    return Course(motion.valid, motion.smooth, now.input[1], found, check, taken)
 
 
 def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
@@ -127,8 +132,35 @@ def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
 def _status(course: Course) -> list[str]:
     found = course.reactions
     undetermined = course.valid & course.smooth & ~found.determined
-    reasons = [~course.valid, undetermined, ~found.solved]
-    return [str(status) for status in np.select(reasons, ["not_assembled", "load_undetermined", "dead_centre"], "ok")]
+    reasons = {
+        "not_assembled": ~course.valid,
+        "load_undetermined": undetermined,
+        "friction_jam": found.jammed,
+        "dead_centre": ~found.solved,
+        "stick": np.broadcast_to(found.rubbing.stick, course.valid.shape),
+    }
+    return [str(status) for status in np.select(list(reasons.values()), list(reasons), "ok")]
+
+
+def _slide_frictions(found: Reactions) -> list[Real]:
+    """Friction of each slide's line on its pin, along the slide's direction."""
+    frictions = [0.0 * normal for normal in found.slides]
+    for contact, friction in zip(found.rubbing.contacts, found.rubbing.frictions, strict=True):
+        if contact.slide >= 0:
+            frictions[contact.slide] = friction
+    return frictions
+
+
+def _friction(course: Course) -> dict[str, Any]:
+    pins: dict[str, dict[str, Real]] = {}
+    for contact, friction in zip(course.reactions.rubbing.contacts, course.reactions.rubbing.frictions, strict=True):
+        if contact.slide < 0:
+            on = pins.setdefault(contact.joint, {})
+            on[contact.link] = on.get(contact.link, 0.0) + friction
+            on[contact.against] = on.get(contact.against, 0.0) - friction
+    listed = {joint: {link: moment.tolist() for link, moment in on.items()} for joint, on in pins.items()}
+    lost = np.where(course.reactions.solved, course.dissipated, np.nan)
+    return {"pins": listed, "power": lost.tolist()}
 
 
 def _closed(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinematics.dynamics import shapes
 from kinematics.dynamics.bodies import Body, body, joined, slenderness_faults
+from kinematics.dynamics.friction import Friction, rubbing_joints
 from kinematics.dynamics.loads import JointForce, Load, PointForce, Resistance, Torque, TurningResistance
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.springs import NO_LENGTH, Spring, TorsionSpring, rotation_near
@@ -77,7 +78,23 @@ def _faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
         yield from _course_faults(f"/dynamics/loads/{n}", load, mechanism)
     for n, spring in enumerate(block.springs):
         yield from _spring_faults(f"/dynamics/springs/{n}", spring, mechanism)
+    yield from _friction_faults(block, mechanism)
     yield from _drive_faults(block, mechanism)
+
+
+def _friction_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
+    if block.friction is None:
+        return
+    rubbing = rubbing_joints(mechanism)
+    for joint in block.friction.pins:
+        if joint not in rubbing:
+            yield f"/dynamics/friction/pins/{token(joint)}", f"nothing turns there; pins are {', '.join(rubbing)}"
+    for slide in block.friction.slides:
+        if int(slide) >= len(mechanism.slides):
+            yield (
+                f"/dynamics/friction/slides/{slide}",
+                f"the mechanism has {len(mechanism.slides)} slides, counted from 0",
+            )
 
 
 def _course_faults(path: str, load: StatedLoad, mechanism: Mechanism) -> Iterator[Fault]:
@@ -154,8 +171,17 @@ def machine_of(block: DynamicsBlock, mechanism: Mechanism, unit: LengthUnit) -> 
         ),
         scale * about,
         scale,
+        _friction(block, scale),
     )
     return machine, warnings
+
+
+def _friction(block: DynamicsBlock, scale: float) -> Friction:
+    stated = block.friction
+    if stated is None:
+        return Friction()
+    pins = {joint: (pin.mu, scale * pin.radius) for joint, pin in stated.pins.items() if pin.mu > 0.0}
+    return Friction(pins, {int(slide): mu for slide, mu in stated.slides.items() if mu > 0.0})
 
 
 def first_fixed(mechanism: Mechanism) -> complex:

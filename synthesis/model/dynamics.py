@@ -11,7 +11,7 @@ from pydantic import Field
 from synthesis.model.bodies import Name, PointMass, StatedBody
 from synthesis.model.loads import StatedLoad
 from synthesis.model.springs import StatedSpring
-from synthesis.model.statement import Degrees, NonNegative, Point, Statement
+from synthesis.model.statement import Degrees, NonNegative, Point, PositiveLength, Statement
 
 LengthUnit = Literal["mm", "cm", "m", "in"]
 
@@ -37,6 +37,23 @@ class DrivenSlide(Statement):
     slide: Annotated[int, Field(strict=True, ge=0, le=9)]
 
 
+Coefficient = Annotated[float, Field(strict=True, ge=0.0, le=1.5, allow_inf_nan=False)]
+
+
+class PinFriction(Statement):
+    """Coulomb friction at a pin: coefficient and radius."""
+
+    mu: Coefficient
+    radius: PositiveLength
+
+
+class StatedFriction(Statement):
+    """Coulomb friction at pins by joint, and at slides by their number in the skeleton."""
+
+    pins: dict[Name, PinFriction] = Field(default={}, max_length=40)
+    slides: dict[Annotated[str, Field(pattern="^[0-9]$")], Coefficient] = Field(default={}, max_length=10)
+
+
 class DynamicsBlock(Statement):
     """What a linkage weighs and carries, and which forces are wanted."""
 
@@ -50,6 +67,7 @@ class DynamicsBlock(Statement):
     point_masses: list[PointMass] = Field(default=[], max_length=40)
     loads: list[StatedLoad] = Field(default=[], max_length=50)
     springs: list[StatedSpring] = Field(default=[], max_length=50, description="Springs and dampers between two links.")
+    friction: StatedFriction | None = None
     drive: Literal["torque"] | DrivenSlide | None = Field(
         default=None, description="What drives; it must be what the mechanism states."
     )

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer
+from synthesis.model.answer import Answer, optional
 from synthesis.model.dimension import FORCE, LENGTH, OUTPUT, Dimension
 
 Series = list[float | None]
@@ -26,12 +26,22 @@ class SlideForces(Answer):
     normal: Annotated[Series, FORCE] = Field(
         description="Along the slide's direction turned by +90°; the opposite acts on the line's link."
     )
+    friction: Annotated[Series, FORCE] = Field(description="Along the slide's direction.")
 
 
 class GearTorques(Answer):
     """The torque that a gear pair puts on its second link; −ratio times that acts on the first."""
 
     torque: Annotated[Series, Dimension.TORQUE]
+
+
+class Rubbing(Answer):
+    """Friction of the pins, and what all friction takes."""
+
+    pins: dict[str, dict[str, Annotated[Series, Dimension.TORQUE]]] = Field(
+        description="Moment of each pin's friction on each of its links; a slide's block hands it to the line's link."
+    )
+    power: Series = Field(description="Power lost, never negative.")
 
 
 class Shaking(Answer):
@@ -85,11 +95,11 @@ class BalanceChecks(Answer):
     )
 
 
-Status = Literal["ok", "not_assembled", "dead_centre", "load_undetermined"]
+Status = Literal["ok", "not_assembled", "dead_centre", "load_undetermined", "stick", "friction_jam"]
 
 
 class DynamicsAnswer(Answer):
-    """Forces over the motion, in the units of the request; null where `status` is not `ok`."""
+    """Forces over the motion, in the units of the request; null where `status` is neither `ok` nor `stick`."""
 
     units: Literal["si", "consistent"]
     length_unit: Literal["mm", "cm", "m", "in"] = Field(
@@ -100,6 +110,7 @@ class DynamicsAnswer(Answer):
     joints: dict[str, dict[str, ForceSeries]] = Field(description="Force of each joint's pin on each of its links.")
     slides: list[SlideForces]
     gears: list[GearTorques]
+    friction: Rubbing | None = optional("If the request states `friction`.")
     shaking: Shaking
     extremes: Extremes
     power: Power

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinematics.dynamics import Body, JointForce, Load, Machine, Places, PointForce, Torque, constant
+from kinematics.dynamics.friction import Friction, rubbing_joints
 from kinematics.dynamics.loads import Resistance, TurningResistance
 from kinematics.dynamics.springs import Spring, TorsionSpring
 from kinematics.linkage.planar.drive import drive
@@ -71,6 +74,13 @@ def machine(rng: Rng, mechanism: Mechanism) -> Machine:
     bodies, pin_masses = masses(rng, mechanism)
     acting = (*loads(rng, mechanism), *springs(rng, mechanism))
     return Machine(mechanism, bodies, pin_masses, GRAVITY, acting, complex(*rng.normal(size=2)))
+
+
+def rubbing(rng: Rng, whole: Machine) -> Machine:
+    """The same machine with friction at all pins and slides."""
+    pins = {joint: (float(rng.uniform(0.05, 0.3)), 0.05) for joint in rubbing_joints(whole.mechanism)}
+    slides = {n: float(rng.uniform(0.05, 0.2)) for n in range(len(whole.mechanism.slides))}
+    return replace(whole, friction=Friction(pins, slides))
 
 
 def moved(

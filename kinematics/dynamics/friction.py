@@ -1,0 +1,132 @@
+"""Coulomb friction at pins and slides: what rubs on what, and what it takes from the motion.
+
+A pin's moment on a link is −sign(ω) μ r |F|, ω the link's speed against the hub (the first link that the mechanism
+names there; of a pin on a slide the block, which turns with the line), F the pin's force on it. A slide's force on its
+pin is −sign(v) μ |N| along the line (Norton, *Design of Machinery*, eq. 11.6c, 11.10e; a coefficient whose sign is set
+against the velocity alone would push along the motion where N < 0). At rest friction is not determined and counts as
+nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.kernels import ALONG, TORQUE
+from kinematics.dynamics.places import Places
+from kinematics.dynamics.system import System
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coefficient and radius by joint, and the coefficient by the number of a slide."""
+
+    pins: dict[str, tuple[float, float]] = field(default_factory=dict)
+    slides: dict[int, float] = field(default_factory=dict)
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.pins or self.slides)
+
+
+class Contact(NamedTuple):
+    """What rubs: a link on ``against`` at a joint, by a moment; or, with ``slide``, the pin along a slide's line.
+
+    Friction is ``lever`` times the norm of the unknowns in ``columns`` (−1: none).
+    """
+
+    joint: str
+    link: str
+    against: str
+    slide: int
+    columns: tuple[int, int]
+    lever: float
+
+
+class Rubbing(NamedTuple):
+    """Friction of each contact at all positions, shape S + (N,), and where one stands still."""
+
+    contacts: tuple[Contact, ...]
+    frictions: tuple[Real, ...]
+    stick: NDArray[np.bool_]
+
+    def work(self, places: Places) -> Real:
+        """Work for a unit of time, or of the input where ``places`` are paced by it."""
+        total = np.zeros(places.smooth.shape)
+        for contact, friction in zip(self.contacts, self.frictions, strict=True):
+            total = total + friction * speed_of(contact, places)
+        return total
+
+
+NO_RUBBING = Rubbing((), (), np.zeros((), np.bool_))
+
+
+def rubbing_joints(mechanism: Mechanism) -> list[str]:
+    """Joints at which something turns on a pin."""
+    return [
+        joint
+        for joint in mechanism.joints
+        if sum(joint in listed for listed in mechanism.links.values()) > 1
+        or any(slide.joint == joint for slide in mechanism.slides)
+    ]
+
+
+def contacts_of(mechanism: Mechanism, system: System, friction: Friction) -> tuple[Contact, ...]:
+    """All contacts of a mechanism."""
+    found = []
+    for joint, (coefficient, radius) in friction.pins.items():
+        hub, lever = system.hubs[joint], coefficient * radius
+        for n, (at, link) in enumerate(system.pins):
+            if at == joint:
+                found.append(Contact(joint, link, hub, -1, (2 * n, 2 * n + 1), lever))
+        for n, slide in enumerate(mechanism.slides):
+            if slide.joint == joint:
+                # The block carries what the line does to it, its friction too.
+                whole = lever * float(np.hypot(1.0, friction.slides.get(n, 0.0)))
+                found.append(Contact(joint, hub, slide.link, -1, (system.slides_at + n, -1), whole))
+    for n, coefficient in friction.slides.items():
+        slide = mechanism.slides[n]
+        found.append(
+            Contact(slide.joint, system.hubs[slide.joint], slide.link, n, (system.slides_at + n, -1), coefficient)
+        )
+    return tuple(found)
+
+
+def speed_of(contact: Contact, places: Places) -> Real:
+    """Speed of a contact: of the link against the other one, or along the slide."""
+    if contact.slide >= 0:
+        return np.asarray(places.slides[contact.slide][1])
+    return np.asarray(places.spins[contact.link][1] - places.spins[contact.against][1])
+
+
+def still(contact: Contact, places: Places) -> NDArray[np.bool_]:
+    """Where a contact stands still."""
+    rest = places.rest if contact.slide >= 0 else places.turning_rest
+    return np.asarray(np.abs(speed_of(contact, places)) <= rest)
+
+
+def factors_of(contact: Contact, places: Places, size: Real) -> Real:
+    """Friction for a unit of the norm, against the motion; moments over the mechanism's size."""
+    lever = contact.lever / (1.0 if contact.slide >= 0 else size)
+    sense = np.where(still(contact, places), 0.0, -np.sign(speed_of(contact, places)))
+    return np.asarray(lever * sense)
+
+
+def wrenches(
+    contacts: tuple[Contact, ...], mechanism: Mechanism, system: System, tangent: int
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The contacts' terms, a column each, as :mod:`system` has them; ``tangent``: direction of the first slide."""
+    numbers = {link: n for n, link in enumerate(system.moving)}
+    joints = {joint: n for n, joint in enumerate(mechanism.joints)}
+    terms, coefficients = [], []
+    for column, contact in enumerate(contacts):
+        kind, direction = (ALONG, tangent + contact.slide) if contact.slide >= 0 else (TORQUE, -1)
+        for link, sense in ((contact.link, 1.0), (contact.against, -1.0)):
+            if link != GROUND:
+                terms.append((kind, column, numbers[link], joints[contact.joint], direction))
+                coefficients.append(sense)
+    return np.array(terms, np.int64).reshape(-1, 5), np.array(coefficients, np.float64)

@@ -1,0 +1,236 @@
+"""Reactions with Coulomb friction at each position: compiled.
+
+With A x = b the frictionless equations, y the friction of each contact and W their wrenches on the links,
+A x = b − W y, so that x = x₀ − V y with A V = W. Friction is y_e = c_e ‖x on the columns of contact e‖, where c_e has
+the coefficient and the sign against the motion: a fixed point of as many unknowns as there are contacts. It is found by
+iteration from the frictionless answer, and where that does not converge by Newton's method with halved steps.
+
+Where K_ef = |c_e| ‖V_f on the columns of e‖ has a spectral radius below 1 the iteration is a contraction and the
+solution is the only one. Elsewhere Newton's method starts from far out in all directions too. No solution, or a second
+one, is a jam: the parts wedge, and what moves them is not determined by the motion.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from kinematics.dynamics.kernels import OPTIONS, Complex, Real, Rows, factor, fill, forward, inverse_norm, norm_of
+
+PASSES = 200
+"""Steps of the iteration, and of Newton's method, at most."""
+
+CONVERGED = 1e-12
+"""Change of friction, as a share of it, at which it has converged."""
+
+HALVED = 30
+"""Halvings of a step of Newton's method at most."""
+
+FAR = 1e3
+"""How far out Newton's method starts, as a multiple of the friction of the frictionless forces."""
+
+APART = 1e-6
+"""Share by which two solutions differ if they are two."""
+
+POWERS = 30
+"""Steps of the power iteration that bounds the spectral radius."""
+
+
+@njit(**OPTIONS)
+def solve_rubbing(
+    terms: Rows,
+    coefficients: Real,
+    bases: Rows,
+    contact_terms: Rows,
+    contact_coefficients: Real,
+    columns: Rows,
+    factors: Real,
+    joints: Complex,
+    directions: Complex,
+    known: Real,
+    smooth: NDArray[np.bool_],
+    solutions: Real,
+    conditions: Real,
+    frictions: Real,
+    jammed: NDArray[np.bool_],
+) -> None:
+    """Solve at all positions; beside :func:`kinematics.dynamics.kernels.solve`'s
+
+    contact_terms, contact_coefficients
+        Wrenches of the contacts, as terms of E columns.
+    columns : int, shape (E, 2)
+        Columns whose norm the friction of a contact goes with; −1: none.
+    factors : float, shape (E, M)
+        Friction for a unit of that norm, with its sign.
+    frictions : float, shape (E, M)
+        Filled: friction of each contact; NaN where there is no solution.
+    jammed : bool, shape (M,)
+        Filled: no solution, or more than one.
+    """
+    count, n = known.shape
+    contacts = len(columns)
+    matrix, order, work = np.empty((n, n)), np.empty(n, np.int64), np.empty((3, n))
+    wrenches, answers = np.empty((n, contacts)), np.empty((contacts, n))
+    free, y, other = np.empty(n), np.empty(contacts), np.empty(contacts)
+    for at in range(count):
+        solutions[at] = np.nan
+        frictions[:, at] = np.nan
+        conditions[at] = np.inf
+        jammed[at] = False
+        if not smooth[at]:
+            continue
+        matrix[:] = 0.0
+        wrenches[:] = 0.0
+        fill(terms, coefficients, bases, joints, directions, at, matrix)
+        fill(contact_terms, contact_coefficients, bases, joints, directions, at, wrenches)
+        norm = norm_of(matrix)
+        if not factor(matrix, order):
+            continue
+        conditions[at] = norm * inverse_norm(matrix, order, work)
+        free[:] = known[at]
+        forward(matrix, order, free)
+        for e in range(contacts):
+            answers[e] = wrenches[:, e]
+            forward(matrix, order, answers[e])
+        y[:] = 0.0
+        found = iterate(free, answers, columns, factors[:, at], y)
+        if not found:
+            y[:] = 0.0
+            found = newton(free, answers, columns, factors[:, at], y)
+        if found and not contracts(answers, columns, factors[:, at]):
+            found = only(free, answers, columns, factors[:, at], y, other)
+        jammed[at] = not found
+        if not found:
+            continue
+        for row in range(n):
+            total = free[row]
+            for e in range(contacts):
+                total -= answers[e, row] * y[e]
+            solutions[at, row] = total
+        frictions[:, at] = y
+
+
+@njit(**OPTIONS)
+def norm_at(free: Real, answers: Real, pair: Rows, y: Real) -> tuple[float, float, float]:
+    """The norm on the columns of a contact, and its two components."""
+    one, two = free[pair[0]], 0.0
+    for f in range(len(y)):
+        one -= answers[f, pair[0]] * y[f]
+    if pair[1] >= 0:
+        two = free[pair[1]]
+        for f in range(len(y)):
+            two -= answers[f, pair[1]] * y[f]
+    return math.hypot(one, two), one, two
+
+
+@njit(**OPTIONS)
+def iterate(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
+    """The fixed point from y on, in place; whether it has converged."""
+    fresh = np.empty_like(y)
+    for _ in range(PASSES):
+        change, size = 0.0, 0.0
+        for e in range(len(y)):
+            fresh[e] = factors[e] * norm_at(free, answers, columns[e], y)[0]
+        for e in range(len(y)):
+            change = max(change, abs(fresh[e] - y[e]))
+            size = max(size, abs(fresh[e]))
+            y[e] = fresh[e]
+        if not math.isfinite(size):
+            return False
+        if change <= CONVERGED * size:
+            return True
+    return False
+
+
+@njit(**OPTIONS)
+def missing(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, out: Real) -> float:
+    """y less the friction of the forces that y gives, and its largest magnitude."""
+    largest = 0.0
+    for e in range(len(y)):
+        out[e] = y[e] - factors[e] * norm_at(free, answers, columns[e], y)[0]
+        largest = max(largest, abs(out[e]))
+    return largest
+
+
+@njit(**OPTIONS)
+def newton(free: Real, answers: Real, columns: Rows, factors: Real, y: Real) -> bool:
+    """A solution by Newton's method with halved steps, from y on in place; whether it has converged."""
+    contacts = len(y)
+    jacobian, order = np.empty((contacts, contacts)), np.empty(contacts, np.int64)
+    step, trial, rest = np.empty(contacts), np.empty(contacts), np.empty(contacts)
+    error = missing(free, answers, columns, factors, y, step)
+    for _ in range(PASSES):
+        size = 0.0
+        for e in range(contacts):
+            size = max(size, abs(y[e]))
+        if error <= CONVERGED * size or error == 0.0:
+            return True
+        for e in range(contacts):
+            norm, one, two = norm_at(free, answers, columns[e], y)
+            for f in range(contacts):
+                slope = 0.0
+                if norm > 0.0:
+                    slope = one * answers[f, columns[e, 0]]
+                    if columns[e, 1] >= 0:
+                        slope += two * answers[f, columns[e, 1]]
+                    slope *= -factors[e] / norm
+                jacobian[e, f] = (1.0 if e == f else 0.0) - slope
+        if not factor(jacobian, order):
+            return False
+        forward(jacobian, order, step)
+        share = 1.0
+        for _ in range(HALVED):
+            for e in range(contacts):
+                trial[e] = y[e] - share * step[e]
+            fresh = missing(free, answers, columns, factors, trial, rest)
+            if fresh < error:
+                break
+            share *= 0.5
+        if not fresh < error:
+            return False
+        y[:] = trial
+        step[:] = rest
+        error = fresh
+    return False
+
+
+@njit(**OPTIONS)
+def contracts(answers: Real, columns: Rows, factors: Real) -> bool:
+    """Whether the iteration is a contraction: the spectral radius of K is below 1 (Collatz and Wielandt's bound)."""
+    contacts = len(columns)
+    z, image = np.ones(contacts), np.empty(contacts)
+    for _ in range(POWERS):
+        bound = 0.0
+        for e in range(contacts):
+            # A trace of z keeps the bound a bound where K has rows of zeros.
+            total = 1e-3 * z[e]
+            for f in range(contacts):
+                two = answers[f, columns[e, 1]] if columns[e, 1] >= 0 else 0.0
+                total += abs(factors[e]) * math.hypot(answers[f, columns[e, 0]], two) * z[f]
+            image[e] = total
+            bound = max(bound, total / z[e])
+        if bound < 1.0:
+            return True
+        z[:] = image / image.max()
+    return False
+
+
+@njit(**OPTIONS)
+def only(free: Real, answers: Real, columns: Rows, factors: Real, y: Real, other: Real) -> bool:
+    """Whether Newton's method from far out, along each axis and its opposite, finds no other solution than y."""
+    contacts = len(y)
+    reach = 0.0
+    for e in range(contacts):
+        reach = max(reach, abs(factors[e]) * norm_at(free, answers, columns[e], 0.0 * y)[0], abs(y[e]))
+    for e in range(contacts):
+        for sense in (-1.0, 1.0):
+            other[:] = y
+            other[e] += sense * FAR * reach
+            if newton(free, answers, columns, factors, other):
+                for f in range(contacts):
+                    if abs(other[f] - y[f]) > APART * reach:
+                        return False
+    return True
