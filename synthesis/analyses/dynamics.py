@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -10,25 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.dynamics.balance import Balance, balance
+from kinematics.dynamics.force_index import joint_force_index
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places
-from kinematics.dynamics.reactions import Reactions, reactions
+from kinematics.dynamics.reactions import SINGULAR, Reactions, reactions
 from kinematics.linkage.planar.drive import MechanismMotion, drive
 from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.analyses.cyclic import closes, flywheel_of, harmonics_of, mean, rms
 from synthesis.analyses.peaks import Peak, Samples, peaks
 from synthesis.mechanisms.courses import repeated_after
 from synthesis.mechanisms.machine import first_fixed, machine_of
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit
-from synthesis.model.loads import FULL_TURN
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-WHOLE = 1e-9
-"""Share of a cycle by which a motion may miss it and be closed: rounding."""
-
-AGAIN = 1e-6
-"""Share of its peak by which the drive may differ at the ends of a cycle: rounding, magnified near a toggle."""
+HIGH_INDEX = 2.0
+"""Joint force index above which a client is warned (Norton, Sec. 11.12)."""
 
 NO_LOAD = 1e-6
 """Share of the largest part of a balance below which its sum is nothing that an error could be compared with."""
@@ -43,6 +40,7 @@ class Course(NamedTuple):
     reactions: Reactions
     balance: Balance
     dissipated: Real
+    force_index: Real | None
 
 
 def forces_of(
@@ -50,18 +48,50 @@ def forces_of(
 ) -> dict[str, Any]:
     """The answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
     machine, warnings = machine_of(block, mechanism, unit)
-    course = _driven(machine, at, speed, acceleration)
+    indexed = block.reports("joint_force_index")
+    course = _driven(machine, at, speed, acceleration, indexed)
     found, check = course.reactions, course.balance
-    closed = _closed(mechanism, at, found.drive, repeated_after(block, mechanism))
+    closed = closes(mechanism, at, found.drive, repeated_after(block, mechanism))
     drive_peaks, extremes = _extremes(machine, course, at, acceleration, closed)
-    about = first_fixed(mechanism) if block.moment_about is None else complex(*block.moment_about)
     reported = _reported(machine)
     power = found.drive * course.speed
-    return {
-        "units": block.units,
-        "length_unit": unit,
-        "drive": found.drive.tolist(),
-        "virtual_work_drive": np.where(found.solved, check.drive, np.nan).tolist(),
+    answer: dict[str, Any] = {"units": block.units, "length_unit": unit}
+    if block.reports("drive"):
+        answer["drive"] = found.drive.tolist()
+        answer["virtual_work_drive"] = np.where(found.solved, check.drive, np.nan).tolist()
+    if block.reports("joint_forces"):
+        answer |= _joint_forces(machine, course, reported, block.friction is not None)
+    if block.reports("shaking"):
+        about = first_fixed(mechanism) if block.moment_about is None else complex(*block.moment_about)
+        answer["shaking"] = {
+            "force": _series(found.shaking_force),
+            "moment": found.shaking_moment.tolist(),
+            "about": (about.real, about.imag),
+        }
+    answer |= {
+        "extremes": {
+            "drive": drive_peaks | {"mean": mean(found.drive, closed), "rms": rms(found.drive, closed)},
+            "joints": {joint: extremes[f"joint {joint}"] for joint in reported},
+            "shaking_force": extremes["shaking force"],
+            "shaking_moment": extremes["shaking moment"],
+        },
+        "power": {"peak": extremes["power"]["max"], "mean": mean(power, closed)},
+    }
+    if block.reports("flywheel"):
+        answer["flywheel"] = flywheel_of(found.drive, at, float(speed[0]), closed, block.flywheel)
+    if block.reports("harmonics"):
+        answer["harmonics"] = harmonics_of(found, at, closed)
+    if course.force_index is not None:
+        answer["joint_force_index"] = course.force_index.tolist()
+        answer["max_joint_force_index"], told = _largest_index(course, extremes)
+        warnings = warnings + told
+    return answer | {"status": _status(course), "checks": _checks(found, check), "warnings": warnings}
+
+
+def _joint_forces(machine: Machine, course: Course, reported: list[str], rubbing: bool) -> dict[str, Any]:
+    """Forces in joints, slides and gears, and friction."""
+    found, slides = course.reactions, machine.mechanism.slides
+    answer: dict[str, Any] = {
         "joints": {
             joint: {link: _series(force) for link, force in on.items()}
             for joint, on in found.joints.items()
@@ -69,37 +99,33 @@ def forces_of(
         },
         "slides": [
             {"joint": slide.joint, "normal": normal.tolist(), "friction": friction.tolist()}
-            for slide, normal, friction in zip(mechanism.slides, found.slides, _slide_frictions(found), strict=True)
+            for slide, normal, friction in zip(slides, found.slides, _slide_frictions(found), strict=True)
         ],
         "gears": [{"torque": torque.tolist()} for torque in found.gears],
-        **({} if block.friction is None else {"friction": _friction(course)}),
-        "shaking": {
-            "force": _series(found.shaking_force),
-            "moment": found.shaking_moment.tolist(),
-            "about": (about.real, about.imag),
-        },
-        "extremes": {
-            "drive": drive_peaks | {"mean": _mean(found.drive, closed), "rms": _rms(found.drive, closed)},
-            "joints": {joint: extremes[f"joint {joint}"] for joint in reported},
-            "shaking_force": extremes["shaking force"],
-            "shaking_moment": extremes["shaking moment"],
-        },
-        "power": {"peak": extremes["power"]["max"], "mean": _mean(power, closed)},
-        "status": _status(course),
-        "checks": _checks(found, check),
-        "warnings": warnings,
     }
+    return answer | ({"friction": _friction(course)} if rubbing else {})
 
 
-def _driven(machine: Machine, at: Real, speed: Real, acceleration: float) -> Course:
+def _largest_index(course: Course, extremes: dict[str, Any]) -> tuple[float | None, list[str]]:
+    """The largest joint force index, None where a dead centre makes it infinite; and what to warn of."""
+    dead = course.valid & ~(course.reactions.condition < SINGULAR) & course.reactions.determined
+    if dead.any():
+        return None, ["joint_force_index: infinite at a dead centre"]
+    largest = extremes["index"]["max"]
+    if largest > HIGH_INDEX:
+        return largest, [f"joint_force_index: {largest:.3g}, above {HIGH_INDEX:g}, at {extremes['index']['at']:.4g}"]
+    return largest, []
+
+
+def _driven(machine: Machine, at: Real, speed: Real, acceleration: float, indexed: bool) -> Course:
     mechanism = machine.mechanism
     inputs = at if mechanism.driven_by_slide else np.radians(at)
     motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration, order=2)
     paced = drive(mechanism, inputs, order=2)
-    return _course(machine, motion, paced)
+    return _course(machine, motion, paced, indexed)
 
 
-def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion) -> Course:
+def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion, indexed: bool) -> Course:
     now, by_input = Places(machine.mechanism, motion, machine.scale), Places(machine.mechanism, paced, machine.scale)
     if machine.mechanism.driven_by_slide:
         # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
@@ -107,7 +133,8 @@ def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion) -
     found = reactions(machine, now)
     check = balance(machine, now, by_input, found.rubbing)
     taken = -found.rubbing.work(now)
-    return Course(motion.valid, motion.smooth, now.input[1], found, check, taken)
+    index = joint_force_index(machine, now, machine.loads[0]) if indexed else None
+    return Course(motion.valid, motion.smooth, now.input[1], found, check, taken, index)
 
 
 def _slowed(paced: MechanismMotion, scale: float) -> MechanismMotion:
@@ -163,29 +190,6 @@ def _friction(course: Course) -> dict[str, Any]:
     return {"pins": listed, "power": lost.tolist()}
 
 
-def _closed(mechanism: Mechanism, at: Real, drive: Real, turns: int) -> bool:
-    """Whether the motion is a whole number of cycles of so many turns, and what drives it is again what it was."""
-    if mechanism.driven_by_slide or len(at) < 3 or not turns:
-        return False
-    cycles = abs(float(at[-1] - at[0])) / (FULL_TURN * turns)
-    steps = np.diff(at)
-    even = float(np.ptp(steps)) <= WHOLE * float(np.abs(at[-1] - at[0]))
-    whole = round(cycles) >= 1 and abs(cycles - round(cycles)) <= WHOLE * cycles
-    # A torsion spring that is wound up turn by turn has no cycle.
-    known = drive[np.isfinite(drive)]
-    return even and whole and len(known) > 0 and bool(abs(drive[-1] - drive[0]) <= AGAIN * _peak(known))
-
-
-def _mean(values: Real, closed: bool) -> float | None:
-    """Mean over a closed cycle, its end not counted twice: the trapezoid rule."""
-    return float(values[:-1].mean()) if closed and np.isfinite(values).all() else None
-
-
-def _rms(values: Real, closed: bool) -> float | None:
-    squared = _mean(values**2, closed)
-    return None if squared is None else math.sqrt(squared)
-
-
 def _reported(machine: Machine) -> list[str]:
     """Joints that join links, or carry a slide, a mass or a load."""
     mechanism = machine.mechanism
@@ -211,6 +215,7 @@ def _quantities(machine: Machine, course: Course) -> Samples:
             f"joint {joint}": np.abs(np.stack(list(found.joints[joint].values()))).max(axis=0)
             for joint in _reported(machine)
         },
+        **({} if course.force_index is None else {"index": course.force_index}),
     }
 
 
@@ -220,7 +225,7 @@ def _extremes(
     """Of the drive, and of everything else by name."""
 
     def measure(inputs: Real, speeds: Real, machine: Machine) -> Samples:
-        return _quantities(machine, _driven(machine, inputs, speeds, acceleration))
+        return _quantities(machine, _driven(machine, inputs, speeds, acceleration, course.force_index is not None))
 
     speed = course.speed / (machine.scale if machine.mechanism.driven_by_slide else 1.0)
     found = peaks(at, speed, _quantities(machine, course), partial(measure, machine=machine), closed)

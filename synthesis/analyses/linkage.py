@@ -105,6 +105,8 @@ class LinkageAnalysisRequest(AnalysisRequest):
                 faults.append((f"/points/{token(name)}/link", f"no link in motion; they are {', '.join(moving)}"))
         if self.dynamics is not None:
             faults += dynamics_faults(self.dynamics, mechanism)
+            if self.dynamics.flywheel is not None and self.motion.rate == 0.0:
+                faults.append(("/dynamics/flywheel", "a flywheel needs a speed"))
         return faults
 
     def answer(self) -> dict[str, Any]:

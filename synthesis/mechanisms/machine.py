@@ -79,6 +79,7 @@ def _faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     for n, spring in enumerate(block.springs):
         yield from _spring_faults(f"/dynamics/springs/{n}", spring, mechanism)
     yield from _friction_faults(block, mechanism)
+    yield from _report_faults(block, mechanism)
     yield from _drive_faults(block, mechanism)
 
 
@@ -95,6 +96,17 @@ def _friction_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fau
                 f"/dynamics/friction/slides/{slide}",
                 f"the mechanism has {len(mechanism.slides)} slides, counted from 0",
             )
+
+
+def _report_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
+    if block.report is not None and "joint_force_index" in block.report and not block.loads:
+        yield "/dynamics/report", "the joint force index is that of the first of the loads; state one"
+    if mechanism.driven_by_slide:
+        detail = "a flywheel is on the shaft that drives; a slide drives this mechanism"
+        if block.flywheel is not None:
+            yield "/dynamics/flywheel", detail
+        elif block.reports("flywheel"):
+            yield "/dynamics/report", detail
 
 
 def _course_faults(path: str, load: StatedLoad, mechanism: Mechanism) -> Iterator[Fault]:

@@ -95,7 +95,7 @@ class Measured(BaseModel):
         schema = handler(core_schema)
         properties = handler.resolve_ref_schema(schema).get("properties", {})
         for name, dimension in dimensions(cls).items():
-            properties[name]["x-dimension"] = dimension.value
+            properties[cls.model_fields[name].alias or name]["x-dimension"] = dimension.value
         return schema
 
 

@@ -54,6 +54,21 @@ class StatedFriction(Statement):
     slides: dict[Annotated[str, Field(pattern="^[0-9]$")], Coefficient] = Field(default={}, max_length=10)
 
 
+class StatedFlywheel(Statement):
+    """The fluctuation of speed that a flywheel on the input shaft is to leave."""
+
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0, allow_inf_nan=False)] = Field(
+        description="(ω_max − ω_min)/ω_mean."
+    )
+    existing_inertia: NonNegative = Field(default=0.0, description="Moment of inertia that the shaft has already.")
+
+
+Reported = Literal["joint_forces", "drive", "shaking", "flywheel", "joint_force_index", "harmonics"]
+
+ALWAYS: tuple[Reported, ...] = ("joint_forces", "drive", "shaking")
+"""What is reported where a statement does not say."""
+
+
 class DynamicsBlock(Statement):
     """What a linkage weighs and carries, and which forces are wanted."""
 
@@ -74,6 +89,20 @@ class DynamicsBlock(Statement):
     moment_about: Point | None = Field(
         default=None, description="Point about which the shaking moment is taken; by default the first fixed pivot."
     )
+
+    flywheel: StatedFlywheel | None = Field(default=None, description="Size a flywheel on the input shaft.")
+    report: list[Reported] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=6,
+        description="What is reported; by default forces in the joints, the drive and what shakes the frame. "
+        "`joint_force_index` is that of the first of the loads.",
+    )
+
+    def reports(self, name: Reported) -> bool:
+        """Whether a part of the answer is wanted."""
+        stated = name in (ALWAYS if self.report is None else self.report)
+        return stated or (name == "flywheel" and self.flywheel is not None)
 
     def scale(self, unit: LengthUnit) -> float:
         """The length unit in the unit of forces over stiffnesses: metres, or as it is."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from synthesis.model.answer import Answer, optional
-from synthesis.model.dimension import FORCE, LENGTH, OUTPUT, Dimension
+from synthesis.model.dimension import ANGLE, FORCE, LENGTH, OUTPUT, Dimension
 
 Series = list[float | None]
 
@@ -86,6 +86,49 @@ class Power(Answer):
     mean: float | None
 
 
+class Pulse(Answer):
+    """Where the torque stays above its mean, or below, and the area between both."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    start: Annotated[float, ANGLE] = Field(alias="from")
+    end: Annotated[float, ANGLE] = Field(alias="to")
+    area: float
+
+
+class Flywheel(Answer):
+    """Fluctuation of the drive over a cycle, and the flywheel that evens the speed; null without a closed cycle."""
+
+    energy: float | None = Field(description="Largest less smallest energy taken from the flywheel.")
+    mean_torque: Annotated[float | None, Dimension.TORQUE]
+    inertia: float | None = optional("E/(k ω²), less what the shaft has; to first order in the coefficient.")
+    inertia_exact: float | None = optional("Of which the coefficient is exact, by the speed's mean over time.")
+    coefficient_exact: float | None = optional("That of `inertia`.")
+    pulses: list[Pulse]
+
+
+class Turning(Answer):
+    """A harmonic of a vector: magnitudes of the parts that turn with the input and against it."""
+
+    forward: Annotated[float, FORCE]
+    backward: Annotated[float, FORCE]
+
+
+class Wave(Answer):
+    """A harmonic of a torque (or of the drive): amplitude · cos(order · input − phase)."""
+
+    amplitude: float
+    phase: Annotated[float, ANGLE]
+
+
+class Harmonics(Answer):
+    """Harmonics over a closed cycle by their order, in periods a turn of the input; null without a closed cycle."""
+
+    shaking_force: dict[str, Turning] | None
+    shaking_moment: dict[str, Wave] | None
+    drive: dict[str, Wave] | None
+
+
 class BalanceChecks(Answer):
     """Largest disagreement of the reactions with balances that know none, as shares of the peaks."""
 
@@ -105,15 +148,21 @@ class DynamicsAnswer(Answer):
     length_unit: Literal["mm", "cm", "m", "in"] = Field(
         description="Of the request's lengths; forces of `si` were formed in metres."
     )
-    drive: Series = Field(description="Torque of the ground on the input link, or force along the input slide.")
-    virtual_work_drive: Series = Field(description="The same from the balance of energy.")
-    joints: dict[str, dict[str, ForceSeries]] = Field(description="Force of each joint's pin on each of its links.")
-    slides: list[SlideForces]
-    gears: list[GearTorques]
+    drive: Series | None = optional("Torque of the ground on the input link, or force along the input slide.")
+    virtual_work_drive: Series | None = optional("The same from the balance of energy.")
+    joints: dict[str, dict[str, ForceSeries]] | None = optional("Force of each joint's pin on each of its links.")
+    slides: list[SlideForces] | None = optional()
+    gears: list[GearTorques] | None = optional()
     friction: Rubbing | None = optional("If the request states `friction`.")
-    shaking: Shaking
+    shaking: Shaking | None = optional()
     extremes: Extremes
     power: Power
+    flywheel: Flywheel | None = optional("If the request states a `flywheel` or wants it reported.")
+    harmonics: Harmonics | None = optional()
+    joint_force_index: Series | None = optional(
+        "Largest force in a joint over the first load, without masses, springs and friction; per length of a torque."
+    )
+    max_joint_force_index: float | None = optional("Its largest value; left out where a dead centre makes it infinite.")
     status: list[Status]
     checks: BalanceChecks
     warnings: list[str]

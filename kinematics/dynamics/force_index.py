@@ -1,0 +1,31 @@
+"""Joint force index: how many times a load the joints carry, by the geometry alone (Norton, eq. 11.23)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinematics.dynamics.friction import Friction
+from kinematics.dynamics.loads import Load
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places
+from kinematics.dynamics.reactions import reactions
+from kinematics.linkage.planar.mechanism import Real
+
+
+def joint_force_index(machine: Machine, now: Places, load: Load) -> Real:
+    """Largest force of a pin or slide over the load, without masses, springs and friction; shape S + (N,).
+
+    A torque gives forces per length. NaN where the load vanishes or the reactions are not determined: at a dead centre
+    the index is infinite.
+    """
+    alone = replace(machine, bodies={}, pin_masses={}, gravity=0j, loads=(load,), friction=Friction())
+    found = reactions(alone, now)
+    shape = now.smooth.shape
+    acting = [np.broadcast_to(np.hypot(np.abs(e.force), e.couple), shape) for e in load.efforts(now)]
+    forces = [np.abs(force) for on in found.joints.values() for force in on.values()]
+    forces += [np.abs(normal) for normal in found.slides]
+    strength = np.max(acting, axis=0)
+    with np.errstate(invalid="ignore"):
+        return np.where(strength > 0.0, np.max(forces, axis=0) / np.where(strength > 0.0, strength, 1.0), np.nan)

@@ -1,0 +1,124 @@
+"""How much a flywheel must store: energy of the fluctuation of a torque over a cycle, and the inertia that evens it.
+
+The driver gives the mean torque T̄ all the time; what the machine takes more or less goes through the flywheel's energy.
+With W(θ) = ∫ (T − T̄) dθ, its fluctuation is E = max W − min W (Norton, *Design of Machinery*, eq. 11.18-11.20: W stands
+at its extremes where T crosses T̄, and no single pulse need be as large as E). Then ω² = ω₀² − 2 W / I, and to first
+order in the coefficient k = (ω_max − ω_min)/ω̄ of fluctuation I = E/(k ω̄²) (11.22). Exactly, ω̄ is the mean over time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from kinematics.linkage.planar.mechanism import Real
+
+NOTHING = 1e-12
+"""Energy, as a share of the torque's largest magnitude times the cycle, that is none: rounding."""
+
+FINE = 4096
+"""Positions of a cycle over which the time of a turn is summed; the trapezoid rule on a smooth periodic speed."""
+
+MOST = 2.0
+"""A coefficient of fluctuation is less than this: the flywheel would stand still, and turn back."""
+
+
+@dataclass(frozen=True)
+class Fluctuation:
+    """A torque over a cycle against its mean; angles in radians.
+
+    Attributes
+    ----------
+    mean, energy : float
+        T̄ and E.
+    crossings, areas : float, shape (P,)
+        Angles at which T crosses its mean, and the area from each to the next one round the cycle.
+    highest, lowest : float
+        Angles at which the most energy is taken out of the flywheel (the least speed follows), and the least.
+    demand : float, shape (FINE,)
+        W over the cycle in equal steps.
+    """
+
+    mean: float
+    energy: float
+    crossings: Real
+    areas: Real
+    highest: float
+    lowest: float
+    demand: Real
+
+
+def fluctuation(angle: Real, torque: Real) -> Fluctuation:
+    """The fluctuation of a torque, by a periodic cubic through its samples.
+
+    Parameters
+    ----------
+    angle, torque : float, shape (N + 1,)
+        Equal steps of the angle over a cycle, upwards; the last position is the first one again.
+    """
+    mean = float(torque[:-1].mean())
+    level = torque - mean
+    level[-1] = level[0]
+    spline = CubicSpline(angle, level, bc_type="periodic")
+    integral = spline.antiderivative()
+    period = float(angle[-1] - angle[0])
+    demand = np.asarray(integral(angle[0] + period * np.arange(FINE) / FINE))
+    crossings = spline.roots(extrapolate=False)
+    crossings = np.unique(crossings[(crossings >= angle[0]) & (crossings < angle[-1])])
+    stands = np.asarray(integral(crossings))
+    size = float(np.abs(torque).max()) * period
+    if len(crossings) < 2 or float(np.ptp(stands)) <= NOTHING * size:
+        return Fluctuation(mean, 0.0, np.empty(0), np.empty(0), float(angle[0]), float(angle[0]), 0.0 * demand)
+    # Over the whole cycle W ends where it began, but for the trapezoid's mean not being the cubic's.
+    round_trip = float(integral(angle[-1]))
+    areas = np.diff(np.append(stands, stands[0] + round_trip))
+    highest, lowest = int(np.argmax(stands)), int(np.argmin(stands))
+    return Fluctuation(
+        mean,
+        float(stands[highest] - stands[lowest]),
+        crossings,
+        areas,
+        float(crossings[highest]),
+        float(crossings[lowest]),
+        demand,
+    )
+
+
+def first_order_inertia(energy: float, speed: float, coefficient: float) -> float:
+    """E/(k ω̄²)."""
+    return energy / (coefficient * speed**2)
+
+
+def exact_coefficient(found: Fluctuation, inertia: float, speed: float) -> float:
+    """(ω_max − ω_min)/ω̄ of a shaft of so much inertia whose mean speed over time is ``speed``.
+
+    ``MOST`` where the flywheel would come to a stand.
+    """
+    if found.energy == 0.0:
+        return 0.0
+    excess = (found.demand - found.demand.max()) * (-2.0 / inertia)
+    span = 2.0 * found.energy / inertia
+
+    def mean_speed(least_squared: float) -> float:
+        return 1.0 / float(np.mean(1.0 / np.sqrt(least_squared + excess)))
+
+    if not mean_speed(1e-9 * span) < speed:
+        return MOST
+    squared = brentq(lambda least: mean_speed(least) - speed, 1e-9 * span, speed**2, xtol=1e-15 * speed**2)
+    return float((np.sqrt(squared + span) - np.sqrt(squared)) / speed)
+
+
+def exact_inertia(found: Fluctuation, speed: float, coefficient: float) -> float:
+    """Inertia of which the coefficient of fluctuation is as wanted, exactly: it falls as the inertia grows."""
+    if found.energy == 0.0:
+        return 0.0
+    guess = first_order_inertia(found.energy, speed, coefficient)
+    low, high = 0.5 * guess, 2.0 * guess
+    while exact_coefficient(found, low, speed) < coefficient:
+        low *= 0.5
+    while exact_coefficient(found, high, speed) > coefficient:
+        high *= 2.0
+    return float(brentq(lambda i: exact_coefficient(found, i, speed) - coefficient, low, high, rtol=1e-12))
