@@ -39,15 +39,19 @@ suite: $(STAMP)
 	$(BIN)/pytest -m "not campaign and not fuzz and not faults and not browser and not cluster" $(SPREAD)
 
 # The same tests of the service on PostgreSQL and Celery with RabbitMQ, and with Redis, side by side: the real servers,
-# on free ports.
-CONTRACT := $(addprefix tests/service/test_,store.py turns.py jobs_api.py idempotency.py events.py limits.py access.py faults.py) \
-    tests/cluster
+# on free ports. What only PostgreSQL has a part in is tried beside one of the two brokers.
+ON_STORE := tests/service/test_store.py tests/service/test_idempotency.py tests/cluster/test_schema.py
+ON_KEYS := tests/service/test_limits.py tests/service/test_access.py
+ON_BROKER := $(addprefix tests/service/test_,turns.py jobs_api.py events.py faults.py) \
+    $(filter-out $(ON_STORE),$(wildcard tests/cluster/test_*.py))
 
 test-cluster: $(STAMP) engines
 	@$(MAKE) --no-print-directory -j2 --output-sync=target cluster-rabbitmq cluster-redis
 
+cluster-rabbitmq: BESIDE := $(ON_STORE)
+cluster-redis: BESIDE := $(ON_KEYS)
 cluster-rabbitmq cluster-redis: cluster-%:
-	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(CONTRACT)
+	$(BIN)/pytest -m "not embedded" -s -q --backend postgres+$* $(ON_BROKER) $(BESIDE)
 
 engines:
 	@{ ls /usr/lib/postgresql/*/bin/postgres && test -x /usr/sbin/rabbitmq-server && test -x /usr/bin/redis-server; } \
@@ -68,7 +72,7 @@ test-browser: $(STAMP) $(NODE)
 SHARE := 0.1
 
 campaign: $(STAMP)
-	$(BIN)/pytest -m campaign --campaign-share $(SHARE) $(SPREAD)
+	$(BIN)/pytest -m campaign --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py')
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s
@@ -78,6 +82,7 @@ fuzz: $(STAMP)
 test-faults: $(STAMP) engines
 	$(BIN)/pytest -m "faults and not cluster" -n 2 -rP -q tests/faults
 	$(BIN)/pytest -m "faults and cluster" -s -q --backend postgres+rabbitmq tests/faults
+	MECHSYNTH_RESTARTS=10,5 $(BIN)/pytest -s -q --backend postgres+rabbitmq tests/cluster/test_restarts.py
 
 check: $(STAMP)
 	$(BIN)/ruff check .

@@ -1,6 +1,6 @@
 """PostgreSQL and the broker are restarted under load, also by a crash, and nothing that was acknowledged is lost.
 
-``MECHSYNTH_RESTARTS`` says how often: "10,5", PostgreSQL and the broker.
+``MECHSYNTH_RESTARTS`` says how often: "10,5", PostgreSQL and the broker. ``make test-faults`` does it so often.
 """
 
 import os
@@ -15,7 +15,7 @@ from tests.cluster.deployment import Deployment
 from tests.cluster.load import WELL, Load, verdict
 from tests.service.running import until
 
-STORE_RESTARTS, BROKER_RESTARTS = map(int, os.environ.get("MECHSYNTH_RESTARTS", "10,5").split(","))
+STORE_RESTARTS, BROKER_RESTARTS = map(int, os.environ.get("MECHSYNTH_RESTARTS", "4,2").split(","))
 SEED = 7
 
 pytestmark = [pytest.mark.cluster, pytest.mark.timeout(900)]
