@@ -99,8 +99,8 @@ class Scene:
         distance, bound : float, shape (m,)
             Of the outlines, length units. The bound is infinite where nothing is known.
         """
-        (inputs, halves), item = np.unique(np.stack([centre, half]), axis=1, return_inverse=True)
-        item = item.ravel()
+        around, item = np.unique(centre + 1j * half, return_inverse=True)
+        inputs, halves = around.real.copy(), around.imag.copy()
         pose = self._pose(inputs)
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
         shift[0] = 0.0
