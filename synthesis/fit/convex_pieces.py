@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.model.triangles import triangles_of
+
 Complex = NDArray[np.complex128]
 
 COARSE = 1e-3
@@ -33,7 +35,7 @@ def convex_pieces(corners: Complex, size: float) -> tuple[list[Complex], float]:
     """
     if len(corners) < 3:
         return [np.asarray(corners)], 0.0
-    from shapely import Polygon, constrained_delaunay_triangles, get_coordinates, get_parts
+    from shapely import Polygon, get_coordinates
 
     polygon, beyond = Polygon(np.stack([corners.real, corners.imag], axis=1)), 0.0
     if len(corners) > FEW:
@@ -41,9 +43,7 @@ def convex_pieces(corners: Complex, size: float) -> tuple[list[Complex], float]:
     outline = get_coordinates(polygon.exterior.normalize()).view(np.complex128).ravel()[:-1][::-1]
     if _is_convex(outline):
         return [outline], beyond
-    triangles = get_parts(constrained_delaunay_triangles(polygon))
-    pieces = [get_coordinates(one).view(np.complex128).ravel()[:-1] for one in triangles]
-    return _joined([_anticlockwise(piece) for piece in pieces]), beyond
+    return _joined([_anticlockwise(corners) for corners in triangles_of(outline)]), beyond
 
 
 def _anticlockwise(corners: Complex) -> Complex:

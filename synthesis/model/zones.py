@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
 from synthesis.model.statement import Point, PositiveLength, Statement
+from synthesis.model.triangles import triangles_of
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -130,12 +131,10 @@ class Zone(Statement):
         if self.circle is not None:
             distance = self.circle.radius * np.sqrt(rng.uniform(0.0, 1.0, count))
             return np.asarray(complex(*self.circle.center) + distance * np.exp(2j * np.pi * rng.uniform(size=count)))
-        from shapely import area, constrained_delaunay_triangles, get_coordinates, get_parts
-
-        triangles = get_parts(constrained_delaunay_triangles(self._shape))
-        weights = area(triangles)
-        corners = get_coordinates(triangles).view(np.complex128).reshape(-1, 4)[:, :3]
-        chosen = corners[rng.choice(len(triangles), count, p=weights / weights.sum())]
+        outline, _ = self.outline
+        corners = triangles_of(outline)
+        weights = np.abs(((corners[:, 1] - corners[:, 0]).conj() * (corners[:, 2] - corners[:, 0])).imag)
+        chosen = corners[rng.choice(len(corners), count, p=weights / weights.sum())]
         first, second = rng.uniform(0.0, 1.0, (2, count))
         beyond = first + second > 1.0
         first, second = np.where(beyond, 1.0 - first, first), np.where(beyond, 1.0 - second, second)

@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from shapely import MultiPoint, Point, Polygon, convex_hull, distance, linestrings, polygons, union_all
+from shapely import (
+    MultiPoint,
+    Point,
+    Polygon,
+    constrained_delaunay_triangles,
+    convex_hull,
+    distance,
+    linestrings,
+    polygons,
+    union_all,
+)
+from shapely.errors import GEOSException
 
 from synthesis.fit.convex_pieces import convex_pieces
 from synthesis.fit.room import AIM, HEADER, WINDOWS, packed
@@ -116,6 +127,26 @@ def test_convex_pieces_cover_an_outline_and_no_more() -> None:
         assert all(shape.convex_hull.area == pytest.approx(shape.area) for shape in shapes)
         assert len(pieces) <= max(count - 2, 1)
     assert len(convex_pieces(np.array([0, 2, 2 + 1j, 1 + 1j, 1 + 2j, 2j]), 1.0)[0]) == 2
+
+
+def test_an_outline_that_geos_gives_up_on_is_triangulated() -> None:
+    outline = np.array([
+        12.516134435664963 + 18.963296921408656j,
+        10.529923085234165 + 20.11676733633025j,
+        12.368215140496247 + 23.282203136273584j,
+        10.382003790065447 + 24.43567355119518j,
+        11.62582779282273 + 26.57746871148346j,
+        12.580250526294327 + 22.341032856720222j,
+        12.826945855918304 + 21.863954905860286j,
+        13.189065293074938 + 21.598338846253984j,
+        13.596491793302977 + 21.506068611006597j,
+        13.98684322896866 + 21.49577496388775j,
+    ])  # fmt: skip
+    shape = Polygon(np.stack([outline.real, outline.imag], axis=1))
+    with pytest.raises(GEOSException):
+        constrained_delaunay_triangles(shape)
+    pieces, _ = convex_pieces(outline, 1.0)
+    assert union_all([shaped(piece) for piece in pieces]).area == pytest.approx(shape.area, rel=1e-9)
 
 
 def test_an_outline_of_many_corners_reaches_no_farther_than_is_told() -> None:

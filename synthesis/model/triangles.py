@@ -1,0 +1,34 @@
+"""Outlines as triangles between their own corners."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+
+TURNS = (0.0, 0.37, 0.81, 1.3, 2.1, 2.9)
+"""Radians by which an outline is turned, one after the other, until it is triangulated: GEOS gives up on sound outlines
+now and then, by the last digits of their corners."""
+
+
+def triangles_of(corners: Complex) -> Complex:
+    """Triangles that make up a polygon, shape (k, 3).
+
+    What touches itself by rounding is taken apart there. An outline that cannot be triangulated is its convex hull.
+    """
+    from shapely import Polygon, constrained_delaunay_triangles, get_coordinates, get_parts
+    from shapely.errors import GEOSException
+
+    for turn in TURNS:
+        turned = corners * np.exp(1j * turn)
+        shape = Polygon(np.stack([turned.real, turned.imag], axis=1))
+        shape = shape if shape.is_valid else shape.buffer(0.0)
+        try:
+            parts = get_parts(constrained_delaunay_triangles(shape))
+        except GEOSException:
+            continue
+        places = np.array([get_coordinates(part).view(np.complex128).ravel()[:3] for part in parts])
+        return np.asarray(corners[np.abs(places[..., None] - turned).argmin(axis=-1)])
+    hull = get_coordinates(shape.convex_hull).view(np.complex128).ravel()[:-1] * np.exp(-1j * turn)
+    return np.stack([np.full(len(hull) - 2, hull[0]), hull[1:-1], hull[2:]], axis=1)
