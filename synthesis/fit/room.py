@@ -142,6 +142,15 @@ def packed(
     return np.concatenate(numbers)
 
 
+def zones_alone(room: Real) -> Real:
+    """A packed room as far as pivots' zones go, which cost no motion; empty where there are none."""
+    if not len(room) or room[ZONED] == 0.0:
+        return NONE
+    zones = room.copy()
+    zones[COUNT], zones[BOXED], zones[GROUPS] = room[ZONED], 0.0, 0.0
+    return zones
+
+
 def _outlines(space: Space) -> list[tuple[Complex, float]]:
     return [zone.outline for zone in space.obstacles]
 

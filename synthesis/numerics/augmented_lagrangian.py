@@ -46,7 +46,7 @@ _IMPOSSIBLE, _INFEASIBLE = int(Status.IMPOSSIBLE), int(Status.INFEASIBLE)
 
 
 @njit(cache=True, nogil=True)
-def _load(margin: float, multiplier: float, weight: float, equation: bool) -> float:
+def load_of(margin: float, multiplier: float, weight: float, equation: bool) -> float:
     """λ/w − g where the limit bears a load, else 0."""
     load: float = multiplier / weight - margin
     return load if equation or load > 0.0 else 0.0
@@ -73,7 +73,7 @@ def limit_rows(
     for k in range(limits):
         if margins[k] == np.inf:
             continue
-        load = _load(margins[k], multipliers[k], weight, k >= limits - equations)
+        load = load_of(margins[k], multipliers[k], weight, k >= limits - equations)
         if load != 0.0:
             residuals[m] = root * load
             for i in range(gradients.shape[1]):
@@ -91,8 +91,52 @@ def _renew(margins: Real, equations: int, multipliers: Real) -> float:
         if margins[k] < np.inf:
             equation = k >= limits - equations
             worst = max(worst, abs(margins[k]) if equation else -margins[k])
-            multipliers[k] = weight * _load(margins[k], multipliers[k], weight, equation)
+            multipliers[k] = weight * load_of(margins[k], multipliers[k], weight, equation)
     return worst
+
+
+@njit(cache=True, nogil=True)
+def _held(
+    rows: Any,
+    x: Real,
+    points: Real,
+    setting: Real,
+    state: Real,
+    most: int,
+    limits: int,
+    equations: int,
+    weight: float,
+    enough: float,
+    rounds: int,
+    steps: int,
+    ended: Real,
+) -> int:
+    """See :func:`hold` and :func:`hold_within`."""
+    multipliers = np.zeros(limits + 1)
+    multipliers[limits] = weight
+    residuals, jacobian = np.empty(most), np.zeros((most, x.size))
+    margins = state[state.size - limits :]
+    before = worst = np.inf
+    status = _IMPOSSIBLE
+    ended[0] = np.inf
+    for _ in range(rounds):
+        _, status = descend(rows, x, points, setting, multipliers, state, most, steps, TOLERANCE)
+        if status == _IMPOSSIBLE:
+            return _IMPOSSIBLE
+        worst = _renew(margins, equations, multipliers)
+        if worst <= enough:
+            break
+        if worst > SLOW_DECREASE * before:
+            # Multipliers are forces: they are kept when the weight changes.
+            multipliers[limits] *= WEIGHT_INCREASE
+        before = worst
+    multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
+    m = rows(x, points, setting, multipliers, state, residuals, jacobian)
+    if m < 0:
+        return _IMPOSSIBLE
+    ended[0] = half_square(residuals, m)
+    end: int = status if worst <= 10.0 * enough else _INFEASIBLE
+    return end
 
 
 @njit(
@@ -128,28 +172,40 @@ def hold(
     ended : float64, shape (1,)
         Gets half the sum of squares there, without that of the limits; infinite where there is no minimum.
     """
-    multipliers = np.zeros(limits + 1)
-    multipliers[limits] = weight
-    residuals, jacobian = np.empty(most), np.zeros((most, x.size))
-    margins = state[state.size - limits :]
-    before = worst = np.inf
-    status = _IMPOSSIBLE
-    ended[0] = np.inf
-    for _ in range(MAX_ROUNDS):
-        _, status = descend(rows, x, points, setting, multipliers, state, most, MAX_STEPS, TOLERANCE)
-        if status == _IMPOSSIBLE:
-            return _IMPOSSIBLE
-        worst = _renew(margins, equations, multipliers)
-        if worst <= VIOLATION_TOLERANCE:
-            break
-        if worst > SLOW_DECREASE * before:
-            # Multipliers are forces: they are kept when the weight changes.
-            multipliers[limits] *= WEIGHT_INCREASE
-        before = worst
-    multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
-    m = rows(x, points, setting, multipliers, state, residuals, jacobian)
-    if m < 0:
-        return _IMPOSSIBLE
-    ended[0] = half_square(residuals, m)
-    end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
+    end: int = _held(
+        rows, x, points, setting, state, most, limits, equations, weight, VIOLATION_TOLERANCE, MAX_ROUNDS, MAX_STEPS,
+        ended,
+    )  # fmt: skip
+    return end
+
+
+@njit(
+    types.int64(
+        types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, types.int64,
+        types.int64, types.int64, types.float64, types.float64, types.int64, types.int64, VECTOR
+    ),
+    cache=True,
+    nogil=True,
+)  # fmt: skip
+def hold_within(
+    rows: Any,
+    x: Real,
+    points: Real,
+    setting: Real,
+    state: Real,
+    most: int,
+    limits: int,
+    equations: int,
+    weight: float,
+    enough: float,
+    rounds: int,
+    steps: int,
+    ended: Real,
+) -> int:
+    """As :func:`hold`, until no limit is violated by more than ``enough``, in ``rounds`` descents of ``steps`` at most.
+
+    For limits with kinks, such as least distances have: where several sides of one bear a load the multipliers do not
+    converge, and the violation falls only as the weight grows.
+    """
+    end: int = _held(rows, x, points, setting, state, most, limits, equations, weight, enough, rounds, steps, ended)
     return end

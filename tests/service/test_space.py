@@ -28,6 +28,20 @@ POST = {"circle": {"center": [-60.0, 330.0], "radius": 30.0}}
 WALL = {"polygon": [[-300.0, 0.0], [-20.0, 0.0], [-20.0, 250.0], [-150.0, 120.0], [-300.0, 250.0]]}
 ROUND = {"circle": {"center": [-100.0, 0.0], "radius": 120.0}}
 ELSEWHERE = {"polygon": [[400.0, -400.0], [700.0, -400.0], [700.0, 0.0], [400.0, 0.0]]}
+POINTS = {
+    "kind": "path",
+    "points": [
+        {"x": 4.0, "y": 3.0},
+        {"x": 3.2, "y": 4.2},
+        {"x": 2.0, "y": 4.5},
+        {"x": 0.8, "y": 4.0},
+        {"x": 0.2, "y": 3.0},
+    ],
+    "rounds": 1,
+    "max_designs": 3,
+}
+BELOW = {"polygon": [[-3.0, -2.0], [0.0, -2.0], [0.0, 1.0], [-3.0, 1.0]]}
+PILLAR = {"polygon": [[1.6, 1.0], [2.4, 1.0], [2.4, 2.5], [1.6, 2.5]]}
 LEAF = [[0.0, -300.0], [20.0, -300.0], [20.0, 100.0], [0.0, 100.0]]
 
 
@@ -98,6 +112,7 @@ KEPT = {
     "box": (LID, {"box": [[-400.0, -420.0], [620.0, 720.0]], "link_width": 20.0}),
     "obstacles": (LID, {"obstacles": [SHELF, POST], "clearance": 5.0, "link_width": 20.0}),
     "body": (LID, {"body": {"outline": LEAF}, "obstacles": [SHELF], "clearance": 5.0}),
+    "path": (POINTS, {"fixed_pivots": {"input": BELOW}, "obstacles": [PILLAR], "link_width": 0.2, "clearance": 0.1}),
     "cycle": (LID, {"obstacles": [{"circle": {"center": [450.0, -300.0], "radius": 30.0}}], "over": "cycle"}),
 }
 

@@ -25,6 +25,7 @@ from synthesis.kinds.path.curve_families import joints_of
 from synthesis.kinds.path.curve_limits import broken, descend_softly, descend_within
 from synthesis.kinds.path.curve_shapes import Starts
 from synthesis.kinds.path.curve_target import Target
+from synthesis.kinds.path.limits import zoned
 from synthesis.model.linkages import FourbarConfiguration
 from synthesis.numerics.portions import in_portions
 from synthesis.outcome.ranking import distinct
@@ -260,7 +261,7 @@ def _softly(target: Target, starts: list[Starts], setting: Real) -> list[Fit]:
     for some in starts:
         if not len(some.x):
             continue
-        ends = descend_softly(some.family, some.x, some.theta, some.sign, target.steps, setting, SOFT_STEPS)
+        ends = descend_softly(some.family, some.x, some.theta, some.sign, target.steps, zoned(setting), SOFT_STEPS)
         best = [k for k in np.argsort(ends.cost, kind="stable")[:MAX_SOFT] if math.isfinite(ends.cost[k])]
         for k in best:
             fit = Fit(some.family, ends.x[k], float(some.sign[k]), target.angles(ends.theta[k]), math.inf)

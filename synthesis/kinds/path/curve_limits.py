@@ -31,11 +31,21 @@ from synthesis.fit.demands import (
     WHOLE,
     margins,
 )
+from synthesis.fit.fourbar_room import fourbar_margins
+from synthesis.fit.room_margins import ROW, margins_of
 from synthesis.kinds.path.curve_descent import Descent
-from synthesis.kinds.path.limits import LIMIT_MARGIN, LIMIT_WEIGHT, MIN_GRASHOF, ORDERED, SETTING, TIMED, setting_of
+from synthesis.kinds.path.held import held
+from synthesis.kinds.path.limits import (
+    LIMIT_MARGIN,
+    MIN_GRASHOF,
+    ORDERED,
+    SETTING,
+    TIMED,
+    limits_of,
+    setting_of,
+)
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.problem import PathProblem
-from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
@@ -91,7 +101,7 @@ def bounds_places(setting: Real) -> bool:
     boxes = np.concatenate(
         [setting[BOXES : BOXES + 8], setting[MOVING : MOVING + 4], setting[POINT_BOX : POINT_BOX + 4]]
     )
-    return bool(np.isfinite(boxes).any() or setting[LINKS] > 0.0)
+    return bool(np.isfinite(boxes).any() or setting[LINKS] > 0.0 or len(setting) > SETTING)
 
 
 def lengths_kept(setting: Real, links: tuple[float, float, float, float]) -> bool:
@@ -130,27 +140,25 @@ def descend_within(
     """
     demanded = _demanded(family, sign, setting)
     n, x = len(points), np.array(x)
-    state = np.zeros(3 * n + LIMITS)
+    state = np.zeros(3 * n + limits_of(demanded))
     state[:n] = theta - x[2]
-    ended = np.empty(1)
-    rows = _rows(points, weights)
-    status = hold(path_rows, x, rows, demanded, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
+    status, cost = held(x, _rows(points, weights), demanded, state)
     if status in (Status.IMPOSSIBLE, Status.INFEASIBLE):
         return None
-    return Held(x, state[:n] + x[2], 2.0 * float(ended[0]))
+    return Held(x, state[:n] + x[2], 2.0 * cost)
 
 
 def descend_softly(
     family: int, x: Real, theta: Real, sign: Real, points: Complex, setting: Real, steps: int
 ) -> Descent:
     """Ends of some steps from every start, shapes (n, m), (n, points), (n,), with demands as weighted residuals."""
-    n = len(points)
-    starts, states = np.array(x), np.zeros((len(x), 3 * n + LIMITS))
+    n, limits = len(points), limits_of(setting)
+    starts, states = np.array(x), np.zeros((len(x), 3 * n + limits))
     states[:, :n] = theta - starts[:, 2, None]
-    multipliers = np.zeros(LIMITS + 1)
-    multipliers[LIMITS] = SOFT_WEIGHT
+    multipliers = np.zeros(limits + 1)
+    multipliers[limits] = SOFT_WEIGHT
     costs, statuses = np.full(len(x), math.inf), np.zeros(len(x), np.int64)
-    rows, most = _rows(points, np.ones(n)), 2 * n + LIMITS
+    rows, most = _rows(points, np.ones(n)), 2 * n + limits
 
     def work(some: slice) -> None:
         for k in range(*some.indices(len(starts))):
@@ -182,12 +190,15 @@ def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> 
     """By how much each of many linkages, shape (n, m), breaks the demand that it breaks most, but for the order.
 
     ``theta``, shape (n, points), are crank angles at the points; a linkage that does not close there breaks none by its
-    moving pivots.
+    moving pivots. One that does not close on its way keeps no room.
     """
     lengths, slopes, still = np.empty(4), np.empty((4, 4)), np.zeros(x.shape[1])
     values, gradients = np.empty(LIMITS), np.empty((LIMITS, x.shape[1]))
     stated, worst = setting.copy(), np.zeros(len(x))
     stated[FAMILY] = family
+    room = setting[SETTING:]
+    roomy = margins_of(room)
+    kept, rows = np.empty(roomy), np.empty((roomy, ROW))
     for i in range(len(x)):
         stated[SIGN] = sign[i]
         natural(family, x[i], lengths, slopes)
@@ -196,6 +207,9 @@ def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> 
         for k in range(LIMITS):
             if values[k] < np.inf:
                 worst[i] = max(worst[i], abs(values[k]) if k >= LIMITS - EQUATIONS else -values[k])
+        if roomy > 0:
+            closes = fourbar_margins(x[i], lengths, sign[i], ends, setting[WHOLE] > 0.0, room, kept, rows)
+            worst[i] = max(worst[i], -kept.min()) if closes else np.inf
     return worst
 
 

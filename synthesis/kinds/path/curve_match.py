@@ -52,6 +52,7 @@ from synthesis.kinds.path.curve_shapes import Compared, Starts, alike, compared,
 from synthesis.kinds.path.curve_target import SHAPE_POINTS, Target
 from synthesis.kinds.path.design import CurveSweep, PathDesign, PathResult
 from synthesis.kinds.path.harvest import that_differ as designs_that_differ
+from synthesis.kinds.path.limits import zoned
 from synthesis.kinds.path.nearness import (
     ERROR_TOLERANCE,
     FAR,
@@ -197,7 +198,7 @@ def _alike(problem: PathProblem, target: Target, setting: Real, progress: Progre
             if bounds_places(demands):
 
                 def lost(x: Real, theta: Real, sign: Real, family: int = one.family) -> Real:
-                    return all_broken(family, x, theta, sign, demands)
+                    return all_broken(family, x, theta, sign, zoned(demands))
 
                 chosen.append(most_alike(one, MAX_SUITED, longest, kept, lost))
         return chosen

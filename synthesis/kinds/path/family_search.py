@@ -8,7 +8,8 @@ until the cost is zero: each start leads to the nearest member of the family.
 The other demands (transmission angle, lengths, order, places of P and of the moving pivots) are kept by few of these
 members, or by none. Therefore the ones that break them least are moved along the family: they descend again, with zero
 distances from the points as the aim and all demands held by multipliers, so that what is left of the freedom goes into
-the demands. All members that differ are driven.
+the demands. All members that differ are driven. Where a room is demanded, pivots are drawn in it instead
+(:mod:`synthesis.kinds.path.family_in_room`).
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ from synthesis.kinds.path.curve_limits import Held, broken, descend_within, pivo
 from synthesis.kinds.path.curve_shapes import alike
 from synthesis.kinds.path.curve_target import angles_at, smooth_steps
 from synthesis.kinds.path.design import FamilySearch, PathDesign, PathResult
+from synthesis.kinds.path.family_in_room import COST_TOLERANCE, members_in_room
 from synthesis.kinds.path.limits import setting_of
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.room_starts import bounded
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
@@ -48,9 +51,6 @@ MAX_FOLLOWED = 220
 MAX_STEPS = 150
 """Greatest number of steps of least squares; most members are reached in some twenty."""
 
-COST_TOLERANCE = 1e-22
-"""Cost, in squared task sizes, at which a descent has reached a member of the family."""
-
 MAX_LINK = 12.0
 """Longest link, in task sizes, where no limit is stated."""
 
@@ -69,6 +69,9 @@ ENOUGH = 24
 MAX_MOVED = 32
 """Greatest number of linkages of a class that are moved in a round, those that break demands least."""
 
+ENOUGH_IN_ROOM = 2
+"""In a room: members that are verified for each design that is asked for."""
+
 PORTION = 2
 """Number of linkages to be moved that a thread takes at a time."""
 
@@ -82,6 +85,9 @@ class Member(NamedTuple):
 
 def solve_family(problem: PathProblem, progress: Progress) -> PathResult:
     """Solve a problem of three to eight points with demands."""
+    if bounded(problem):
+        found = members_in_room(problem, progress)
+        return _answer(problem, [Member(joints, 0.0) for joints in found.members], found.brought, progress)
     given = np.array([point.point for point in problem.points])
     centre, size = complex(given.mean()), problem.task_size
     points = (given - centre) / size
@@ -156,7 +162,9 @@ def _answer(problem: PathProblem, members: list[Member], brought: int, progress:
     met = [member.joints for member in sorted(members, key=lambda member: member.broken > 0.0)]
     driven = [met[k] for k in distinct(met, MAX_DRIVEN, SAME_DESIGN * size)]
     sifting = Sifting[PathDesign](problem)
-    sifting.sift(reported(driven, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified)
+    # The sweep of a room takes longer than all else that is verified.
+    enough = ENOUGH_IN_ROOM * problem.max_designs if bounded(problem) else None
+    sifting.sift(reported(driven, progress, (0.6, 1.0), "{done} of {all} linkages driven"), verified, enough)
     progress(1.0, "verified")
     text = (
         f"{brought} linkages near a curve through the points were brought to them, {len(met)} of them exactly and "

@@ -18,6 +18,7 @@ from synthesis.fit.demands import (
     DEMANDS,
     FAMILY,
     GIVEN,
+    LIMITS,
     LINKS,
     MOVING,
     POINT_BOX,
@@ -25,6 +26,8 @@ from synthesis.fit.demands import (
     SIGN,
     WHOLE,
 )
+from synthesis.fit.room import packed, zones_alone
+from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.linkage_statement import Region
 
@@ -35,7 +38,7 @@ TIMED, PHASED, ORDERED = range(DEMANDS, DEMANDS + 3)
 points are met in order."""
 
 SETTING = DEMANDS + 3
-"""Numbers of a setting."""
+"""Numbers of a setting; behind them stands the room (:mod:`synthesis.fit.room`), if there is one."""
 
 FREE, ABSOLUTE, GROUND_LINE = range(3)
 """The line from which prescribed crank angles are measured."""
@@ -107,7 +110,17 @@ def setting_of(
             out[GIVEN + 2 * k] = (x - origin.real) / size
         if y is not None:
             out[GIVEN + 2 * k + 1] = (y - origin.imag) / size
-    return out
+    return np.concatenate([out, packed(problem.space, origin, size)])
+
+
+def zoned(setting: Real) -> Real:
+    """A setting whose room is the zones of pivots alone, which cost no motion: for descents in great number."""
+    return np.concatenate([setting[:SETTING], zones_alone(setting[SETTING:])])
+
+
+def limits_of(setting: Real) -> int:
+    """How many margins a setting has: those of its room first, and then those of the demands."""
+    return int(margins_of(setting[SETTING:])) + LIMITS
 
 
 def _box(regions: list[Region | None], origin: complex, size: float) -> tuple[float, float, float, float]:

@@ -16,9 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synthesis.fit.chart import CRANK_ROCKER, DOUBLE_CRANK, DOUBLE_ROCKER, FOURBAR, UNKNOWNS
-from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN
+from synthesis.fit.demands import FAMILY, SIGN
+from synthesis.fit.room import packed
 from synthesis.kinds.path.curve_families import joints_of
-from synthesis.kinds.path.limits import LIMIT_WEIGHT, Usable, setting_of
+from synthesis.kinds.path.curve_limits import all_broken
+from synthesis.kinds.path.held import held
+from synthesis.kinds.path.limits import SETTING, Usable, limits_of, setting_of, zoned
 from synthesis.kinds.path.point_rows import path_rows
 from synthesis.kinds.path.point_starts import (
     COUPLER,
@@ -32,11 +35,11 @@ from synthesis.kinds.path.point_starts import (
     timed_starts,
 )
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.room_starts import RoomStarts, bounded, room_starts
 from synthesis.kinds.path.verification import verify_path
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism
-from synthesis.numerics.augmented_lagrangian import hold
 from synthesis.numerics.levenberg import descend_each
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
@@ -56,6 +59,9 @@ longer."""
 
 MAX_FEW = 18
 """Greatest number of points with :data:`FREE_STARTS`."""
+
+IN_ROOM = 300
+"""Starts of a family with their pivots in the zones of a room, beside these."""
 
 TIMED_SHARE = 0.15
 """Share of the starts with prescribed timing, those whose linear fit is best, that descends."""
@@ -85,6 +91,9 @@ MAX_FINALISTS = 24
 RETURNS, AGAIN = 1, 10
 """Perturbation of minima within the limits: number of rounds, and greatest number of results that are refined."""
 
+KEPT = 1e-9
+"""Violation of a room, in task sizes, that is none."""
+
 MANY, OF_MANY = 100, 6
 """With more points than the first, at most so many minima are refined and verified: each takes longer."""
 
@@ -108,12 +117,14 @@ _FAMILIES = {
 class PointTask(NamedTuple):
     """Points in task coordinates: rows (x, y, crank angle in radians, weight); the origin's place, the unit's length.
 
-    Where points have tolerances a weight is the inverse of one, 1 for the least.
+    Where points have tolerances a weight is the inverse of one, 1 for the least. ``room`` is what there is for a
+    linkage, packed (:mod:`synthesis.fit.room`).
     """
 
     rows: Real
     origin: complex
     size: float
+    room: Real
 
 
 class Candidate(NamedTuple):
@@ -139,7 +150,8 @@ def point_task(problem: PathProblem) -> PointTask:
         turns = turns + math.radians(math.remainder(problem.points[0].crank_angle or 0.0, 360.0))
     widths = problem.tolerances
     weights = np.ones(len(z)) if widths is None else widths.min() / widths
-    return PointTask(np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, weights], axis=1)), origin, size)
+    rows = np.ascontiguousarray(np.stack([unit.real, unit.imag, turns, weights], axis=1))
+    return PointTask(rows, origin, size, packed(problem.space, origin, size))
 
 
 def families(problem: PathProblem) -> list[int]:
@@ -166,6 +178,9 @@ def warm_up() -> None:
             mechanism = mechanism_of(Candidate(x, state, 0.0, Status.STEP_LIMIT, setting, 1), task)
             if mechanism is not None:
                 verify_path(problem, mechanism)
+    roomy = PathProblem.model_validate({"kind": "path", "points": points, "space": {"box": [[-3, -3], [3, 3]]}})
+    task, rng = point_task(roomy), np.random.default_rng(0)
+    room_starts(roomy, task.rows[:, 0] + 1j * task.rows[:, 1], task.origin, task.size, CRANK_ROCKER, rng, 4, 64)
 
 
 def fitted(
@@ -182,13 +197,19 @@ def fitted(
     ways = (1, -1) if problem.prescribed and problem.crank_direction == "either" else (1,)
     cases = [(way, family, sign) for way in ways for family in families(problem) for sign in (1.0, -1.0)]
     settings = [
-        setting_of(problem, task.origin, task.size, sign=sign, family=family, usable=usable)
+        zoned(setting_of(problem, task.origin, task.size, sign=sign, family=family, usable=usable))
         for _, family, sign in cases
     ]
+    drawn: dict[int, RoomStarts] = {}
+    if bounded(problem) and not problem.prescribed:
+        points = thinned.rows[:, 0] + 1j * thinned.rows[:, 1]
+        for family in families(problem):
+            drawn[family] = room_starts(problem, points, task.origin, task.size, family, rng, IN_ROOM)
     populations = []
     for n, ((way, _, _), setting) in enumerate(zip(cases, settings, strict=True)):
         progress(0.4 * n / len(cases), f"class {n + 1} of {len(cases)}: fitting from random starts")
-        populations.append(_descended(problem, _directed(thinned.rows, way), setting, len(cases), rng))
+        own = drawn.get(int(setting[FAMILY]))
+        populations.append(_descended(problem, _directed(thinned.rows, way), setting, len(cases), rng, own))
     for kick in range(KICKS):
         progress(0.4 + 0.2 * kick / KICKS, "perturbing the best fits")
         bases = [_different(_best(population, 4 * KICKED), KICKED) for population in populations]
@@ -241,7 +262,7 @@ def _population_of(minima: list[Candidate], case: tuple[int, int, float]) -> _Po
     own = [c for c in minima if c.way == way and c.setting[FAMILY] == family and c.setting[SIGN] == sign]
     own.sort(key=lambda candidate: candidate.cost)
     if not own:
-        return _empty(0, UNKNOWNS[FOURBAR], 0)
+        return _empty(0, UNKNOWNS[FOURBAR], 0, 0)
     population = _Population(*(np.array(column) for column in list(zip(*own, strict=True))[:4]))
     return _different(population, KICKED)
 
@@ -258,15 +279,22 @@ def _directed(rows: Real, way: int) -> Real:
     return rows if way > 0 else rows * np.array([1.0, 1.0, -1.0, 1.0])
 
 
-def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng: np.random.Generator) -> _Population:
-    """The population of one class and assembly after its descents from random starts."""
+def _descended(
+    problem: PathProblem,
+    rows: Real,
+    setting: Real,
+    cases: int,
+    rng: np.random.Generator,
+    drawn: RoomStarts | None = None,
+) -> _Population:
+    """The population of one class and assembly after its descents from random starts, and from those in a room."""
     n = len(rows)
     free = FREE_STARTS if n <= MAX_FEW else STARTS_OF_MANY
     count = (TIMED_STARTS if problem.prescribed else free) // cases
     phased = problem.prescribed and problem.crank_phase == "free"
     unknowns = UNKNOWNS[FOURBAR] + phased
     draws = np.concatenate([rng.normal(size=(count, 4)), rng.uniform(-1.0, 1.0, (count, DRAWS - 4))], axis=1)
-    population = _empty(count, unknowns, n)
+    population = _empty(count, unknowns, n, limits_of(setting))
     if problem.prescribed:
         timed_starts(draws, rows, setting, unknowns, population.starts, population.costs)
         count = math.ceil(TIMED_SHARE * count)
@@ -279,9 +307,20 @@ def _descended(problem: PathProblem, rows: Real, setting: Real, cases: int, rng:
 
         in_portions(begin, count, PORTION)
         population.states[:, :n] = runs
+        if drawn is not None:
+            population = _joined([population, _in_room(drawn, n, setting)])
     for share, steps, tolerance in THINNING:
         population = _best(population, max(math.ceil(share * count), 1))
         _descend(population, rows, setting, steps, tolerance)
+    return population
+
+
+def _in_room(drawn: RoomStarts, points: int, setting: Real) -> _Population:
+    """Starts that were drawn in a room, of one assembly."""
+    own = drawn.sign == setting[SIGN]
+    population = _empty(int(own.sum()), drawn.x.shape[1], points, limits_of(setting))
+    population.starts[:] = drawn.x[own]
+    population.states[:, :points] = drawn.theta[own] - drawn.x[own, 2, None]
     return population
 
 
@@ -300,14 +339,14 @@ def _kicked(
         if not len(base.costs) or (problem.prescribed and flip != SAME):
             continue
         size = len(base.costs) * copies
-        part = _empty(size, base.starts.shape[1], n)
+        part = _empty(size, base.starts.shape[1], n, limits_of(setting))
         runs = np.ascontiguousarray(base.states[:, :n])
         part.states[:, :n] = runs[np.arange(size) % len(runs)]
         reach = (KICK if flip == SAME else FLIP_KICK) * np.exp(SPREAD * rng.normal(size=(size, 1)))
         draws = reach * rng.normal(size=(size, 4))
         kicked(base.starts, part.states, its_sign, flip, draws, rows, setting, part.starts, part.costs)
         parts.append(part)
-    near = _joined(parts) if parts else _empty(0, UNKNOWNS[FOURBAR], n)
+    near = _joined(parts) if parts else _empty(0, UNKNOWNS[FOURBAR], n, limits_of(setting))
     for share, steps, tolerance in KICK_THINNING:
         near = _best(near, math.ceil(share * len(near.costs)))
         _descend(near, rows, setting, steps, tolerance)
@@ -324,10 +363,10 @@ class _Population(NamedTuple):
     statuses: Whole
 
 
-def _empty(count: int, unknowns: int, points: int) -> _Population:
+def _empty(count: int, unknowns: int, points: int, limits: int) -> _Population:
     return _Population(
         np.zeros((count, unknowns)),
-        np.zeros((count, 3 * points + LIMITS)),
+        np.zeros((count, 3 * points + limits)),
         np.full(count, np.inf),
         np.full(count, Status.STEP_LIMIT, np.int64),
     )
@@ -353,9 +392,10 @@ def _different(population: _Population, count: int) -> _Population:
 def _descend(population: _Population, rows: Real, setting: Real, steps: int, tolerance: float) -> None:
     if not len(population.costs):
         return
-    multipliers = np.zeros(LIMITS + 1)
-    multipliers[LIMITS] = SOFT_WEIGHT
-    most = 2 * len(rows) + LIMITS
+    limits = limits_of(setting)
+    multipliers = np.zeros(limits + 1)
+    multipliers[limits] = SOFT_WEIGHT
+    most = 2 * len(rows) + limits
 
     def work(some: slice) -> None:
         starts, states = population.starts[some], population.states[some]
@@ -379,20 +419,36 @@ def _joints(candidate: Candidate) -> Complex:
 
 
 def _held(candidate: Candidate, task: PointTask, thinned: PointTask) -> Candidate | None:
-    """The minimum within the limits that a candidate leads to, over all points; None where limits cannot be met."""
-    x, state = candidate.x.copy(), candidate.state
+    """The minimum within the limits that a candidate leads to, over all points; None where limits cannot be met.
+
+    A room is held over the motion only where the minimum without that does not keep it.
+    """
     n, few = len(task.rows), len(thinned.rows)
+    angles = candidate.state[:n]
     if n > few:
-        state = np.zeros(3 * n + LIMITS)
-        state[:n] = np.interp(np.arange(n), np.linspace(0, n - 1, few).round(), candidate.state[:few])
-    else:
-        state = state.copy()
-    rows = _directed(task.rows, candidate.way)
-    ended = np.empty(1)
-    status = hold(path_rows, x, rows, candidate.setting, state, 2 * n + LIMITS, LIMITS, EQUATIONS, LIMIT_WEIGHT, ended)
-    if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(ended[0]):
+        angles = np.interp(np.arange(n), np.linspace(0, n - 1, few).round(), candidate.state[:few])
+    found = _held_within(candidate, angles, candidate.setting, task)
+    if found is None or not len(task.room):
+        return found
+    roomy = np.concatenate([candidate.setting[:SETTING], task.room])
+    turned = found.state[None, :n] + found.x[2]
+    much = all_broken(int(roomy[FAMILY]), found.x[None], turned, roomy[SIGN : SIGN + 1], roomy)[0]
+    if much <= KEPT:
+        return found
+    kept = _held_within(found, found.state[:n], roomy, task)
+    # What is perturbed together has states of one length.
+    return kept and kept._replace(state=np.concatenate([kept.state[:n], found.state[n:]]))
+
+
+def _held_within(candidate: Candidate, angles: Real, setting: Real, task: PointTask) -> Candidate | None:
+    """The minimum within a setting that a candidate leads to from crank angles at all points."""
+    x, n = candidate.x.copy(), len(task.rows)
+    state = np.zeros(3 * n + limits_of(setting))
+    state[:n] = angles
+    status, cost = held(x, _directed(task.rows, candidate.way), setting, state)
+    if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(cost):
         return None
-    return candidate._replace(x=x, state=state, cost=float(ended[0]), status=Status(status))
+    return candidate._replace(x=x, state=state, cost=cost, status=status)
 
 
 def configuration_of(candidate: Candidate, task: PointTask) -> FourbarConfiguration | None:

@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 
 from synthesis.fit.chart import FOURBAR, LENGTHS, natural
 from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes
-from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, margins
+from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, WHOLE, margins
+from synthesis.fit.fourbar_room import room_rows
+from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.assignment import pool
-from synthesis.kinds.path.limits import ABSOLUTE, ORDERED, PHASED, TIMED
+from synthesis.kinds.path.limits import ABSOLUTE, ORDERED, PHASED, SETTING, TIMED
 from synthesis.numerics.augmented_lagrangian import limit_rows
 from synthesis.numerics.levenberg import ROWS
 
@@ -120,8 +122,8 @@ def settle(x: Real, lengths: Real, setting: Real, points: Real, angles: Real, bl
 
 
 @njit(cache=True, nogil=True)
-def _first_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> None:
-    """How the crank angle at the first point, from the ground line, moves with the unknowns.
+def _end_turn(by: Complex, timed: bool, absolute: bool, turn: Real) -> None:
+    """How the crank angle at the first point, or the last, from the ground line, moves with the unknowns.
 
     With free timing P stays where its way past the point is nearest: what ``by`` moves it along its way is undone.
     """
@@ -145,11 +147,11 @@ def path_rows(
 
     ``points`` are rows (x, y, crank angle, root of the weight); with free timing the third number is not used, and
     ``state`` has the crank angles from the ground line first; with prescribed timing they are written there. Behind
-    them stands room for two numbers a point, and the limits' margins are the last.
+    them stands room for two numbers a point, and the limits' margins are the last: those of a room, then the demands'.
     """
     n = len(points)
     lengths, slopes, by = np.empty(4), np.empty((4, 4)), np.empty(10, np.complex128)
-    turn = np.zeros(x.size)
+    turns = np.zeros((2, x.size))
     for i in range(LENGTHS, LENGTHS + 4):
         if not -MAX_ABS_LOG < x[i] < MAX_ABS_LOG:
             return -1
@@ -177,7 +179,9 @@ def path_rows(
         if not absolute:
             by[2] += by[9]
         if k == 0:
-            _first_turn(by, timed, absolute, turn)
+            _end_turn(by, timed, absolute, turns[0])
+        if k + 1 == n:
+            _end_turn(by, timed, absolute, turns[1])
         if not timed and (k + 1 == n or blocks[k + 1] != blocks[k]) and (k == 0 or blocks[k - 1] != blocks[k]):
             # Alone at its angle: what lies across the curve is all that is left.
             fast = math.sqrt(tx * tx + ty * ty)
@@ -204,5 +208,15 @@ def path_rows(
         m += 2
     ends = np.array([state[0], state[n - 1]])
     values, gradients = state[state.size - LIMITS :], np.empty((LIMITS, unknowns))
-    margins(x, lengths, slopes, ends, turn, setting, values, gradients)
-    return limit_rows(values, gradients, EQUATIONS, multipliers, residuals, jacobian, m)
+    margins(x, lengths, slopes, ends, turns[0], setting, values, gradients)
+    room = setting[SETTING:]
+    roomy = margins_of(room)
+    if roomy > 0:
+        kept = state[state.size - LIMITS - roomy : state.size - LIMITS]
+        whole = setting[WHOLE] > 0.0
+        m = room_rows(
+            x, lengths, slopes, sign, ends, turns, whole, room, multipliers, kept, residuals, jacobian, m
+        )  # fmt: skip
+        if m < 0:
+            return -1
+    return limit_rows(values, gradients, EQUATIONS, multipliers[roomy:], residuals, jacobian, m)

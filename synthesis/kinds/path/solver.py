@@ -31,6 +31,7 @@ from synthesis.kinds.path.nine_point_system import (
 from synthesis.kinds.path.other_linkages import solve_other
 from synthesis.kinds.path.point_fit import warm_up as warm_up_fits
 from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.room_starts import bounded
 from synthesis.kinds.path.starts import nine_point_start
 from synthesis.kinds.path.timed import solve_timed
 from synthesis.kinds.path.verify_cognates import with_cognates
@@ -79,7 +80,8 @@ def _solve_exactly(problem: PathProblem, progress: Progress) -> PathResult:
         return solve_timed(problem, progress)
     if len(problem.points) < NINE:
         near = solve_family(problem, part_of(progress, 0.0, FIRST_PART))
-        if near.search.accepted:
+        if near.search.accepted or bounded(problem):
+            # Of points that are drawn a room is not known to have any linkage: fits steer into it.
             progress(1.0, "verified")
             return near
         return _solve_nine(problem, part_of(progress, FIRST_PART, 1.0))
