@@ -40,6 +40,17 @@ POINTS = {
     "rounds": 1,
     "max_designs": 3,
 }
+TURNS = {
+    "kind": "function",
+    "pairs": [
+        {"input": x, "output": y} for x, y in ((0.0, 0.0), (20.0, 9.0), (40.0, 20.0), (60.0, 34.0), (80.0, 50.0))
+    ],
+    "zeros": None,
+    "max_designs": 3,
+}
+CORNER = {"polygon": [[500.0, 300.0], [560.0, 300.0], [560.0, 380.0]]}
+BESIDE = {"polygon": [[700.0, 300.0], [800.0, 300.0], [800.0, 340.0], [700.0, 340.0]]}
+BETWEEN = {"circle": {"center": [640.0, 180.0], "radius": 60.0}}
 BELOW = {"polygon": [[-3.0, -2.0], [0.0, -2.0], [0.0, 1.0], [-3.0, 1.0]]}
 PILLAR = {"polygon": [[1.6, 1.0], [2.4, 1.0], [2.4, 2.5], [1.6, 2.5]]}
 LEAF = [[0.0, -300.0], [20.0, -300.0], [20.0, 100.0], [0.0, 100.0]]
@@ -113,6 +124,15 @@ KEPT = {
     "obstacles": (LID, {"obstacles": [SHELF, POST], "clearance": 5.0, "link_width": 20.0}),
     "body": (LID, {"body": {"outline": LEAF}, "obstacles": [SHELF], "clearance": 5.0}),
     "path": (POINTS, {"fixed_pivots": {"input": BELOW}, "obstacles": [PILLAR], "link_width": 0.2, "clearance": 0.1}),
+    "function": (
+        TURNS,
+        {
+            "fixed_pivots": {"input": CORNER, "output": BESIDE},
+            "obstacles": [BETWEEN],
+            "link_width": 8.0,
+            "clearance": 3.0,
+        },
+    ),
     "cycle": (LID, {"obstacles": [{"circle": {"center": [450.0, -300.0], "radius": 30.0}}], "over": "cycle"}),
 }
 

@@ -76,6 +76,9 @@ _REASONS = DEFECTS | LENGTHS | {"covers_range": "branch_defect", "dials": "rever
 _NUMERICAL = {"residual", "cannot_be_driven"}
 """Reasons that say what could not be shown, not what cannot be."""
 
+_PLACES = {"fixed_pivot_zones", "moving_pivot_zones", "box", "obstacles"}
+"""Reasons that say that no place was found in a room, where the place is free."""
+
 
 def solve_function(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     """Solve a problem of function generation."""
@@ -144,7 +147,7 @@ _OPENED = (
 
 def warm_up() -> None:
     """Load what the solver and its verification need."""
-    for spec in (_WARM_FOURBAR, _WARM_SLIDER):
+    for spec in (_WARM_FOURBAR, _WARM_SLIDER, _WARM_ROOM):
         solve_function(FunctionProblem.model_validate(spec), lambda fraction, message: None)
 
 
@@ -361,7 +364,8 @@ class _Harvest(Sifting[FunctionDesign]):
 
     def determined(self, proved: bool, method: str) -> FunctionResult:
         """The answer where all linkages were computed."""
-        complete = proved and not _NUMERICAL & self.rejected.keys()
+        unknown = _NUMERICAL | (_PLACES if self.problem.fixed_pivots is None else set())
+        complete = proved and not unknown & self.rejected.keys()
         text = f"{len(self.passed)} of {self.candidates} real linkages satisfy all demands.{self.reasons()}"
         if not self.passed:
             text += " There are no others, so no design exists." if complete else " Others may exist."
@@ -408,4 +412,10 @@ _WARM_SLIDER = {
     "kind": "function",
     "mechanism": "slider_crank",
     "pairs": [{"input": x, "output": 10.0 * math.sin(x / 40.0)} for x in (0.0, 20.0, 40.0)],
+}
+_WARM_ROOM = {
+    "kind": "function",
+    "pairs": [{"input": 20.0 * x, "output": 9.0 * x + x * x} for x in range(5)],
+    "zeros": None,
+    "space": {"box": [[200.0, 200.0], [500.0, 500.0]]},
 }

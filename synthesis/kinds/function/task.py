@@ -13,13 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.fit.placed_in_room import Moving, placed_in_room
 from synthesis.kinds.function.closure import Closure, closure_of
 from synthesis.kinds.function.design import Dials, InputDial, OutputDial
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.kinds.function.structural_error import STEPS, Generators
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import FourbarConfiguration, fourbar_mechanism, slider_crank_mechanism, to_complex
-from synthesis.outcome.placement import placement
+from synthesis.outcome.placement import boxes, placement
 
 Real = NDArray[np.float64]
 ScaleRange = tuple[float, float]
@@ -141,7 +142,8 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
         f = abs(1.0 - pin)
         x = (f * f + (b - c) * (b + c)) / (2.0 * f)
         joint = pin + (1.0 - pin) / f * complex(x, sign * math.sqrt(max(b * b - x * x, 0.0)))
-    origin, along = _placed(task, [1.0, a, b, c], pin, joint)
+    turns = start + k * np.array([task.sample_inputs.min(), task.sample_inputs.max()])
+    origin, along = _placed(task, Moving(np.array([1.0, a, b, c]), sign, turns, theta), pin, joint)
     pin, joint = origin + along * pin, origin + along * joint
     frame = math.degrees(cmath.phase(along))
     to_input = 180.0 / math.pi
@@ -175,17 +177,24 @@ def built(task: FunctionTask, generator: Real, sign: float) -> tuple[FourbarMech
     return fourbar_mechanism(FourbarConfiguration(origin, pin, joint, origin + along, pin)), dials
 
 
-def _placed(task: FunctionTask, lengths: list[float], pin: complex, joint: complex) -> tuple[complex, complex]:
+def _placed(task: FunctionTask, linkage: Moving, pin: complex, joint: complex) -> tuple[complex, complex]:
     """O2, and the vector that the solver's unit along the ground line or the slide becomes.
 
-    ``lengths`` are those of the links, and A and B stand at ``pin`` and ``joint``, in the solver's frame.
+    A and B stand at ``pin`` and ``joint``, in the solver's frame.
     """
     problem = task.problem
     if problem.fixed_pivots is not None:
         o2 = to_complex(problem.fixed_pivots.input)
         along = to_complex(problem.fixed_pivots.output) - o2
         return o2, along / abs(along) * task.unit if problem.slides else along
+    constraints, lengths = problem.constraints, [float(length) for length in linkage.lengths]
     fixed, sized = ([0j], None) if problem.slides else ([0j, 1 + 0j], lengths)
     preferred = complex(task.unit if problem.slides else USUAL_GROUND)
-    found = placement(problem.constraints, fixed, [pin, joint], sized, preferred)
+    found = placement(constraints, fixed, [pin, joint], sized, preferred)
+    if problem.space is not None and not problem.slides:
+        limits = constraints.link_length
+        least = 0.0 if limits is None else limits.min / min(lengths)
+        most = math.inf if limits is None or limits.max is None else limits.max / max(lengths)
+        regions = [constraints.fixed_pivot_region] * 2 + [constraints.moving_pivot_region] * 2
+        found = placed_in_room(problem.space, linkage, boxes(regions), (least, most), found) or found
     return found.origin, found.along

@@ -1,0 +1,199 @@
+"""A fourbar whose place, direction and size are free, put where it fits into a room.
+
+Similarities z → o + w z are drawn with pivots in their zones; those that keep all zones best are looked at over the
+motion, and the best of them are moved to where all margins of the room (:mod:`synthesis.fit.room_margins`) are kept: by
+the simplex method of Nelder and Mead (Computer Journal 7, 1965, 308–313), since it is a function of four numbers
+with kinks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.fit.fourbar_room import stands, way_of
+from synthesis.fit.room import O2, O4, PLACES, A, B, packed, zones_alone
+from synthesis.fit.room_margins import ROW, margins_of, room_margins, steps_of
+from synthesis.model.space import Space
+from synthesis.model.zones import AnyOf, Zone
+from synthesis.numerics.placing import Boxes, Placing
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DRAWN, SWEPT, MOVED = 3000, 60, 3
+"""Places that are drawn, those of them that are looked at over the motion, and those that are moved from there."""
+
+ITERATIONS = 120
+"""Steps of the simplex method."""
+
+EDGE = 0.1
+"""Of the first simplex: share of the size, and radians."""
+
+SPREAD = 0.7
+"""Standard deviation of the logarithm of a drawn size, where no two zones tell it."""
+
+AWAY = 2.0
+"""Standard deviation of a drawn place from the origin, in ground links, where neither zones nor a box tell it."""
+
+
+class Moving(NamedTuple):
+    """A fourbar in its own frame, O2 at 0 and O4 at 1.
+
+    Attributes
+    ----------
+    lengths : float, shape (4,)
+        Of ground (1), input, coupler and output.
+    sign : float
+        Assembly.
+    ends : float, shape (2,)
+        Crank angles from the ground line that it is used between.
+    first : float
+        That at the first target.
+    """
+
+    lengths: Real
+    sign: float
+    ends: Real
+    first: float
+
+
+def placed_in_room(
+    space: Space, linkage: Moving, boxes: Boxes, sizes: tuple[float, float], preferred: Placing
+) -> Placing | None:
+    """A place where all margins of the room are kept; None where none is found.
+
+    One that breaks limits of size or boxes does not count: it would be rejected for a reason that is not the true one.
+
+    Parameters
+    ----------
+    space : Space
+        The room, length units.
+    linkage : Moving
+        The fourbar.
+    boxes : Boxes
+        Where O2, O4, A and B must lie besides, at the first target.
+    sizes : pair of float
+        Least and greatest length of the ground link.
+    preferred : Placing
+        A place without the room: taken if it fits, else tried with the others.
+    """
+    scale = abs(preferred.along)
+    room = packed(space, 0j, scale)
+    if not len(room):
+        return preferred
+    x = np.zeros(9)
+    begin, end, ring, _ = way_of(linkage.lengths, linkage.ends, False, room)
+    own, home = np.zeros((steps_of(ring), PLACES), np.complex128), np.zeros(PLACES, np.complex128)
+    if not stands(x, linkage.lengths, linkage.sign, begin, end, ring, linkage.first, own, home):
+        return None
+    sides = np.stack([boxes.left, boxes.right, boxes.low, boxes.high], axis=1) / scale
+    low, high = (math.log(max(size / scale, 1e-9)) if size < math.inf else math.inf for size in sizes)
+
+    def margins(tried: Real, of: Real) -> Real:
+        return np.asarray(_margins(of, own, ring, home, sides, low, high, np.ascontiguousarray(tried)))
+
+    here = np.array([preferred.origin.real / scale, preferred.origin.imag / scale, 0.0, np.angle(preferred.along)])
+    if margins(here[None], room)[0] >= 0.0:
+        return preferred
+    tried = np.concatenate([here[None], _drawn(space, scale, home)])
+    tried[:, 2] = np.clip(tried[:, 2], low, high)
+    zones = zones_alone(room)
+    if len(zones):
+        kept = margins(tried, zones)
+        tried = tried[np.argsort(-np.minimum(kept, 0.0), kind="stable")[:SWEPT]]
+    else:
+        tried = tried[:SWEPT]
+    kept = margins(tried, room)
+    order = np.argsort(-kept, kind="stable")[:MOVED]
+    best, value = tried[order[0]], float(kept[order[0]])
+    for start in tried[order] if value < 0.0 else ():
+        there, margin = _moved(start, lambda at: float(margins(at[None], room)[0]))
+        if margin > value:
+            best, value = there, margin
+        if value >= 0.0:
+            break
+    if value < 0.0:
+        return None
+    along = complex(scale * math.exp(best[2]) * np.exp(1j * best[3]))
+    return Placing(scale * complex(best[0], best[1]), along, True)
+
+
+def _moved(start: Real, margin: Callable[[Real], float]) -> tuple[Real, float]:
+    """Where a margin is greatest, or as soon as it is kept, and the margin there."""
+    from scipy.optimize import minimize
+
+    def kept(intermediate_result: OptimizeResult) -> None:
+        if intermediate_result.fun <= 0.0:
+            raise StopIteration
+
+    simplex = start + EDGE * np.concatenate([np.zeros((1, 4)), np.eye(4)])
+    options = {"maxiter": ITERATIONS, "initial_simplex": simplex}
+    found = minimize(lambda at: -margin(at), start, method="Nelder-Mead", callback=kept, options=options)
+    return np.asarray(found.x), -float(found.fun)
+
+
+def _drawn(space: Space, scale: float, home: Complex) -> Real:
+    """Places (x, y, logarithm of the size, direction) with one or two pivots in their zones, shape (n, 4)."""
+    rng = np.random.default_rng(0)
+    fixed, moving = space.fixed_pivots, space.moving_pivots
+    stated = [
+        (O2, None if fixed is None else fixed.input),
+        (O4, None if fixed is None else fixed.output),
+        (A, None if moving is None else moving.input),
+        (B, None if moving is None else moving.output),
+    ]
+    drawn = [
+        (home[joint], (zone if isinstance(zone, Zone) else AnyOf(zone)).sampled(rng, DRAWN) / scale)
+        for joint, zone in stated
+        if zone is not None
+    ]
+    if len(drawn) > 1:
+        (p, at), (q, other) = drawn[:2]
+        along = (other - at) / (q - p)
+    else:
+        along = np.exp(SPREAD * rng.normal(size=DRAWN) + 1j * rng.uniform(-math.pi, math.pi, DRAWN))
+        if drawn:
+            p, at = drawn[0]
+        else:
+            p, at = complex(home[:4].mean()), _about(space, scale, rng)
+    origin = at - along * p
+    return np.stack([origin.real, origin.imag, np.log(np.abs(along)), np.angle(along)], axis=1)
+
+
+def _about(space: Space, scale: float, rng: np.random.Generator) -> Complex:
+    """Places in the box, or about the origin where there is none, shape (n,)."""
+    if space.box is not None:
+        (left, low), (right, high) = space.box
+        return np.asarray((rng.uniform(left, right, DRAWN) + 1j * rng.uniform(low, high, DRAWN)) / scale)
+    return np.asarray(AWAY * (rng.normal(size=DRAWN) + 1j * rng.normal(size=DRAWN)))
+
+
+@njit(cache=True, nogil=True)
+def _margins(
+    room: Real, own: Complex, ring: bool, home: Complex, sides: Real, low: float, high: float, tried: Real
+) -> Real:
+    """The least margin of each place that is tried, those of its size and of the boxes of its pivots among them."""
+    values, rows = np.empty(margins_of(room)), np.empty((margins_of(room), ROW))
+    least = np.empty(len(tried))
+    for i in range(len(tried)):
+        x, y, size, turn = tried[i]
+        origin, along = complex(x, y), math.exp(size) * complex(math.cos(turn), math.sin(turn))
+        there = origin + along * home
+        room_margins(room, origin + along * own, ring, there, values, rows)
+        least[i] = min(values.min(), size - low, high - size)
+        for k, joint in enumerate((O2, O4, A, B)):
+            place = there[joint]
+            least[i] = min(
+                least[i], place.real - sides[k, 0], sides[k, 1] - place.real,
+                place.imag - sides[k, 2], sides[k, 3] - place.imag,
+            )  # fmt: skip
+    return least
