@@ -30,11 +30,11 @@ Real = NDArray[np.float64]
 VIOLATION_TOLERANCE = 1e-11
 """Violation of a limit (task sizes; shares of a length) that counts as rounding."""
 
-MAX_ROUNDS = 20
-"""Greatest number of descents, with the multipliers renewed after each."""
+MAX_ROUNDS, MAX_STEPS = 20, 300
+"""Number of descents, and of steps of each, after which a problem of a few unknowns has no minimum."""
 
-MAX_STEPS, TOLERANCE = 300, 1e-14
-"""Greatest number of steps of each, and its tolerance: see :func:`synthesis.numerics.levenberg.descend`."""
+TOLERANCE = 1e-14
+"""Of a descent: see :func:`synthesis.numerics.levenberg.descend`."""
 
 SLOW_DECREASE, WEIGHT_INCREASE = 0.25, 10.0
 """Where a descent leaves more than the first share of the violation, the weight is multiplied by the second."""
@@ -95,54 +95,10 @@ def _renew(margins: Real, equations: int, multipliers: Real) -> float:
     return worst
 
 
-@njit(cache=True, nogil=True)
-def _held(
-    rows: Any,
-    x: Real,
-    points: Real,
-    setting: Real,
-    state: Real,
-    most: int,
-    limits: int,
-    equations: int,
-    weight: float,
-    enough: float,
-    rounds: int,
-    steps: int,
-    ended: Real,
-) -> int:
-    """See :func:`hold` and :func:`hold_within`."""
-    multipliers = np.zeros(limits + 1)
-    multipliers[limits] = weight
-    residuals, jacobian = np.empty(most), np.zeros((most, x.size))
-    margins = state[state.size - limits :]
-    before = worst = np.inf
-    status = _IMPOSSIBLE
-    ended[0] = np.inf
-    for _ in range(rounds):
-        _, status = descend(rows, x, points, setting, multipliers, state, most, steps, TOLERANCE)
-        if status == _IMPOSSIBLE:
-            return _IMPOSSIBLE
-        worst = _renew(margins, equations, multipliers)
-        if worst <= enough:
-            break
-        if worst > SLOW_DECREASE * before:
-            # Multipliers are forces: they are kept when the weight changes.
-            multipliers[limits] *= WEIGHT_INCREASE
-        before = worst
-    multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
-    m = rows(x, points, setting, multipliers, state, residuals, jacobian)
-    if m < 0:
-        return _IMPOSSIBLE
-    ended[0] = half_square(residuals, m)
-    end: int = status if worst <= 10.0 * enough else _INFEASIBLE
-    return end
-
-
 @njit(
     types.int64(
         types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, types.int64,
-        types.int64, types.int64, types.float64, VECTOR
+        types.int64, types.int64, types.float64, types.int64, types.int64, VECTOR
     ),
     cache=True,
     nogil=True,
@@ -157,9 +113,14 @@ def hold(
     limits: int,
     equations: int,
     weight: float,
+    rounds: int,
+    steps: int,
     ended: Real,
 ) -> int:
     """Descend in place to a minimum at which all limits hold; returns the status of the last descent.
+
+    Limits with kinks, such as least distances have, may be left violated: where several sides of one bear a load the
+    multipliers do not converge, and the violation falls only as the weight grows.
 
     Parameters
     ----------
@@ -169,43 +130,34 @@ def hold(
         Number of limits, and how many of them, the last, are equations.
     weight : float
         w at first.
+    rounds, steps : int
+        Greatest number of descents, with the multipliers renewed after each, and of steps of each:
+        :data:`MAX_ROUNDS`, :data:`MAX_STEPS`, or fewer where they are expensive.
     ended : float64, shape (1,)
         Gets half the sum of squares there, without that of the limits; infinite where there is no minimum.
     """
-    end: int = _held(
-        rows, x, points, setting, state, most, limits, equations, weight, VIOLATION_TOLERANCE, MAX_ROUNDS, MAX_STEPS,
-        ended,
-    )  # fmt: skip
-    return end
-
-
-@njit(
-    types.int64(
-        types.FunctionType(ROWS), VECTOR, MATRIX, VECTOR, VECTOR, types.int64,
-        types.int64, types.int64, types.float64, types.float64, types.int64, types.int64, VECTOR
-    ),
-    cache=True,
-    nogil=True,
-)  # fmt: skip
-def hold_within(
-    rows: Any,
-    x: Real,
-    points: Real,
-    setting: Real,
-    state: Real,
-    most: int,
-    limits: int,
-    equations: int,
-    weight: float,
-    enough: float,
-    rounds: int,
-    steps: int,
-    ended: Real,
-) -> int:
-    """As :func:`hold`, until no limit is violated by more than ``enough``, in ``rounds`` descents of ``steps`` at most.
-
-    For limits with kinks, such as least distances have: where several sides of one bear a load the multipliers do not
-    converge, and the violation falls only as the weight grows.
-    """
-    end: int = _held(rows, x, points, setting, state, most, limits, equations, weight, enough, rounds, steps, ended)
+    multipliers = np.zeros(limits + 1)
+    multipliers[limits] = weight
+    residuals, jacobian = np.empty(most), np.zeros((most, x.size))
+    margins = state[state.size - limits :]
+    before = worst = np.inf
+    status = _IMPOSSIBLE
+    ended[0] = np.inf
+    for _ in range(rounds):
+        _, status = descend(rows, x, points, setting, multipliers, state, most, steps, TOLERANCE)
+        if status == _IMPOSSIBLE:
+            return _IMPOSSIBLE
+        worst = _renew(margins, equations, multipliers)
+        if worst <= VIOLATION_TOLERANCE:
+            break
+        if worst > SLOW_DECREASE * before:
+            # Multipliers are forces: they are kept when the weight changes.
+            multipliers[limits] *= WEIGHT_INCREASE
+        before = worst
+    multipliers[:limits], multipliers[limits] = 0.0, MIN_WEIGHT
+    m = rows(x, points, setting, multipliers, state, residuals, jacobian)
+    if m < 0:
+        return _IMPOSSIBLE
+    ended[0] = half_square(residuals, m)
+    end: int = status if worst <= 10.0 * VIOLATION_TOLERANCE else _INFEASIBLE
     return end

@@ -120,13 +120,13 @@ def test_the_crank_is_led_by_its_pin(studio):
 def test_positions_are_dragged_turned_and_moved_by_keys(studio):
     page = studio.page
     state(page, PLAIN)
-    drag(page, ".target:nth-of-type(2) .dot", (60, -40))
+    drag(page, ".target >> nth=1 >> .dot", (60, -40))
     moved = stated(page)["positions"][1]
     assert moved["x"] > 10.5
     assert moved["y"] > 5.5
     assert moved["angle"] == 30.0
     assert float(page.input_value('[data-path="/problem/positions/1/x"]')) == moved["x"]
-    drag(page, ".target:nth-of-type(1) .knob", (-40, -40))
+    drag(page, ".target >> nth=0 >> .knob", (-40, -40))
     assert 60.0 < stated(page)["positions"][0]["angle"] < 120.0
     page.locator(".target").nth(0).focus()
     page.keyboard.press("ArrowLeft")

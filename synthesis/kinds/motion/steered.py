@@ -47,7 +47,7 @@ from synthesis.kinds.motion.verification import verify
 from synthesis.model.kind import Progress
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMechanism
 from synthesis.model.linkages import FourbarConfiguration, body_shift, driven_fourbar, fourbar_mechanism
-from synthesis.numerics.augmented_lagrangian import hold
+from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, hold
 from synthesis.numerics.portions import in_portions
 from synthesis.numerics.status import Status
 from synthesis.outcome.ranking import distinct, ranked
@@ -194,7 +194,10 @@ def _all_steered(rows: Real, begun: list[_Linkage]) -> list[_Linkage]:
     def steered(linkage: _Linkage) -> _Linkage | None:
         x, state, cost = linkage.x.copy(), np.zeros(limits(n)), np.empty(1)
         most = len(x) + OTHERS + limits(n)
-        status = hold(steered_rows, x, rows, linkage.setting, state, most, limits(n), equations(n), WEIGHT, cost)
+        status = hold(
+            steered_rows, x, rows, linkage.setting, state, most, limits(n), equations(n), WEIGHT, MAX_ROUNDS, MAX_STEPS,
+            cost,
+        )  # fmt: skip
         if status in (Status.IMPOSSIBLE, Status.INFEASIBLE) or not math.isfinite(cost[0]):
             return None
         return _Linkage(x, linkage.setting)

@@ -12,7 +12,7 @@ from synthesis.fit.room import AIM
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.limits import LIMIT_WEIGHT, SETTING, limits_of
 from synthesis.kinds.path.point_rows import path_rows
-from synthesis.numerics.augmented_lagrangian import VIOLATION_TOLERANCE, hold, hold_within
+from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, VIOLATION_TOLERANCE, hold
 from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
@@ -40,15 +40,11 @@ def held(x: Real, rows: Real, setting: Real, state: Real) -> tuple[Status, float
     """
     limits, roomy = limits_of(setting), int(margins_of(setting[SETTING:]))
     most, ended = 2 * len(rows) + limits, np.empty(1)
-    if not roomy:
-        return Status(hold(path_rows, x, rows, setting, state, most, limits, EQUATIONS, LIMIT_WEIGHT, ended)), ended[0]
+    rounds, steps = (ROUNDS, STEPS) if roomy else (MAX_ROUNDS, MAX_STEPS)
     status = Status(
-        hold_within(
-            path_rows, x, rows, setting, state, most, limits, EQUATIONS, LIMIT_WEIGHT, VIOLATION_TOLERANCE, ROUNDS,
-            STEPS, ended,
-        )
-    )  # fmt: skip
-    if status is Status.INFEASIBLE:
+        hold(path_rows, x, rows, setting, state, most, limits, EQUATIONS, LIMIT_WEIGHT, rounds, steps, ended)
+    )
+    if roomy and status is Status.INFEASIBLE:
         # A least distance has kinks, at which multipliers do not come to rest.
         margins = state[len(state) - limits :]
         room, demands = margins[:roomy], margins[roomy:]

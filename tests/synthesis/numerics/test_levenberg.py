@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from synthesis.numerics.augmented_lagrangian import hold, limit_rows
+from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, hold, limit_rows
 from synthesis.numerics.cholesky import solve_positive
 from synthesis.numerics.levenberg import ROWS, descend
 from synthesis.numerics.status import Status
@@ -44,7 +44,7 @@ def descended(start, stated, steps=200):
 
 def held(start, stated):
     x, ended = np.array(start), np.empty(1)
-    status = hold(valley, x, np.zeros((1, 1)), stated, np.zeros(3), 6, 3, 1, 1.0, ended)
+    status = hold(valley, x, np.zeros((1, 1)), stated, np.zeros(3), 6, 3, 1, 1.0, MAX_ROUNDS, MAX_STEPS, ended)
     return x, float(ended[0]), Status(status)
 
 
