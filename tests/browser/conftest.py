@@ -9,6 +9,7 @@ from tests.service.running import ROOT, RunningServer, until
 
 CHROMIUM = "/usr/bin/chromium"
 SCREENS = ROOT / "var" / "screens"
+DESKTOP = {"width": 1360, "height": 1000}
 
 FOURBAR = {
     "mechanism": {
@@ -26,7 +27,8 @@ addEventListener("securitypolicyviolation", (event) =>
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory):
-    running = RunningServer(tmp_path_factory.mktemp("studio"))
+    # A page has one job at a time, beside those that the worker for short ones takes.
+    running = RunningServer(tmp_path_factory.mktemp("studio"), workers=1)
     # On a busy machine the analysis core is loaded some time after the server is ready; until then it answers 503,
     # which the page bears, but the browser reports.
     until(lambda: running.client.post("/v1/analyses", json=FOURBAR).status_code == 200, 300, "the analysis core")
@@ -45,10 +47,12 @@ def chromium():
 
 
 class Studio:
-    """The page in a window of its own, and whatever went wrong in it."""
+    """The page in a window, and whatever went wrong in it."""
 
     def __init__(self, browser, url, ready="#fields .field", **options):
         self.url = url
+        self.ready = ready
+        self.viewport = options.get("viewport")
         self.wrong = []
         self.context = browser.new_context(accept_downloads=True, **options)
         self.context.set_default_timeout(60_000)
@@ -57,12 +61,31 @@ class Studio:
         self.page.on("console", lambda said: self.wrong.append(said.text) if said.type == "error" else None)
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
         self.page.on("request", self._asked)
-        self.page.goto(f"{url}/")
-        self.page.wait_for_selector(ready)
+        self.load()
 
     def _asked(self, request):
         if not request.url.startswith((self.url, f"blob:{self.url}")):
             self.wrong.append(f"request to another host: {request.url}")
+
+    def load(self):
+        """The page as it is when it is opened: no job, no key, the first example."""
+        self.page.goto(f"{self.url}/")
+        self.page.wait_for_selector(self.ready)
+
+    def leave(self):
+        """Empty the window: the next test finds nothing of this one, and nothing runs on; what went wrong fails."""
+        for other in self.context.pages:
+            if other is not self.page:
+                other.close()
+        wrong, self.wrong = self.wrong, []
+        if self.page.url.startswith(self.url):
+            self.page.evaluate("sessionStorage.clear(); localStorage.clear()")
+        self.context.clear_cookies()
+        self.page.goto("about:blank")
+        self.page.emulate_media(media="null", color_scheme="null", reduced_motion="null")
+        self.page.set_viewport_size(self.viewport)
+        self.wrong.clear()
+        assert wrong == []
 
     def solve(self):
         self.page.click("#solve")
@@ -77,21 +100,64 @@ class Studio:
         assert self.wrong == []
 
 
+@pytest.fixture(scope="session")
+def windows(chromium, server):
+    """Windows by their options. To open one costs three times as much as to load the page in it anew."""
+    opened = {}
+    yield opened
+    for one in opened.values():
+        one.close()
+
+
 @pytest.fixture
-def open_studio(chromium, server):
-    """Opens windows; at the end none of them may have had an error."""
-    opened = []
+def open_studio(chromium, server, windows):
+    """Loads the page into the window that has these options; at the end none of them may have had an error."""
+    used = []
 
     def opens(**options):
-        options.setdefault("viewport", {"width": 1360, "height": 1000})
-        opened.append(Studio(chromium, server.url, **options))
-        return opened[-1]
+        options.setdefault("viewport", dict(DESKTOP))
+        key = repr(sorted(options.items()))
+        assert key not in used, "a test that needs the same window twice opens one of its own"
+        if key in windows:
+            windows[key].load()
+        else:
+            windows[key] = Studio(chromium, server.url, **options)
+        used.append(key)
+        return windows[key]
 
     yield opens
-    for one in opened:
-        one.close()
+    for key in used:
+        _left(windows, key)
+
+
+def _left(windows, key):
+    """A window in which something went wrong serves no other test."""
+    try:
+        windows[key].leave()
+    except BaseException:
+        windows.pop(key).context.close()
+        raise
 
 
 @pytest.fixture
 def studio(open_studio):
     return open_studio()
+
+
+@pytest.fixture
+def kept_studio(chromium, server, windows):
+    """A page that is not loaded anew, for a test that begins with a statement, looks at it, and solves nothing."""
+    if "kept" not in windows:
+        windows["kept"] = Studio(chromium, server.url, viewport=dict(DESKTOP))
+    studio = windows["kept"]
+    yield studio
+    if studio.wrong or studio.page.url != f"{studio.url}/":
+        windows.pop("kept").close()
+
+
+@pytest.fixture
+def own_studio(chromium, server):
+    """In a window of its own, for a test that changes the window itself."""
+    studio = Studio(chromium, server.url, viewport=dict(DESKTOP))
+    yield studio
+    studio.close()

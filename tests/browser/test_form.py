@@ -26,9 +26,9 @@ def show(page, problem):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_field_of_a_kind_has_its_control(studio, kind):
+def test_every_field_of_a_kind_has_its_control(kept_studio, kind):
     """No field is left to the JSON; each number has its unit beside it, where it has one."""
-    page = studio.page
+    page = kept_studio.page
     page.select_option("#kind", kind)
     for n, _ in enumerate(examples(kind)):
         page.select_option("#example", str(n))

@@ -242,8 +242,8 @@ def test_a_zone_is_drawn_by_touch(open_studio):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_linkage_has_room_and_nothing_else(studio, kind):
-    page = studio.page
+def test_every_linkage_has_room_and_nothing_else(kept_studio, kind):
+    page = kept_studio.page
     state(page, example(kind))
     assert page.locator("#room-tools").count() == (kind in LINKAGES)
     if kind not in LINKAGES:

@@ -28,8 +28,8 @@ SCRIPT_MS = 4.0
 """A quarter of a frame: the rest is the browser's, for layout and paint."""
 
 
-def test_two_hundred_designs_are_shown_and_one_of_them_moves_smoothly(open_studio):
-    studio = open_studio(ready="body")
+def test_two_hundred_designs_are_shown_and_one_of_them_moves_smoothly(own_studio):
+    studio = own_studio
     page = studio.page
     page.add_init_script(MEASURE)
     page.reload()
@@ -71,7 +71,8 @@ FRAMES = """() => {
 """Notes how long after a move of the pointer the next frame is done."""
 
 
-def test_the_picture_follows_a_dragged_pin_within_50_ms(studio):
+def test_the_picture_follows_a_dragged_pin_within_50_ms(own_studio):
+    studio = own_studio
     page = studio.page
     state(page, PLAIN)
     studio.solve()

@@ -136,9 +136,9 @@ def test_the_pivot_of_a_dwell_and_the_linkage_of_a_parallel_motion(studio):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_example_stands_on_its_canvas(studio, kind):
+def test_every_example_stands_on_its_canvas(kept_studio, kind):
     """Each example is one click away, and planar kinds show what they place, if they place anything."""
-    page = studio.page
+    page = kept_studio.page
     page.select_option("#kind", kind)
     for n, example in enumerate(examples(kind)):
         page.select_option("#example", str(n))
@@ -153,7 +153,7 @@ def test_every_example_stands_on_its_canvas(studio, kind):
         labels = page.locator("#sketch .target").evaluate_all("all => all.map(one => one.getAttribute('aria-label'))")
         assert all(label and "NaN" not in label for label in labels)
     if kind in PLANAR:
-        studio.screen(f"state-{kind}")
+        kept_studio.screen(f"state-{kind}")
 
 
 def test_a_pasted_statement_of_another_kind_says_what_it_is_about(studio):

@@ -169,8 +169,7 @@ def test_rows_are_pasted_from_a_spreadsheet(studio):
     ]
 
 
-def test_a_fault_stands_at_its_field(open_studio):
-    studio = open_studio()
+def test_a_fault_stands_at_its_field(studio):
     page = studio.page
     page.fill('[data-path="/problem/max_designs"]', "0")
     page.fill('[data-path="/problem/positions/1/angle"]', "1e12")
@@ -189,8 +188,8 @@ def test_a_fault_stands_at_its_field(open_studio):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_form_changes_nothing_that_nobody_edits(studio, kind):
-    page = studio.page
+def test_the_form_changes_nothing_that_nobody_edits(kept_studio, kind):
+    page = kept_studio.page
     page.select_option("#kind", kind)
     for n, example in enumerate(examples(kind)):
         page.select_option("#example", str(n))
