@@ -5,7 +5,6 @@
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
 # make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1
-# make campaign-browser  those of the campaign that drive the studio
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
@@ -24,8 +23,8 @@ SPREAD := -n 2 --dist loadfile
 
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign campaign-browser demo check quick \
-    bench openapi lock clean suite cluster-rabbitmq cluster-redis
+.PHONY: serve test fuzz test-cluster engines test-faults test-browser chromium campaign demo check quick bench openapi lock \
+    clean suite cluster-rabbitmq cluster-redis
 
 serve: $(STAMP)
 	@exec $(BIN)/mechsynth serve
@@ -64,8 +63,8 @@ engines:
 TIMED := tests/browser/test_smoothness.py
 
 test-browser: $(STAMP) $(NODE) chromium
-	$(BIN)/pytest -m "browser and not campaign" $(SPREAD) --ignore $(TIMED)
-	$(BIN)/pytest -m "browser and not campaign" $(TIMED)
+	$(BIN)/pytest -m browser $(SPREAD) --ignore $(TIMED)
+	$(BIN)/pytest -m browser $(TIMED)
 
 chromium:
 	@test -x /usr/bin/chromium || { test "$$(id -u)" = 0 && command -v apt-get >/dev/null \
@@ -76,10 +75,6 @@ SHARE := 0.1
 
 campaign: $(STAMP)
 	$(BIN)/pytest -m "campaign and not browser" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py')
-
-# What of the campaign drives the studio needs Chromium. It may be nothing, which pytest tells by its exit status 5.
-campaign-browser: $(STAMP) $(NODE) chromium
-	$(BIN)/pytest -m "campaign and browser" --campaign-share $(SHARE) $(SPREAD) tests/browser tests/node || test $$? = 5
 
 fuzz: $(STAMP)
 	$(BIN)/pytest -m fuzz -s
