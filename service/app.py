@@ -15,7 +15,7 @@ from starlette.types import Lifespan
 from service.access.gate import Gate
 from service.access.keys import KeyStore
 from service.analyst import Analyst
-from service.api import analyses, designs, docs, errors, events, health, jobs, metrics, problems, studio
+from service.api import analyses, designs, docs, errors, events, forces, health, jobs, metrics, problems, studio
 from service.drawings import Drawings
 from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
@@ -108,6 +108,8 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
     routers = (
         jobs.router,
         designs.router,
+        forces.reading,
+        forces.stating,
         events.router,
         analyses.router,
         problems.router,

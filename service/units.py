@@ -5,6 +5,15 @@ from __future__ import annotations
 from synthesis.model.dimension import Dimension
 from synthesis.model.statement import StatedProblem
 
+_SI = {
+    Dimension.POWER: "W",
+    Dimension.DENSITY: "kg/m³",
+    Dimension.INERTIA: "kg·m²",
+    Dimension.TORSION_STIFFNESS: "N·m/rad",
+    Dimension.GRAVITY: "m/s²",
+}
+"""What only the masses and loads of a linkage have."""
+
 
 def symbols(problem: StatedProblem) -> dict[Dimension, str]:
     """The symbol of each dimension in the units of a problem; forces and masses of inches are those of pounds-force."""
@@ -13,6 +22,17 @@ def symbols(problem: StatedProblem) -> dict[Dimension, str]:
     displacement, rate = ("°", "rad") if problem.oscillating else (length, length)
     output, way = (length, length) if problem.slides else ("°", "rad")
     force = "lbf" if inches else "N"
+    stated = {
+        Dimension.FORCE: force,
+        Dimension.STIFFNESS: f"{force}/{length}",
+        Dimension.MASS: "lbf·s²/in" if inches else "kg",
+        Dimension.TORQUE: f"{force}·{length}",
+        **_SI,
+    }
+    if problem.force_units == "si":
+        stated |= {Dimension.FORCE: "N", Dimension.STIFFNESS: "N/m", Dimension.MASS: "kg", Dimension.TORQUE: "N·m"}
+    elif problem.force_units == "consistent":
+        stated = dict.fromkeys(stated, "")  # the units of such a set are the client's
     return {
         Dimension.LENGTH: length,
         Dimension.AREA: f"{length}²",
@@ -29,9 +49,6 @@ def symbols(problem: StatedProblem) -> dict[Dimension, str]:
         Dimension.LENGTH_PER_RADIAN: f"{length}/rad",
         Dimension.ROTATIONAL_SPEED: "1/min",
         Dimension.RADIAN_FREQUENCY: "rad/s",
-        Dimension.FORCE: force,
-        Dimension.STIFFNESS: f"{force}/{length}",
-        Dimension.MASS: "lbf·s²/in" if inches else "kg",
-        Dimension.TORQUE: f"{force}·{length}",
         Dimension.PERCENT: "%",
+        **stated,
     }

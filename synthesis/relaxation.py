@@ -21,9 +21,10 @@ from typing import Any, NamedTuple
 from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
 from synthesis.model.dimension import LENGTH
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_statement import Constraints, Region
+from synthesis.model.linkage_statement import FORCES, Constraints, Region
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.allowance import Allowance, Metered
+from synthesis.outcome.forces import with_force_checks, with_forces
 from synthesis.proof.constraints import constraint_checks, within_zone
 from synthesis.proof.measures import Measures, link_lengths
 from synthesis.proof.room import judged_by_room
@@ -66,7 +67,7 @@ REACHABLE: Mapping[str, tuple[str, Callable[[Sequence[float]], float]]] = {
 DRIVER_PIVOT_REGION = "driver_pivot_region"
 """What the zone of a driver's pivot is called among the constraints."""
 
-CONSTRAINT_OF = {
+CONSTRAINT_OF: dict[str, str] = {
     "transmission_angle": "min_transmission_angle",
     "grashof": "grashof",
     "full_rotation": "full_rotation",
@@ -76,7 +77,7 @@ CONSTRAINT_OF = {
     "fixed_pivot_region": "fixed_pivot_region",
     "moving_pivot_region": "moving_pivot_region",
     "driver_pivot_region": DRIVER_PIVOT_REGION,
-}
+} | {name: f"max_{name}" for name in FORCES}
 """The constraint that a check is of; the zone of a driver's pivot counts as one."""
 
 DRIVER_JOINTS = "O6", "C", "D"
@@ -403,6 +404,8 @@ def _eased(problem: Any, check: str, limit: float) -> dict[str, Any] | None:
             update = {"link_length": lengths.model_copy(update={"max": limit})}
         case "fixed_pivot_region" | "moving_pivot_region":
             update = {check: getattr(constraints, check).widened(limit)}
+        case name if name in FORCES:
+            update = {f"max_{name}": limit}
         case "driver_pivot_region":
             wider = problem.driver.pivot_region.widened(limit)
             return {"driver_dyad": problem.driver.model_copy(update={"pivot_region": wider})}
@@ -427,6 +430,9 @@ def judged(problem: Any, design: Any) -> _Miss:
     names = {check.name for check in judged}
     checks = [check for check in design.verification.checks if check.name not in names] + judged
     verified = design.model_copy(update={"verification": Verification.of(checks)})
+    if problem.constraints.of_forces:
+        verified = with_force_checks(problem.constraints, with_forces(problem, verified))
+        judged += [check for check in verified.verification.checks if check.name in problem.constraints.of_forces]
     return _Miss(verified, [check for check in judged if not check.passed], _size_of(problem))
 
 

@@ -107,6 +107,8 @@ def _list(schema: Schema, root: Schema, rng: Random) -> list[Any]:
 def _object(schema: Schema, root: Schema, rng: Random) -> Schema:
     if isinstance(schema.get("additionalProperties"), dict):
         return {rng.choice(WORDS[3:]): drawn(schema["additionalProperties"], root, rng)}
+    if "patternProperties" in schema:
+        return {"0": drawn(*schema["patternProperties"].values(), root, rng)}
     wanted = schema.get("required", [])
     return {
         name: drawn(value, root, rng)

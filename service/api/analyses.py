@@ -78,6 +78,12 @@ async def answered(analyst: Analyst, work: Callable[P, bytes], *args: P.args, **
         raise busy("analyses") from None
 
 
+def invalid_body(error: ValidationError, body: Any) -> RequestValidationError:
+    """The refusal of a body that is validated where it is used."""
+    faults = error.errors(include_url=False, include_context=False, include_input=False)
+    return RequestValidationError([{**fault, "loc": ("body", *fault["loc"])} for fault in faults], body=body)
+
+
 def _analysed(body: Any) -> bytes:
     from kinematics import errors as kinematics
     from synthesis.analyses import parse_request
@@ -86,9 +92,7 @@ def _analysed(body: Any) -> bytes:
     try:
         request = parse_request(body)
     except ValidationError as error:
-        faults = error.errors(include_url=False, include_context=False, include_input=False)
-        located = [{**fault, "loc": ("body", *fault["loc"])} for fault in faults]
-        raise RequestValidationError(located, body=body) from None
+        raise invalid_body(error, body) from None
     contradictions = request.faults()
     if contradictions:
         raise invalid_request([(path, sentence(detail)) for path, detail in contradictions])
@@ -106,10 +110,14 @@ def complete(document: dict[str, Any]) -> None:
     from pydantic.json_schema import models_json_schema
 
     from synthesis.analyses import families
+    from synthesis.model.dynamics import DesignForcesRequest
 
     requests, answers = zip(*families(), strict=True)
     _, schemas = models_json_schema(
-        [*((model, "validation") for model in requests), *((model, "serialization") for model in answers)],
+        [
+            *((model, "validation") for model in (*requests, DesignForcesRequest)),
+            *((model, "serialization") for model in answers),
+        ],
         ref_template="#/components/schemas/{model}",
     )
     document["components"]["schemas"].update(

@@ -87,7 +87,7 @@ def _offer(form: Form, export: Export) -> None:
     """Add the operation that gives the files of one form."""
 
     async def file(desk: Desk, board: Board, tenant: Tenant, job_id: str, number: str) -> Response:
-        job, result = await _solved(desk, tenant, job_id)
+        job, result = await solved(desk, tenant, job_id)
         with span("drawing"):
             content = await _drawn(board, _file, job, result, number, form)
         return Response(content, media_type=export.media_type, headers=_HEADERS.get(form, _AS_IT_IS_SAID))
@@ -127,7 +127,7 @@ def _file(job: JobRow, result: str, number: str, form: Form) -> str | bytes:
 
     kind = KINDS[job.kind]
     designs = kind.result.model_validate_json(result).designs
-    n = _design_index(number, len(designs))
+    n = design_index(number, len(designs))
     problem = read(job.kind, job.problem)
     title = f"{job.label or problem.model_config.get('title') or job.kind}, design {n}"
     try:
@@ -179,7 +179,7 @@ async def report_job(
 
     The problem, what was searched and what is proven; the designs with drawings, checks, and dimensions with units.
     """
-    job, result = await _solved(desk, tenant, job_id)
+    job, result = await solved(desk, tenant, job_id)
     with span("report"):
         page, policy = await _drawn(board, _report, job, result, query.designs)
     headers = {
@@ -230,7 +230,7 @@ async def move_design(
     back; any other input goes from toggle to toggle of the branch that the targets lie on. The answer is that of
     `POST /v1/analyses`.
     """
-    _, result = await _solved(desk, tenant, job_id)
+    _, result = await solved(desk, tenant, job_id)
     return await answered(analyst, motion, result, number, query.steps)
 
 
@@ -247,7 +247,7 @@ def motion(result: str, number: str, steps: int) -> bytes:
     from synthesis.mechanisms import MechanismError
 
     designs = from_json(result)["designs"]
-    mechanism = designs[_design_index(number, len(designs))]["mechanism"]
+    mechanism = designs[design_index(number, len(designs))]["mechanism"]
     try:
         answer = family(mechanism).request.over_the_cycle(mechanism, steps)
     except (ValidationError, MechanismError, kinematics.MechanismError):
@@ -256,7 +256,14 @@ def motion(result: str, number: str, steps: int) -> bytes:
     return to_json(answer, inf_nan_mode="null")
 
 
-async def _solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
+async def solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]:
+    """A job and its result.
+
+    Raises
+    ------
+    Refusal
+        404 where there is no such job, 409 where it has no result.
+    """
     job = await job_of(desk, tenant, job_id)
     if job.result is None:
         what = "has no result yet" if not job.status.finished else f"is {job.status.value} and has no result"
@@ -264,7 +271,14 @@ async def _solved(desk: JobDesk, tenant: str, job_id: str) -> tuple[JobRow, str]
     return job, job.result
 
 
-def _design_index(number: str, designs: int) -> int:
+def design_index(number: str, designs: int) -> int:
+    """The index that a path states of so many designs.
+
+    Raises
+    ------
+    Refusal
+        404 where it is none.
+    """
     if not _DESIGN_NUMBER.fullmatch(number) or int(number) >= designs:
         raise not_found(f"The job has {designs} designs, counted from 0; this is none of them.")
     return int(number)

@@ -6,12 +6,20 @@ function symbols(problem) {
   const arm = String(problem.follower?.type ?? "").startsWith("oscillating");
   const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider" || (problem.stroke ?? null) !== null;
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
-  const force = length === "in" ? "lbf" : "N";
+  const inches = length === "in";
+  // Masses and loads of a linkage come with units of their own.
+  const own = problem.kind !== "cam" && problem.dynamics ? problem.dynamics.units ?? "si" : null;
+  const force = inches && own === null ? "lbf" : "N";
+  const forces = own === "consistent" ? {} : {
+    force, stiffness: own === null ? `${force}/${length}` : "N/m", mass: inches && own === null ? "lbf·s²/in" : "kg",
+    torque: own === null ? `${force}·${length}` : "N·m", power: "W", density: "kg/m³", inertia: "kg·m²",
+    "torsion stiffness": "N·m/rad", gravity: "m/s²",
+  };
   return /** @type {Record<string, string>} */ ({
     length, area: `${length}²`, "inverse length": `1/${length}`, angle: "°",
     displacement: lift, velocity: `${rate}/rad`, acceleration: `${rate}/rad²`, jerk: `${rate}/rad³`,
     output: slides ? length : "°", "length per radian": `${length}/rad`,
-    "rotational speed": "1/min", force, stiffness: `${force}/${length}`, mass: length === "in" ? "lbf·s²/in" : "kg", percent: "%",
+    "rotational speed": "1/min", percent: "%", ...forces,
   });
 }
 

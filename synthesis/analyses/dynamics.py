@@ -19,13 +19,20 @@ from synthesis.analyses.cyclic import closes, flywheel_of, harmonics_of, mean, r
 from synthesis.analyses.peaks import Peak, Samples, peaks
 from synthesis.mechanisms.courses import repeated_after
 from synthesis.mechanisms.machine import first_fixed, machine_of
-from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+from synthesis.model.dynamics import DynamicsBlock, LengthUnit, WeighedLinkage
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 HIGH_INDEX = 2.0
 """Joint force index above which a client is warned (Norton, Sec. 11.12)."""
+
+DETERMINED = ("ok", "stick")
+"""States of a position at which forces are known, but for a friction that the motion does not determine."""
+
+AGREEMENT = 1e-6
+"""Difference of two routes to the same force, as a share of its peak, with which it counts as known. They agree to 1e-9
+and better where no joint is near a dead centre."""
 
 NO_LOAD = 1e-6
 """Share of the largest part of a balance below which its sum is nothing that an error could be compared with."""
@@ -86,6 +93,36 @@ def forces_of(
         answer["max_joint_force_index"], told = _largest_index(course, extremes)
         warnings = warnings + told
     return answer | {"status": _status(course), "checks": _checks(found, check), "warnings": warnings}
+
+
+class Undetermined(ValueError):
+    """Forces that are not determined all along a motion; says what stands against them and where."""
+
+
+def peaks_of(
+    mechanism: Mechanism, block: WeighedLinkage, unit: LengthUnit, at: Real, speed: float
+) -> tuple[bool, dict[str, Peak]]:
+    """The peaks of all forces at constant speed, by the names of :func:`_quantities`; and whether the motion closes.
+
+    Raises
+    ------
+    Undetermined
+        Where the motion has a position without forces, or both routes to them disagree.
+    """
+    machine, _ = machine_of(block, mechanism, unit)
+    course = _driven(machine, at, np.full(len(at), speed), 0.0, bool(block.loads))
+    for status, position in zip(_status(course), at, strict=True):
+        if status not in DETERMINED:
+            raise Undetermined(f"{status} at {position:.4g}")
+    for name, difference in _checks(course.reactions, course.balance).items():
+        if difference is None or not difference <= AGREEMENT:
+            raise Undetermined(f"the check {name} finds a difference of {difference}")
+    closed = closes(mechanism, at, course.reactions.drive, repeated_after(block, mechanism))
+    drive_peaks, found = _extremes(machine, course, at, 0.0, closed)
+    least = Peak(-drive_peaks["min"], drive_peaks["at_min"])
+    greatest = Peak(drive_peaks["max"], drive_peaks["at"])
+    peaks = {name: Peak(peak["max"], peak["at"]) for name, peak in found.items()}
+    return closed, peaks | {"drive": max(greatest, least)}
 
 
 def _joint_forces(machine: Machine, course: Course, reported: list[str], rubbing: bool) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.drive import RealJet, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
-from synthesis.model.dynamics import DynamicsBlock
+from synthesis.model.dynamics import WeighedLinkage
 from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse
 
 Fault = tuple[str, str]
@@ -34,7 +34,7 @@ def turns_of(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> int:
     return course.turns or round(cycle(mechanism) / (2.0 * math.pi))
 
 
-def repeated_after(block: DynamicsBlock, mechanism: Mechanism) -> int:
+def repeated_after(block: WeighedLinkage, mechanism: Mechanism) -> int:
     """Turns of the input after which the mechanism and all its loads repeat; 0 where none do, or a slide drives."""
     if mechanism.driven_by_slide:
         return 0

@@ -21,7 +21,7 @@ from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
 from synthesis.mechanisms.courses import course_faults, course_of, gas_force, ground_slide, table_faults
 from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
-from synthesis.model.dynamics import DrivenSlide, DynamicsBlock, LengthUnit
+from synthesis.model.dynamics import DrivenSlide, DynamicsBlock, LengthUnit, WeighedLinkage
 from synthesis.model.loads import StatedLoad
 from synthesis.model.springs import StatedSpring
 
@@ -44,16 +44,24 @@ class BlockError(ValueError):
 
 def dynamics_faults(block: DynamicsBlock, mechanism: Mechanism) -> list[Fault]:
     """What the block names and the mechanism does not have: (JSON pointer below the request, detail)."""
-    faults = list(_faults(block, mechanism))
-    if not faults:
-        try:
-            machine_of(block, mechanism, "m")
-        except BlockError as error:
-            faults.append((error.path, error.detail))
-    return faults
+    faults = [*_named_faults(block, mechanism), *_report_faults(block, mechanism), *_drive_faults(block, mechanism)]
+    return faults or _unbuildable(block, mechanism)
 
 
-def _faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
+def weight_faults(block: WeighedLinkage, mechanism: Mechanism) -> list[Fault]:
+    """The same of what a linkage weighs and carries alone."""
+    return list(_named_faults(block, mechanism)) or _unbuildable(block, mechanism)
+
+
+def _unbuildable(block: WeighedLinkage, mechanism: Mechanism) -> list[Fault]:
+    try:
+        machine_of(block, mechanism, "m")
+    except BlockError as error:
+        return [(error.path, error.detail)]
+    return []
+
+
+def _named_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     moving = [link for link in mechanism.links if link != GROUND]
     no_link = f"no link in motion; they are {', '.join(moving)}"
     no_joint = f"no joint of the mechanism; they are {', '.join(mechanism.joints)}"
@@ -79,11 +87,9 @@ def _faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     for n, spring in enumerate(block.springs):
         yield from _spring_faults(f"/dynamics/springs/{n}", spring, mechanism)
     yield from _friction_faults(block, mechanism)
-    yield from _report_faults(block, mechanism)
-    yield from _drive_faults(block, mechanism)
 
 
-def _friction_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
+def _friction_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     if block.friction is None:
         return
     rubbing = rubbing_joints(mechanism)
@@ -144,7 +150,7 @@ def _drive_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]
             yield "/dynamics/drive/slide", detail
 
 
-def machine_of(block: DynamicsBlock, mechanism: Mechanism, unit: LengthUnit) -> tuple[Machine, list[str]]:
+def machine_of(block: WeighedLinkage, mechanism: Mechanism, unit: LengthUnit) -> tuple[Machine, list[str]]:
     """The machine of a block without faults, and what a client should be warned of.
 
     Raises
@@ -188,7 +194,7 @@ def machine_of(block: DynamicsBlock, mechanism: Mechanism, unit: LengthUnit) -> 
     return machine, warnings
 
 
-def _friction(block: DynamicsBlock, scale: float) -> Friction:
+def _friction(block: WeighedLinkage, scale: float) -> Friction:
     stated = block.friction
     if stated is None:
         return Friction()

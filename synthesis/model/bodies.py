@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from synthesis.model.dimension import LENGTH, MASS
+from synthesis.model.dimension import DENSITY, INERTIA, LENGTH, MASS
 from synthesis.model.statement import Degrees, NonNegative, Point, PositiveLength, PositiveNumber, Statement
 
 MOST_CORNERS = 500
@@ -47,7 +47,7 @@ class Part(Statement):
     diameter: PositiveLength | None = Field(default=None, description="Of a cylinder.")
     bore: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="Inner diameter of a cylinder.")
     axis: Literal["normal", "in_plane"] = Field(default="normal", description="Of a cylinder, to the plane or in it.")
-    density: PositiveNumber | None = Field(default=None, description="By default the shape's.")
+    density: Annotated[PositiveNumber, DENSITY] | None = Field(default=None, description="By default the shape's.")
 
     @model_validator(mode="after")
     def _sizes(self) -> Self:
@@ -68,7 +68,7 @@ class Shape(Statement):
     width all round.
     """
 
-    density: PositiveNumber
+    density: Annotated[PositiveNumber, DENSITY]
     thickness: PositiveLength | None = Field(default=None, description="Of the plate; not of parts.")
     width: PositiveLength | None = None
     ends: Literal["round", "square"] = Field(default="round", description="Of a bar of two joints.")
@@ -106,7 +106,9 @@ class StatedBody(Statement):
 
     mass: Annotated[NonNegative, MASS] | None = None
     cg: Place | None = Field(default=None, description="Centre of gravity in the reference configuration.")
-    inertia: NonNegative | None = Field(default=None, description="Moment of inertia about the centre of gravity.")
+    inertia: Annotated[NonNegative, INERTIA] | None = Field(
+        default=None, description="Moment of inertia about the centre of gravity."
+    )
     shape: Shape | None = None
 
     @model_validator(mode="after")

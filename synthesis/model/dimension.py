@@ -40,6 +40,11 @@ class Dimension(StrEnum):
     STIFFNESS = "stiffness"
     MASS = "mass"
     TORQUE = "torque"
+    POWER = "power"
+    DENSITY = "density"
+    INERTIA = "inertia"
+    TORSION_STIFFNESS = "torsion stiffness"
+    GRAVITY = "gravity"
     PERCENT = "percent"
 
 
@@ -62,6 +67,11 @@ FORCE = Dimension.FORCE
 STIFFNESS = Dimension.STIFFNESS
 MASS = Dimension.MASS
 TORQUE = Dimension.TORQUE
+POWER = Dimension.POWER
+DENSITY = Dimension.DENSITY
+INERTIA = Dimension.INERTIA
+TORSION_STIFFNESS = Dimension.TORSION_STIFFNESS
+GRAVITY = Dimension.GRAVITY
 PERCENT = Dimension.PERCENT
 
 Length = Annotated[float, LENGTH]

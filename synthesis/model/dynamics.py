@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from synthesis.model.bodies import Name, PointMass, StatedBody
+from synthesis.model.bodies import Name, PointMass, Shape, StatedBody
+from synthesis.model.dimension import GRAVITY, INERTIA, LENGTH, ROTATIONAL_SPEED
 from synthesis.model.loads import StatedLoad
 from synthesis.model.springs import StatedSpring
-from synthesis.model.statement import Degrees, NonNegative, Point, PositiveLength, Statement
+from synthesis.model.statement import Degrees, NonNegative, Number, Point, PositiveLength, Statement
 
 LengthUnit = Literal["mm", "cm", "m", "in"]
 
@@ -22,7 +23,7 @@ METRES: dict[str, float] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 class Gravity(Statement):
     """Acceleration of gravity."""
 
-    magnitude: NonNegative = Field(default=9.80665, description="m/s², or in the consistent units.")
+    magnitude: Annotated[NonNegative, GRAVITY] = Field(default=9.80665, description="m/s², or in the consistent units.")
     angle: Degrees = Field(default=270.0, description="Direction in which it pulls.")
 
     @property
@@ -60,7 +61,9 @@ class StatedFlywheel(Statement):
     coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0, allow_inf_nan=False)] = Field(
         description="(ω_max − ω_min)/ω_mean."
     )
-    existing_inertia: NonNegative = Field(default=0.0, description="Moment of inertia that the shaft has already.")
+    existing_inertia: Annotated[NonNegative, INERTIA] = Field(
+        default=0.0, description="Moment of inertia that the shaft has already."
+    )
 
 
 Reported = Literal["joint_forces", "drive", "shaking", "flywheel", "joint_force_index", "harmonics"]
@@ -69,8 +72,8 @@ ALWAYS: tuple[Reported, ...] = ("joint_forces", "drive", "shaking")
 """What is reported where a statement does not say."""
 
 
-class DynamicsBlock(Statement):
-    """What a linkage weighs and carries, and which forces are wanted."""
+class WeighedLinkage(Statement):
+    """What a linkage weighs and carries."""
 
     units: Literal["si", "consistent"] = Field(
         default="si",
@@ -83,13 +86,21 @@ class DynamicsBlock(Statement):
     loads: list[StatedLoad] = Field(default=[], max_length=50)
     springs: list[StatedSpring] = Field(default=[], max_length=50, description="Springs and dampers between two links.")
     friction: StatedFriction | None = None
-    drive: Literal["torque"] | DrivenSlide | None = Field(
-        default=None, description="What drives; it must be what the mechanism states."
-    )
     moment_about: Point | None = Field(
         default=None, description="Point about which the shaking moment is taken; by default the first fixed pivot."
     )
 
+    def scale(self, unit: LengthUnit) -> float:
+        """The length unit in the unit of forces over stiffnesses: metres, or as it is."""
+        return METRES[unit] if self.units == "si" else 1.0
+
+
+class DynamicsBlock(WeighedLinkage):
+    """What a linkage weighs and carries, and which forces are wanted."""
+
+    drive: Literal["torque"] | DrivenSlide | None = Field(
+        default=None, description="What drives; it must be what the mechanism states."
+    )
     flywheel: StatedFlywheel | None = Field(default=None, description="Size a flywheel on the input shaft.")
     report: list[Reported] | None = Field(
         default=None,
@@ -104,6 +115,30 @@ class DynamicsBlock(Statement):
         stated = name in (ALWAYS if self.report is None else self.report)
         return stated or (name == "flywheel" and self.flywheel is not None)
 
-    def scale(self, unit: LengthUnit) -> float:
-        """The length unit in the unit of forces over stiffnesses: metres, or as it is."""
-        return METRES[unit] if self.units == "si" else 1.0
+
+class DesignDynamics(WeighedLinkage):
+    """What every design of a problem weighs and carries, and how fast it is driven."""
+
+    links: Shape | None = Field(
+        default=None, description="The shape of each moving link that `bodies` does not name, whatever it is called."
+    )
+    speed_rpm: Annotated[Number, ROTATIONAL_SPEED] | None = Field(default=None, description="Of an input that turns.")
+    speed: Annotated[Number, LENGTH] | None = Field(
+        default=None, description="Of an input that slides, length units a second."
+    )
+
+    @model_validator(mode="after")
+    def _driven(self) -> Self:
+        if self.speed_rpm is None and self.speed is None:
+            raise ValueError("state speed_rpm, or speed where the input slides; 0 is statics")
+        return self
+
+
+class DesignForcesBlock(DesignDynamics, DynamicsBlock):
+    """What one design weighs and carries, how fast it is driven, and which of its forces are wanted."""
+
+
+class DesignForcesRequest(Statement):
+    """A call for the forces of one design."""
+
+    dynamics: DesignForcesBlock

@@ -12,6 +12,7 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length
+from synthesis.model.forces_answer import DesignForces
 
 _BODY_ANGLE = optional(
     "Angle of the body's line at the first target, absolute, degrees; left out where it is the demanded one exactly."
@@ -352,6 +353,9 @@ class Layout(Answer):
 LAYOUT = optional("The planes in which it can be built; left out where the problem states no `layout`.")
 """The same field of every design."""
 
+PEAKS = optional("Its forces; left out where the problem states no `dynamics`.")
+"""The same field of every design."""
+
 
 class LinkageDesign(Answer):
     """A mechanism with the proof of what it does."""
@@ -361,6 +365,7 @@ class LinkageDesign(Answer):
     verification: Verification
     metrics: LinkageMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class Front(Answer):

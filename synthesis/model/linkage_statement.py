@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
+from synthesis.model.dynamics import DesignDynamics
 from synthesis.model.layout import StatedLayout
 from synthesis.model.space import Space
 from synthesis.model.statement import (
@@ -18,13 +19,19 @@ from synthesis.model.statement import (
     Flag,
     Interval,
     PositiveLength,
+    PositiveNumber,
     Sizable,
     StatedProblem,
     Statement,
 )
 from synthesis.model.zones import ON_EDGE, MovingZone
 
-RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes"]
+Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index"]
+"""What may be demanded of a linkage's forces (docs/dynamics.md)."""
+
+FORCES: tuple[Force, ...] = get_args(Force)
+
+RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes"] | Force
 """What designs of linkages are ordered by (docs/ranking.md)."""
 
 
@@ -101,6 +108,31 @@ class Constraints(Statement):
     fixed_pivot_region: Region | None = None
     moving_pivot_region: Region | None = Field(default=None, description="For the moving pivots in the first position.")
 
+    max_drive_torque: Annotated[PositiveNumber, TORQUE] | None = Field(
+        default=None, description="Greatest torque of the drive, either way; needs `dynamics`, like the following."
+    )
+    max_joint_force: Annotated[PositiveNumber, FORCE] | None = Field(
+        default=None, description="Greatest force of any pin on a link."
+    )
+    max_shaking_force: Annotated[PositiveNumber, FORCE] | None = Field(
+        default=None, description="Greatest force on the frame."
+    )
+    max_shaking_moment: Annotated[PositiveNumber, TORQUE] | None = Field(
+        default=None, description="Greatest moment on the frame."
+    )
+    max_power: Annotated[PositiveNumber, POWER] | None = Field(
+        default=None, description="Greatest power of the drive, either way."
+    )
+    max_joint_force_index: PositiveNumber | None = Field(
+        default=None, description="Largest joint force over the first of the loads, without masses."
+    )
+
+    @property
+    def of_forces(self) -> dict[Force, float]:
+        """The limits on forces that are stated."""
+        limits = {name: getattr(self, f"max_{name}") for name in FORCES}
+        return {name: limit for name, limit in limits.items() if limit is not None}
+
     def contradictions(self) -> list[Contradiction]:
         """Demands that exclude one another, with paths below the problem."""
         if self.full_rotation and self.grashof in ("double_rocker", "non_grashof"):
@@ -123,7 +155,15 @@ class LinkageProblem(StatedProblem):
         default=None, description="Lay each design out in the fewest planes in which it can be built."
     )
     space: Space | None = Field(default=None, description="The room that the linkage must fit into, with its motion.")
+    dynamics: DesignDynamics | None = Field(
+        default=None, description="What each design weighs and carries, and how fast it is driven: its forces."
+    )
     rank_by: RankBy = "quality"
+
+    @property
+    def force_units(self) -> Literal["si", "consistent"] | None:
+        """Those of the block `dynamics`."""
+        return None if self.dynamics is None else self.dynamics.units
 
     @property
     def first_pose(self) -> tuple[complex, float] | None:
@@ -135,6 +175,7 @@ class LinkageProblem(StatedProblem):
         listed = self.constraints.contradictions()
         if self.rank_by == "planes" and self.layout is None:
             listed.append(Contradiction("/rank_by", "planes are counted where a layout is stated; state one"))
+        listed += self._forces_without_loads()
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
@@ -145,6 +186,19 @@ class LinkageProblem(StatedProblem):
                 detail = "only a body that is carried through positions has places of its own; leave the frame out"
                 listed.append(Contradiction(f"/space/moving_pivots/{side}", detail))
         return listed
+
+    def _forces_without_loads(self) -> list[Contradiction]:
+        """Demands on forces that nothing is stated for."""
+        demanded = {f"/constraints/max_{name}": name for name in self.constraints.of_forces}
+        if self.rank_by in FORCES:
+            demanded["/rank_by"] = self.rank_by
+        if self.dynamics is None:
+            detail = "forces are known where `dynamics` states masses, loads and a speed; state it"
+            return [Contradiction(path, detail) for path in demanded]
+        if not self.dynamics.loads:
+            detail = "the joint force index is that of the first of the loads; state one"
+            return [Contradiction(path, detail) for path, name in demanded.items() if name == "joint_force_index"]
+        return []
 
     @property
     def error_measure(self) -> str | None:

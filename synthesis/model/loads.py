@@ -54,8 +54,8 @@ class GasPressure(Statement):
     cycle: Literal[360, 720] = Field(default=360, description="Degrees of the crank; 720 of a four-stroke engine.")
     bore: PositiveLength = Field(description="Diameter.")
     pressure: PairRows = Field(
-        description="Crank angle after top dead centre in the sense of rotation, degrees, and gauge pressure (Pa, "
-        "or in the consistent units)."
+        description="Crank angle after top dead centre in the sense of rotation (°) and gauge pressure (Pa, or in the "
+        "consistent units)."
     )
     interpolation: Interpolation = "linear"
     phase: Degrees = Field(

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from synthesis.model.bodies import Name, Place
-from synthesis.model.dimension import FORCE, LENGTH, STIFFNESS
+from synthesis.model.dimension import FORCE, LENGTH, STIFFNESS, TORSION_STIFFNESS
 from synthesis.model.statement import Degrees, NonNegative, Number, Statement
 
 
@@ -28,7 +28,9 @@ class StatedSpring(Statement):
     one_sided: Literal["pull", "push"] | Literal[False] = Field(
         default=False, description="Bears tension only (`pull`) or compression only (`push`)."
     )
-    torsion: NonNegative | None = Field(default=None, description="Rate, N·m/rad, or in the consistent units.")
+    torsion: Annotated[NonNegative, TORSION_STIFFNESS] | None = Field(
+        default=None, description="Rate, N·m/rad, or in the consistent units."
+    )
     links: tuple[Name, Name] | None = Field(default=None, description="Between which a torsion spring acts.")
     free_angle: Degrees = Field(
         default=0.0, description="Rotation of the second link against the first from the reference, without torque."

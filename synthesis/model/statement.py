@@ -94,6 +94,11 @@ class StatedProblem(Statement):
         return False
 
     @property
+    def force_units(self) -> Literal["si", "consistent"] | None:
+        """What forces are in where the statement has units for them: N, N·m and W, or any consistent set."""
+        return None
+
+    @property
     def oscillating(self) -> bool:
         """Whether a displacement is that of an arm, in degrees, with rates in radians; otherwise it is a length."""
         return False

@@ -12,10 +12,6 @@ from synthesis.model.stated_linkage import StatedSkeleton
 from synthesis.model.statement import StatedProblem
 
 Design = TypeVar("Design", bound=Any)
-Problem = TypeVar("Problem", bound=StatedProblem)
-
-LOOKED_AT = 40
-"""Designs at least that are laid out, the first of the usual order, where they are ordered by planes."""
 
 PLANES = "planes"
 """The check of the number of planes; of a design that cannot be built in any number it has no value."""
@@ -26,42 +22,6 @@ def held_to_planes(problem: StatedProblem, design: Design) -> Design:
     if not isinstance(problem, LinkageProblem) or problem.layout is None or problem.layout.max_planes is None:
         return design
     return laid_out(problem.layout, design) if design.verification.passed else design
-
-
-def searched_for(problem: Problem) -> Problem:
-    """The statement that is searched for: where planes rank, :data:`LOOKED_AT` designs in the order of their kind.
-
-    What a layout takes would be spent on every candidate if searches ranked by it themselves.
-    """
-    if not isinstance(problem, LinkageProblem) or problem.rank_by != "planes":
-        return problem
-    order = type(problem).model_fields["rank_by"].default
-    return problem.model_copy(update={"rank_by": order, "max_designs": max(problem.max_designs, LOOKED_AT)})
-
-
-def fewest_planes_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
-    """As many designs as are wanted of an answer to :func:`searched_for`, those in the fewest planes first.
-
-    Those in as many planes stay in their order. What cannot be built comes after what can, and designs that break a
-    check last.
-    """
-
-    def place(design: Any) -> tuple[bool, float]:
-        layout = design.layout
-        return not design.verification.passed, layout.count if layout.buildable else math.inf
-
-    designs = sorted(result.designs, key=place)[: problem.max_designs]
-    count = len(result.designs)
-    counted = sorted({design.layout.count for design in result.designs if design.layout.buildable})
-    told = f" Ordered by planes, of {count} design{'s' * (count != 1)} laid out; "
-    match counted:
-        case []:
-            told += "none of them can be built."
-        case [only]:
-            told += f"every one that can be built takes {only}."
-        case _:
-            told += f"they take {counted[0]} to {counted[-1]}."
-    return result.model_copy(update={"designs": designs, "summary": result.summary + (told if count else "")})
 
 
 def all_laid_out(stated: StatedLayout, result: Result[Any]) -> Result[Any]:

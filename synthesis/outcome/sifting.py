@@ -13,6 +13,7 @@ from typing import Generic, Protocol, TypeVar
 from synthesis.model.answer import Search, Verification
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
+from synthesis.outcome.forces import held_to_forces
 from synthesis.outcome.layout import held_to_planes
 from synthesis.proof.room import judged_by_room
 
@@ -139,7 +140,7 @@ class Sifting(Generic[Design]):
             judged = judged_by_room(self.stated, verdict)
             if judged is None:
                 return self._undriven
-            verdict = held_to_planes(self.stated, judged)
+            verdict = held_to_planes(self.stated, held_to_forces(self.stated, judged))
         if verdict.verification.passed:
             self.passed.append(verdict)
             return ""

@@ -9,24 +9,28 @@ from synthesis.registry import KINDS, example, examples, parse_problem
 # that is in none of these models, or has another name, says what it measures.
 CARRIED = {"body_travel_ratio", "body_turn_ratio"}
 PURE = {
+    "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
     "CamLimits": {"curvature_ratio"},
     "CamMetrics": {"curvature_ratio"},
     "Check": {"value", "limit"},  # of the check's own dimension
     "CognateTriples": {"largest_residual"},
-    "Constraints": {"max_link_ratio"},
+    "Constraints": {"max_link_ratio", "max_joint_force_index"},
     "CurvePlacement": {"size"},  # times the stated curve
+    "DesignForces": {"joint_force_index"},
     "DwellMetrics": {"link_ratio", "reach", "quality"},
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
     "FollowerDynamics": {"damping_ratio"},
-    "FunctionConstraints": {"max_link_ratio"},
+    "ForceCourse": {"table"},  # columns of several units
+    "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
     "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "FunctionProblem": {"scale_limits"},  # of input and output alike
     "FunctionStatement": {"x", "exponent", "base"},
     "FunctionTarget": {"input", "output", "residual"},
     "Gap": {"value", "limit"},  # of the check's own dimension
+    "GasPressure": {"pressure"},  # columns of several units
     "GearPair": {"ratio"},
     "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
@@ -49,9 +53,10 @@ PURE = {
     "ParetoLayshaft": {"max_error"},
     "ParetoPlanetaryTrain": {"error"},
     "ParetoTrain": {"relative_error"},
-    "PathConstraints": {"max_link_ratio"},
+    "PathConstraints": {"max_link_ratio", "max_joint_force_index"},
     "PathMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "PathProblem": {"gear_ratio"},
+    "PinFriction": {"mu"},
     "PlanetaryMechanism": {"addendum"},  # in modules
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's
     "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
@@ -64,12 +69,14 @@ PURE = {
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
     "StageRatio": {"min", "max"},
+    "StatedSpring": {"damping"},  # by the sort of spring
     "SteeringMetrics": {"link_ratio"},
     "StraightLineMetrics": {"link_ratio", "reach", "quality"},
     "StructureVerdict": {"max_error"},
     "SuggestedShift": {"driver", "driven", "contact_ratio"},  # shifts in modules
     "TablePoint": {"x", "y"},
     "Target": {"residual"},
+    "TorqueCourse": {"table"},  # columns of several units
 }
 
 

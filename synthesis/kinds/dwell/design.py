@@ -8,7 +8,8 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length, Output, OutputPerRadian, OutputPerRadianSquared
-from synthesis.model.linkage_answer import LAYOUT, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
+from synthesis.model.forces_answer import DesignForces
+from synthesis.model.linkage_answer import LAYOUT, PEAKS, CouplerPoint, Layout, LinkageResult, MotionMetrics, Skeleton
 
 
 class DwellMechanism(Answer):
@@ -66,6 +67,7 @@ class DwellDesign(Answer):
     verification: Verification
     metrics: DwellMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class DwellResult(LinkageResult[DwellDesign]):

@@ -8,8 +8,10 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Verification
 from synthesis.model.dimension import Angle, Output
+from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import (
     LAYOUT,
+    PEAKS,
     FourbarMechanism,
     Layout,
     LinkageMetrics,
@@ -112,6 +114,7 @@ class FunctionDesign(Answer):
     metrics: FunctionMetrics
     structural_error: StructuralError
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class FunctionResult(LinkageResult[FunctionDesign]):

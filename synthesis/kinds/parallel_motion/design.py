@@ -8,7 +8,17 @@ from pydantic import Field
 
 from synthesis.model.answer import Answer, Point, Verification
 from synthesis.model.dimension import Angle, Length
-from synthesis.model.linkage_answer import LAYOUT, CouplerPoint, Layout, LinkageMetrics, LinkageResult, Skeleton, Target
+from synthesis.model.forces_answer import DesignForces
+from synthesis.model.linkage_answer import (
+    LAYOUT,
+    PEAKS,
+    CouplerPoint,
+    Layout,
+    LinkageMetrics,
+    LinkageResult,
+    Skeleton,
+    Target,
+)
 
 
 class ParallelMotionMechanism(Answer):
@@ -51,6 +61,7 @@ class ParallelMotionDesign(Answer):
     verification: Verification
     metrics: ParallelMotionMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class ParallelMotionResult(LinkageResult[ParallelMotionDesign]):

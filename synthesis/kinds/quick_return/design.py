@@ -8,8 +8,10 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, Output
+from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import (
     LAYOUT,
+    PEAKS,
     FixedPivots,
     FourbarMechanism,
     Layout,
@@ -92,6 +94,7 @@ class QuickReturnDesign(Answer):
     verification: Verification
     metrics: QuickReturnMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class RatioRange(Answer):

@@ -8,8 +8,10 @@ from pydantic import Discriminator, Field
 
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length
+from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import (
     LAYOUT,
+    PEAKS,
     DrivenTo,
     FourbarMechanism,
     Layout,
@@ -67,6 +69,7 @@ class SteeringDesign(Answer):
     verification: Verification
     metrics: SteeringMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class SteeringResult(LinkageResult[SteeringDesign]):

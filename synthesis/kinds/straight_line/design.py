@@ -9,7 +9,16 @@ from pydantic import Discriminator, Field
 from synthesis.kinds.straight_line.problem import LineMechanism
 from synthesis.model.answer import Answer, Point, Verification, optional
 from synthesis.model.dimension import Angle, Length, LengthPerRadian, Percent
-from synthesis.model.linkage_answer import LAYOUT, FourbarMechanism, Layout, LinkageResult, MotionMetrics, Skeleton
+from synthesis.model.forces_answer import DesignForces
+from synthesis.model.linkage_answer import (
+    LAYOUT,
+    PEAKS,
+    FourbarMechanism,
+    Layout,
+    LinkageResult,
+    MotionMetrics,
+    Skeleton,
+)
 
 
 class ExactLineMechanism(Answer):
@@ -72,6 +81,7 @@ class StraightLineDesign(Answer):
     verification: Verification
     metrics: StraightLineMetrics
     layout: Layout | None = LAYOUT
+    forces: DesignForces | None = PEAKS
 
 
 class StraightLineResult(LinkageResult[StraightLineDesign]):

@@ -11,7 +11,14 @@ FAR = [9e5, 1e6]
 
 UNITS: dict[str, Any] = {"length_unit": Row("in", file="csv"), "seed": 7}
 
+WEIGHED = {"gravity": {}, "loads": [{"joint": "A", "force": {"constant": [1.0, 2.0]}}], "speed_rpm": 30.0, "speed": 0.1}
+
 DEMANDS: dict[str, Any] = {
+    "dynamics": WEIGHED,
+    **{
+        f"constraints.max_{name}": Row(1e6, {"dynamics": WEIGHED})
+        for name in ("drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index")
+    },
     "space": {"box": [[-1e6, -1e6], [1e6, 1e6]]},
     "constraints": {"min_transmission_angle": 1.0},
     "constraints.min_transmission_angle": 1.0,
@@ -276,6 +283,7 @@ STEERING: dict[str, Any] = {
 STEERING_ROWS: dict[str, Any] = {
     **UNITS,
     **DEMANDS,
+    "constraints.max_drive_torque": Row(1e6, {"dynamics": WEIGHED, "mechanism": "ackermann"}),
     **layout_rows(1200.0),
     "max_designs": 1,
     "include_failed": Row(True, {"mechanism": "ackermann", "max_steering_error": 1e-3}),

@@ -1,0 +1,240 @@
+"""Forces of designs: what the block ``dynamics`` of a statement adds to an answer, and what is demanded of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.mechanism import GROUND, Mechanism
+from synthesis.model.answer import Check, Result, Verification
+from synthesis.model.bodies import Shape, StatedBody
+from synthesis.model.dimension import FORCE, POWER, TORQUE, Dimension
+from synthesis.model.dynamics import DesignDynamics, LengthUnit, WeighedLinkage
+from synthesis.model.forces_answer import DesignForces, ForcePeak, JointForcePeak, PowerPeak, TorquePeak
+from synthesis.model.linkage_statement import Constraints, Force, LinkageProblem
+from synthesis.model.statement import StatedProblem
+from synthesis.proof.checks import at_most
+from synthesis.proof.rebuilt import rebuilt
+
+Design = TypeVar("Design", bound=Any)
+
+STEPS = 72
+"""Steps of a motion, between which peaks are refined."""
+
+DIMENSIONS: Mapping[Force, Dimension | None] = {
+    "drive_torque": TORQUE,
+    "joint_force": FORCE,
+    "shaking_force": FORCE,
+    "shaking_moment": TORQUE,
+    "power": POWER,
+    "joint_force_index": None,
+}
+"""What each demand on a force measures."""
+
+
+def held_to_forces(problem: StatedProblem, design: Design) -> Design:
+    """A design that passed every other check, with its forces and their checks, where the problem limits them."""
+    if not isinstance(problem, LinkageProblem) or not problem.constraints.of_forces or problem.dynamics is None:
+        return design
+    if not design.verification.passed:
+        return design
+    return with_force_checks(problem.constraints, with_forces(problem, design))
+
+
+def with_force_checks(constraints: Constraints, design: Design) -> Design:
+    """A design whose forces are known, with a check of each limit on them that is stated, in place of any it has."""
+    limits = constraints.of_forces
+    if not limits:
+        return design
+    checks = [check for check in design.verification.checks if check.name not in limits]
+    for name, limit in limits.items():
+        value = value_of(design, name)
+        checks.append(
+            Check(name=name, passed=False, limit=limit, dimension=DIMENSIONS[name])
+            if value is None
+            else at_most(name, value, limit, DIMENSIONS[name])
+        )
+    checked: Design = design.model_copy(update={"verification": Verification.of(checks)})
+    return checked
+
+
+def value_of(design: Any, name: str) -> float | None:
+    """The peak that a demand on ``name`` is about; None where it is not known."""
+    found = None if design.forces is None else getattr(design.forces, name)
+    return found if found is None or isinstance(found, float) else float(found.max)
+
+
+def all_with_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """An answer with the forces of all its designs, the nearest miss among them; as it is without `dynamics`."""
+    if problem.dynamics is None:
+        return result
+    miss = result.nearest_miss
+    if miss is not None:
+        miss = miss.model_copy(update={"design": with_forces(problem, miss.design)})
+    designs = [with_forces(problem, design) for design in result.designs]
+    return result.model_copy(update={"designs": designs, "nearest_miss": miss})
+
+
+def with_forces(problem: LinkageProblem, design: Design) -> Design:
+    """A design with its forces; one that has them stays as it is."""
+    if problem.dynamics is None or design.forces is not None:
+        return design
+    measured: Design = design.model_copy(update={"forces": _forces(problem, problem.dynamics, design)})
+    return measured
+
+
+class NoForces(ValueError):
+    """A design whose forces are not known; carries the field that is against it below the problem, if there is one."""
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{path}: {detail}" if path else detail)
+
+
+class Run(NamedTuple):
+    """How a design is driven: what it weighs and carries, its inputs (degrees or length units) and their speed.
+
+    The speed is in rad/s, or length units a second.
+    """
+
+    mechanism: Mechanism
+    block: DesignDynamics
+    at: NDArray[np.float64]
+    speed: float
+
+
+def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
+    """A design over a whole cycle where its input turns through, else over the range that it was verified along.
+
+    Parameters
+    ----------
+    stated : DesignDynamics
+        What every design weighs and carries.
+    design : a design of linkages
+        With its mechanism and metrics.
+    steps : int
+        Of each turn, or of the range.
+
+    Raises
+    ------
+    NoForces
+        Where the block does not fit the design.
+    """
+    from synthesis.mechanisms.machine import weight_faults
+
+    mechanism = rebuilt(design.mechanism, from_skeleton=True)
+    if mechanism is None:
+        raise NoForces("", "no mechanism can be built from the dimensions")
+    block = of_mechanism(stated, mechanism)
+    for path, detail in weight_faults(block, mechanism):
+        raise NoForces(path, detail)
+    slides = mechanism.driven_by_slide
+    speed = stated.speed if slides else stated.speed_rpm
+    if speed is None:
+        missing, moves = ("speed", "slides") if slides else ("speed_rpm", "turns")
+        raise NoForces(f"/dynamics/{missing}", f"the input of this linkage {moves}; state it")
+    at = _motion(block, mechanism, design.metrics, steps)
+    if at is None:
+        raise NoForces("", "there is no motion that it was verified along")
+    return Run(mechanism, block, at, speed if slides else speed * math.tau / 60.0)
+
+
+def _forces(problem: LinkageProblem, stated: DesignDynamics, design: Any) -> DesignForces:
+    # Only who states the block waits for the import.
+    from synthesis.analyses.dynamics import Undetermined, peaks_of
+
+    try:
+        run = run_of(stated, design)
+        closed, peaks = peaks_of(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
+    except (NoForces, Undetermined) as error:
+        return DesignForces(units=stated.units, remark=str(error))
+    joint = max((name for name in peaks if name.startswith("joint ")), key=lambda name: peaks[name].value)
+    drive: dict[str, Any] = {"drive_torque": TorquePeak(max=peaks["drive"].value, at=peaks["drive"].at)}
+    if run.mechanism.driven_by_slide:
+        drive = {"drive_force": ForcePeak(max=peaks["drive"].value, at=peaks["drive"].at)}
+    return DesignForces(
+        units=stated.units,
+        over="cycle" if closed else "used",
+        **drive,
+        joint_force=JointForcePeak(joint=joint.removeprefix("joint "), max=peaks[joint].value, at=peaks[joint].at),
+        shaking_force=ForcePeak(max=peaks["shaking force"].value, at=peaks["shaking force"].at),
+        shaking_moment=TorquePeak(max=peaks["shaking moment"].value, at=peaks["shaking moment"].at),
+        power=PowerPeak(max=peaks["power"].value, at=peaks["power"].at),
+        joint_force_index=peaks["index"].value if "index" in peaks else None,
+    )
+
+
+def forces_over_motion(stated: DesignDynamics, design: Any, unit: LengthUnit, steps: int) -> dict[str, Any]:
+    """The motion of a design with all its forces, as :class:`synthesis.analyses.linkage.LinkageAnalysis` has it.
+
+    Parameters
+    ----------
+    stated : DesignDynamics
+        What it weighs and carries; with the wishes of a :class:`DynamicsBlock`, where it has them.
+    design : a design of linkages
+        As it was answered.
+    unit : str
+        Its length unit.
+    steps : int
+        Of each turn, or of the range.
+
+    Raises
+    ------
+    NoForces
+        Where the block does not fit the design.
+    """
+    from synthesis.analyses.linkage import LinkageAnalysisRequest
+
+    run = run_of(stated, design, steps)
+    own = {name for name in DesignDynamics.model_fields if name not in WeighedLinkage.model_fields}
+    block = run.block.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude=own)
+    request = LinkageAnalysisRequest.model_validate(
+        {
+            "mechanism": design.mechanism.model_dump(mode="json", by_alias=True, exclude_none=True),
+            "motion": {"from": run.at[0], "to": run.at[-1], "steps": len(run.at) - 1, "speed": run.speed},
+            "length_unit": unit,
+            "dynamics": block,
+        }
+    )
+    for path, detail in request.faults():
+        raise NoForces(path, detail)
+    return request.answer()
+
+
+def of_mechanism(stated: DesignDynamics, mechanism: Mechanism) -> DesignDynamics:
+    """The block with the shape of all ``links`` given to those of a mechanism that it does not name."""
+    if stated.links is None:
+        return stated
+    bodies = dict(stated.bodies)
+    for link, joints in mechanism.links.items():
+        if link != GROUND and link not in bodies:
+            bodies[link] = StatedBody(shape=_shaped_for(stated.links, joints))
+    return stated.model_copy(update={"bodies": bodies, "links": None})
+
+
+def _shaped_for(shape: Shape, joints: tuple[str, ...]) -> Shape:
+    """A shape of all links for one of them: with the holes of its own joints, and ends where it is a bar."""
+    holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
+    update: dict[str, Any] = {"holes": holes}
+    if len(joints) != 2:
+        update |= {"ends": "round", "overhang": 0.0}
+    return shape.model_copy(update=update)
+
+
+def _motion(block: DesignDynamics, mechanism: Mechanism, metrics: Any, steps: int) -> NDArray[np.float64] | None:
+    """Inputs from end to end: a whole cycle of mechanism and loads where the input turns through, else as verified."""
+    from synthesis.mechanisms.courses import repeated_after
+
+    turns_through = getattr(metrics, "full_rotation", False)  # a steering linkage is not asked to
+    if turns_through and not mechanism.driven_by_slide:
+        turns = repeated_after(block, mechanism)
+        if turns:
+            start = math.degrees(mechanism.reference_input)
+            return start + np.linspace(0.0, 360.0 * turns, steps * turns + 1)
+    ends = metrics.used_stroke if mechanism.driven_by_slide else metrics.used_range
+    return None if ends is None else np.linspace(float(ends[0]), float(ends[1]), steps + 1)

@@ -1,0 +1,71 @@
+"""Orders by what takes too long to be measured of every candidate: planes, and forces.
+
+The search is in the usual order of its kind, for more designs than are wanted; they are measured, and then ordered.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any, TypeVar
+
+from synthesis.model.answer import Result
+from synthesis.model.linkage_statement import FORCES, LinkageProblem
+from synthesis.model.statement import StatedProblem
+from synthesis.outcome.forces import value_of
+
+Problem = TypeVar("Problem", bound=StatedProblem)
+
+LOOKED_AT: Mapping[str, int] = {"planes": 40} | dict.fromkeys(FORCES, 100)
+"""Designs at least that are measured, the first of the usual order, for each such order."""
+
+
+def searched_for(problem: Problem) -> Problem:
+    """The statement that is searched for: with the order of its kind, and :data:`LOOKED_AT` designs."""
+    if not isinstance(problem, LinkageProblem) or problem.rank_by not in LOOKED_AT:
+        return problem
+    order = type(problem).model_fields["rank_by"].default
+    most = max(problem.max_designs, LOOKED_AT[problem.rank_by])
+    return problem.model_copy(update={"rank_by": order, "max_designs": most})
+
+
+def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """As many designs as are wanted of an answer to :func:`searched_for`, measured, those with the least first.
+
+    Those with as much stay in their order. What could not be measured comes after what could, and designs that break
+    a check last.
+    """
+    measure = _planes if problem.rank_by == "planes" else partial(value_of, name=problem.rank_by)
+
+    def place(design: Any) -> tuple[bool, float]:
+        measured = measure(design)
+        return not design.verification.passed, math.inf if measured is None else measured
+
+    designs = sorted(result.designs, key=place)[: problem.max_designs]
+    told = _told(problem.rank_by, result.designs, measure) if result.designs else ""
+    return result.model_copy(update={"designs": designs, "summary": result.summary + told})
+
+
+def _planes(design: Any) -> float | None:
+    return float(design.layout.count) if design.layout.buildable else None
+
+
+def _told(order: str, designs: list[Any], measure: Callable[[Any], float | None]) -> str:
+    """What the order was made of, as a sentence."""
+    known = sorted({value for design in designs if (value := measure(design)) is not None})
+    what = order.replace("_", " ")
+    if order == "planes":
+        missing, done = "none of them can be built", "laid out"
+    else:
+        missing, done = f"none of them has a known {what}", "measured"
+    match known:
+        case []:
+            found = missing
+        case [only]:
+            found = f"every one that can be built takes {only:.0f}" if order == "planes" else f"it is {only:.4g}"
+        case _:
+            found = "they take" if order == "planes" else "it is"
+            found += f" {known[0]:.4g} to {known[-1]:.4g}"
+    count = len(designs)
+    return f" Ordered by {what}, of {count} design{'s' * (count != 1)} {done}; {found}."
