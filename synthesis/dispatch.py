@@ -12,7 +12,7 @@ from synthesis.model.statement import StatedProblem
 from synthesis.outcome.forces import all_with_forces
 from synthesis.outcome.front import front_of
 from synthesis.outcome.layout import all_laid_out
-from synthesis.outcome.measured_order import LOOKED_AT, least_first, searched_for
+from synthesis.outcome.measured_order import LOOKED_AT, least_first, searched_for, searched_on
 from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
@@ -53,7 +53,7 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
         result = _relaxed(asked, result, relaxation(asked, kind.solve, rest, kind.verify, kind.nearer))
     if isinstance(problem, LinkageProblem):
         result = result if problem.layout is None else all_laid_out(problem.layout, result)
-        result = all_with_forces(problem, result)
+        result = searched_on(problem, all_with_forces(problem, result), lambda other: kind.solve(other, _silent))
         designs, remark = usable_first(searched_for(problem), result.designs)
         if problem.rank_by in LOOKED_AT:
             result = least_first(problem, result.model_copy(update={"designs": designs}))

@@ -23,7 +23,8 @@ from synthesis.analyses.layout import layout_of
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
 from synthesis.mechanisms import GivenMechanism, MechanismError
-from synthesis.mechanisms.machine import dynamics_faults, token
+from synthesis.mechanisms.link_bodies import token
+from synthesis.mechanisms.machine import dynamics_faults
 from synthesis.mechanisms.skeleton import skeleton_of
 from synthesis.model.answer import Answer, optional
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit

@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from kinematics.dynamics import shapes
-from kinematics.dynamics.bodies import Body, body, joined, slenderness_faults
+from kinematics.dynamics.bodies import Body, slenderness_faults
 from kinematics.dynamics.friction import Friction, rubbing_joints
 from kinematics.dynamics.loads import JointForce, Load, PointForce, Resistance, Torque, TurningResistance
 from kinematics.dynamics.machine import Machine
@@ -20,26 +19,13 @@ from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
 from synthesis.mechanisms.courses import course_faults, course_of, gas_force, ground_slide, table_faults
-from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
+from synthesis.mechanisms.link_bodies import BlockError, LinkBodies, token
+from synthesis.model.bodies import Place, PolarPlace
 from synthesis.model.dynamics import DrivenSlide, DynamicsBlock, LengthUnit, WeighedLinkage
 from synthesis.model.loads import StatedLoad
 from synthesis.model.springs import StatedSpring
 
 Fault = tuple[str, str]
-
-
-def token(name: str) -> str:
-    """A name as a part of a JSON pointer."""
-    return name.replace("~", "~0").replace("/", "~1")
-
-
-class BlockError(ValueError):
-    """A block that no machine can be made of; carries the field's path below the request."""
-
-    def __init__(self, path: str, detail: str) -> None:
-        self.path = path
-        self.detail = detail
-        super().__init__(f"{path}: {detail}")
 
 
 def dynamics_faults(block: DynamicsBlock, mechanism: Mechanism) -> list[Fault]:
@@ -208,64 +194,18 @@ def first_fixed(mechanism: Mechanism) -> complex:
     return complex(mechanism.joints[ground[0]] if ground else mechanism.slides[0].point)
 
 
-class _Reader:
-    """Places, bodies and loads of one mechanism in the unit of its forces."""
+class _Reader(LinkBodies):
+    """Places, bodies, loads and springs of one mechanism in the unit of its forces."""
 
     def __init__(self, mechanism: Mechanism, scale: float) -> None:
+        super().__init__(mechanism.joints, mechanism.links, scale)
         self.mechanism = mechanism
-        self.scale = scale
 
     def place(self, link: str, stated: Place) -> complex:
-        """A place on a link, in the reference configuration."""
-        if not isinstance(stated, PolarPlace):
-            return self.scale * complex(*stated)
-        if len(self.mechanism.links[link]) < 2:
-            # A ground of slides has no line of its own: x is its direction.
+        """A place on a link, in the reference configuration; a ground of slides has no line of its own: x is it."""
+        if isinstance(stated, PolarPlace) and len(self.links[link]) < 2:
             return self.scale * (first_fixed(self.mechanism) + stated.vector)
-        first, second = (complex(self.mechanism.joints[joint]) for joint in self.mechanism.links[link][:2])
-        return self.scale * (first + stated.vector * (second - first) / abs(second - first))
-
-    def body(self, link: str, stated: StatedBody) -> Body:
-        """The body of a link."""
-        if stated.shape is not None:
-            return self._shaped(link, stated.shape)
-        first = self.scale * complex(self.mechanism.joints[self.mechanism.links[link][0]])
-        centre = first if stated.cg is None else self.place(link, stated.cg)
-        return body(stated.mass or 0.0, centre, stated.inertia or 0.0)
-
-    def _shaped(self, link: str, shape: Shape) -> Body:
-        joints = {joint: self.scale * complex(self.mechanism.joints[joint]) for joint in self.mechanism.links[link]}
-        bodies = [self._part(link, part, shape.density) for part in shape.parts]
-        if shape.thickness is not None:
-            if shape.polygon is not None:
-                plate = shapes.polygon([self.place(link, corner) for corner in shape.polygon])
-            elif shape.ends == "square":
-                start, end = joints.values()
-                plate = shapes.square_bar(start, end, self.scale * (shape.width or 0.0), self.scale * shape.overhang)
-            else:
-                plate = shapes.widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
-            for joint, diameter in shape.holes.items():
-                plate = plate.plus(shapes.disc(joints[joint], self.scale * diameter / 2.0), -1.0)
-            path = f"/dynamics/bodies/{token(link)}/shape"
-            if not plate.area > 0.0 or not math.isfinite(plate.polar):
-                raise BlockError(path, "nothing is left of the plate; is the polygon flat, or are the holes too wide?")
-            bodies.append(plate.body(shape.density, self.scale * shape.thickness))
-        return joined(bodies)
-
-    def _part(self, link: str, part: Part, density: float) -> Body:
-        centre, density = self.place(link, part.at), density if part.density is None else part.density
-        length = self.scale * part.length
-        if part.form == "prism":
-            section = shapes.rectangle(centre, length, self.scale * (part.width or 0.0))
-            return section.body(density, self.scale * (part.thickness or 0.0))
-        return shapes.cylinder(
-            centre,
-            self.scale * (part.diameter or 0.0),
-            length,
-            density,
-            bore=self.scale * part.bore,
-            in_plane=part.axis == "in_plane",
-        )
+        return super().place(link, stated)
 
     def load(self, path: str, stated: StatedLoad) -> Load:
         """A load of the analysis core; ``path`` is its own below the request."""

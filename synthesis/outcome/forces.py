@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -130,7 +130,7 @@ def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
     mechanism = rebuilt(design.mechanism, from_skeleton=True)
     if mechanism is None:
         raise NoForces("", "no mechanism can be built from the dimensions")
-    block = of_mechanism(stated, mechanism)
+    block = shaped(stated, mechanism.links)
     for path, detail in weight_faults(block, mechanism):
         raise NoForces(path, detail)
     slides = mechanism.driven_by_slide
@@ -206,18 +206,18 @@ def forces_over_motion(stated: DesignDynamics, design: Any, unit: LengthUnit, st
     return request.answer()
 
 
-def of_mechanism(stated: DesignDynamics, mechanism: Mechanism) -> DesignDynamics:
-    """The block with the shape of all ``links`` given to those of a mechanism that it does not name."""
+def shaped(stated: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:
+    """The block with the shape of all ``links`` given to those of a mechanism (by their joints) it does not name."""
     if stated.links is None:
         return stated
     bodies = dict(stated.bodies)
-    for link, joints in mechanism.links.items():
+    for link, joints in links.items():
         if link != GROUND and link not in bodies:
             bodies[link] = StatedBody(shape=_shaped_for(stated.links, joints))
     return stated.model_copy(update={"bodies": bodies, "links": None})
 
 
-def _shaped_for(shape: Shape, joints: tuple[str, ...]) -> Shape:
+def _shaped_for(shape: Shape, joints: Sequence[str]) -> Shape:
     """A shape of all links for one of them: with the holes of its own joints, and ends where it is a bar."""
     holes = {joint: diameter for joint, diameter in shape.holes.items() if joint in joints}
     update: dict[str, Any] = {"holes": holes}

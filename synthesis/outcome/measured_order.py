@@ -6,16 +6,21 @@ The search is in the usual order of its kind, for more designs than are wanted; 
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, TypeVar
 
-from synthesis.model.answer import Result
+from synthesis.model.answer import Result, Verification
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
-from synthesis.outcome.forces import value_of
+from synthesis.outcome.forces import value_of, with_force_checks
 
 Problem = TypeVar("Problem", bound=StatedProblem)
+
+SEARCHES, NARROWER, PATIENCE_S = 4, 0.8, 4.0
+"""Further searches at most where forces order, the share of the least force that each may have, and the processor time
+after which none is begun."""
 
 LOOKED_AT: Mapping[str, int] = {"planes": 40} | dict.fromkeys(FORCES, 100)
 """Designs at least that are measured, the first of the usual order, for each such order."""
@@ -28,6 +33,46 @@ def searched_for(problem: Problem) -> Problem:
     order = type(problem).model_fields["rank_by"].default
     most = max(problem.max_designs, LOOKED_AT[problem.rank_by])
     return problem.model_copy(update={"rank_by": order, "max_designs": most})
+
+
+def searched_on(problem: LinkageProblem, result: Result[Any], solve: Callable[[Any], Result[Any]]) -> Result[Any]:
+    """An answer that is ordered by a force, with designs of less of it from further searches.
+
+    Each is for designs with no more than a share of the least so far: limits steer a search, an order does not. They
+    end where one finds nothing, after :data:`SEARCHES`, or where the time is up.
+
+    Parameters
+    ----------
+    problem : LinkageProblem
+        As stated.
+    result : Result
+        Of :func:`searched_for`, with forces.
+    solve : callable
+        Designs with their forces for another statement.
+    """
+    if problem.rank_by not in FORCES:
+        return result
+    limit, found = f"max_{problem.rank_by}", result
+    begun = time.process_time()
+    for _ in range(SEARCHES):
+        known = [value_of(design, problem.rank_by) for design in found.designs if design.verification.passed]
+        least = min((value for value in known if value is not None), default=0.0)
+        if not least > 0.0 or time.process_time() - begun > PATIENCE_S:
+            break
+        narrowed = problem.constraints.model_copy(update={limit: NARROWER * least})
+        asked = searched_for(problem).model_copy(update={"constraints": narrowed, "include_failed": False})
+        further = [_as_stated(problem, design) for design in solve(asked).designs]
+        if not further:
+            break
+        found = found.model_copy(update={"designs": [*further, *found.designs]})
+    return found
+
+
+def _as_stated(problem: LinkageProblem, design: Any) -> Any:
+    """A design of a narrower search with the checks of the limits that were stated, and no others."""
+    checks = [check for check in design.verification.checks if check.name not in FORCES]
+    bare = design.model_copy(update={"verification": Verification.of(checks)})
+    return with_force_checks(problem.constraints, bare)
 
 
 def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:

@@ -17,6 +17,7 @@ from synthesis.kinds.motion.areas import side_areas
 from synthesis.kinds.motion.choices import Cloud, side_dyads
 from synthesis.kinds.motion.demanded import Demanded
 from synthesis.kinds.motion.dyads import Dyads
+from synthesis.kinds.motion.forces import bearable, looked_at
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.room import fits
 from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
@@ -43,6 +44,10 @@ SHORTLIST = 4000
 
 SWEPT_POOL = 10_000
 """Of the sound pairs so many of the best, and as many of the rest, are looked at for obstacles."""
+
+WEIGHED_POOL, WEIGHED_AT_ONCE, ENOUGH = 8000, 500, 500
+"""Of the sound pairs so many of the best, and as many of the rest, are weighed where forces are limited; so many of
+each at a time, until so many keep the limits."""
 
 APART = 0.25 * 0.5 ** np.arange(6)
 """Distinct designs move some joint by at least this share of the task's size: the first at which enough are found."""
@@ -127,7 +132,7 @@ class Pairs:
         After them come the best-scored ones that differ, for what verification refuses; all there are where the order
         is another than that of quality, of which a client wants the first and no others.
         """
-        screening = self._with_room(screening)
+        screening = self._bearable(self._with_room(screening))
         score = screening.score.ravel()
         shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
         shortlist = shortlist[score[shortlist] > 0.0]
@@ -154,6 +159,26 @@ class Pairs:
         fitting = np.zeros_like(score)
         fitting[kept] = score[kept]
         return screening._replace(score=fitting.reshape(screening.score.shape))
+
+    def _bearable(self, screening: Screening) -> Screening:
+        """Without the pairs that break a limit on their forces, as :meth:`_with_room` where that is stated."""
+        if not looked_at(self.problem):
+            return screening
+        score = screening.score.ravel()
+        sound = np.flatnonzero(score > 0.0)
+        best = sound[np.argsort(-score[sound], kind="stable")]
+        light = np.zeros_like(score)
+        portions = WEIGHED_POOL // WEIGHED_AT_ONCE
+        rest = best[WEIGHED_POOL :: -(-len(best) // WEIGHED_POOL) or 1]
+        for k in range(portions):
+            weighed = np.concatenate([best[:WEIGHED_POOL][k::portions], rest[k::portions]])
+            i, j = np.unravel_index(weighed, screening.score.shape)
+            joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]
+            kept = weighed[bearable(self.problem, self.task, np.stack(joints, axis=1))]
+            light[kept] = score[kept]
+            if np.count_nonzero(light) >= ENOUGH:
+                break
+        return screening._replace(score=light.reshape(screening.score.shape))
 
     def _apart(
         self, screening: Screening, pool: NDArray[np.int64], count: int, aparts: Iterable[float]

@@ -16,6 +16,7 @@ from kinematics.linkage.clearance.outlines import OPTIONS, distance
 from kinematics.linkage.fourbar import Fourbar, positions
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task import Complex, MotionTask, Real
+from synthesis.kinds.motion.ways import turned_way
 from synthesis.model.space import Space
 
 LOOKED_AT = 60
@@ -68,13 +69,7 @@ def _inputs(space: Space, task: MotionTask, o2: Complex, a: Complex) -> Real:
     shares = np.linspace(0.0, 1.0, LOOKED_AT)
     if space.over == "cycle":
         return np.asarray(stands[:, None] + math.tau * shares)
-    pins = task.origin + task.size * task.images((a - task.origin) / task.size)
-    turned = np.angle((pins - o2[:, None]) / (pins[:, :1] - o2[:, None]))
-    turned[:, 0] = 0.0  # and not by rounding a little less, which would be a whole turn
-    onward, backward = np.mod(turned, math.tau), -np.mod(-turned, math.tau)
-    rises, falls = (np.diff(onward) > 0.0).all(axis=1), (np.diff(backward) < 0.0).all(axis=1)
-    forward = rises & ~(falls & (-backward[:, -1] < onward[:, -1]))
-    return np.asarray(stands[:, None] + np.where(forward, onward[:, -1], backward[:, -1])[:, None] * shares)
+    return np.asarray(stands[:, None] + turned_way(task, o2, a)[:, None] * shares)
 
 
 def _box(space: Space) -> Real:

@@ -1,0 +1,98 @@
+"""Which fourbars that carry a body are likely to keep the limits on their forces: looked at in closed form.
+
+What is left out would fail where it was looked at; what passes is measured by the general equations before it is
+answered.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.fourbar import DRIVE, JOINT, POWER, SHAKING_FORCE, SHAKING_MOMENT, Fourbars, Weights, peaks
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.task import Complex, MotionTask, Real
+from synthesis.kinds.motion.ways import turned_way
+from synthesis.mechanisms.fourbar_weights import closed_form, fourbars, weights
+from synthesis.model.dynamics import DesignDynamics
+from synthesis.model.linkages import FOURBAR_LINKS
+from synthesis.outcome.forces import STEPS, shaped
+
+COLUMNS = {
+    "drive_torque": DRIVE,
+    "joint_force": JOINT,
+    "shaking_force": SHAKING_FORCE,
+    "shaking_moment": SHAKING_MOMENT,
+    "power": POWER,
+}
+"""Of the peaks, by what is limited; the joint force index has a run of its own."""
+
+
+def looked_at(problem: MotionProblem) -> bool:
+    """Whether forces are limited that the closed form knows."""
+    stated = problem.dynamics
+    if stated is None or not problem.constraints.of_forces or stated.speed_rpm is None:
+        return False
+    return closed_form(stated)
+
+
+def bearable(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[np.bool_]:
+    """Which fourbars keep the limits on their forces at the positions that are looked at.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        That is :func:`looked_at`.
+    task : MotionTask
+        Its positions.
+    joints : complex, shape (n, 4)
+        O2, A, B, O4 at the first target, in task coordinates; fourbars whose motion goes through the targets.
+    """
+    assert problem.dynamics is not None
+    placed = np.full((len(joints), 5), complex(task.origin))
+    placed[:, :4] += task.size * joints
+    stated = shaped(problem.dynamics, FOURBAR_LINKS)
+    scale = stated.scale(problem.length_unit)
+    linkages = fourbars(placed, _span(task, placed), scale)
+    carried = weights(stated, placed, problem.length_unit)
+    speed = (stated.speed_rpm or 0.0) * math.tau / 60.0
+    found = peaks(linkages, carried, speed, STEPS + 1)
+    kept = np.ones(len(joints), np.bool_)
+    for name, limit in problem.constraints.of_forces.items():
+        value = _index(stated, linkages, carried) if name == "joint_force_index" else found[:, COLUMNS[name]]
+        kept &= value <= limit
+    return kept
+
+
+def _span(task: MotionTask, joints: Complex) -> Real:
+    """What inputs turn: a whole turn where they turn through (Grashof), else from the first target to the last."""
+    o2, a, b, o4 = joints[:, :4].T
+    lengths = np.abs(np.stack([a - o2, b - a, b - o4, o4 - o2], axis=1))
+    turns = 2.0 * (lengths.min(axis=1) + lengths.max(axis=1)) < lengths.sum(axis=1)
+    turns &= np.minimum(lengths[:, 0], lengths[:, 3]) == lengths.min(axis=1)
+    return np.where(turns, math.tau, turned_way(task, o2, a))
+
+
+def _index(stated: DesignDynamics, linkages: Fourbars, carried: Weights) -> Real:
+    """Largest force of a pin over the first of the loads, without masses."""
+    first = stated.loads[0]
+    couples = np.zeros(3)
+    if first.force is None:
+        couples = np.array([1.0 if first.link == link else 0.0 for link in ("input", "coupler", "output")])
+    acts = slice(0, 1 if first.force is not None else 0)
+    nothing = np.zeros_like(carried.mass)
+    alone = carried._replace(
+        mass=nothing,
+        inertia=nothing,
+        pins=nothing,
+        gravity=0j,
+        on=carried.on[acts],
+        arm=np.ascontiguousarray(carried.arm[:, acts]),
+        force=np.ascontiguousarray(carried.force[:, acts]),
+        turning=carried.turning[acts],
+        couples=couples,
+    )
+    strength = 1.0 if first.force is None else abs(complex(*(first.force.constant or (1.0, 0.0))))
+    return peaks(linkages, alone, 0.0, STEPS + 1)[:, JOINT] / (strength or 1.0)

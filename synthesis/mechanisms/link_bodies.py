@@ -1,0 +1,93 @@
+"""What links weigh, from their stated mass properties or shapes: bodies in the unit of the forces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from kinematics.dynamics import shapes
+from kinematics.dynamics.bodies import Body, body, joined
+from synthesis.model.bodies import Part, Place, PolarPlace, Shape, StatedBody
+
+
+def token(name: str) -> str:
+    """A name as a part of a JSON pointer."""
+    return name.replace("~", "~0").replace("/", "~1")
+
+
+class BlockError(ValueError):
+    """A block that no machine can be made of; carries the field's path below the request."""
+
+    def __init__(self, path: str, detail: str) -> None:
+        self.path = path
+        self.detail = detail
+        super().__init__(f"{path}: {detail}")
+
+
+class LinkBodies:
+    """Places and bodies of the links of one linkage in its reference configuration.
+
+    Parameters
+    ----------
+    joints : mapping of str to complex
+        Places by name, length units.
+    links : mapping of str to sequence of str
+        The joints of each link.
+    scale : float
+        The length unit in the unit of the forces.
+    """
+
+    def __init__(self, joints: Mapping[str, Any], links: Mapping[str, Sequence[str]], scale: float) -> None:
+        self.joints = joints
+        self.links = links
+        self.scale = scale
+
+    def place(self, link: str, stated: Place) -> complex:
+        """A place on a link, in the reference configuration."""
+        if not isinstance(stated, PolarPlace):
+            return self.scale * complex(*stated)
+        first, second = (complex(self.joints[joint]) for joint in self.links[link][:2])
+        return self.scale * (first + stated.vector * (second - first) / abs(second - first))
+
+    def body(self, link: str, stated: StatedBody) -> Body:
+        """The body of a link."""
+        if stated.shape is not None:
+            return self._shaped(link, stated.shape)
+        first = self.scale * complex(self.joints[self.links[link][0]])
+        centre = first if stated.cg is None else self.place(link, stated.cg)
+        return body(stated.mass or 0.0, centre, stated.inertia or 0.0)
+
+    def _shaped(self, link: str, shape: Shape) -> Body:
+        joints = {joint: self.scale * complex(self.joints[joint]) for joint in self.links[link]}
+        bodies = [self._part(link, part, shape.density) for part in shape.parts]
+        if shape.thickness is not None:
+            if shape.polygon is not None:
+                plate = shapes.polygon([self.place(link, corner) for corner in shape.polygon])
+            elif shape.ends == "square":
+                start, end = joints.values()
+                plate = shapes.square_bar(start, end, self.scale * (shape.width or 0.0), self.scale * shape.overhang)
+            else:
+                plate = shapes.widened_hull(list(joints.values()), self.scale * (shape.width or 0.0))
+            for joint, diameter in shape.holes.items():
+                plate = plate.plus(shapes.disc(joints[joint], self.scale * diameter / 2.0), -1.0)
+            path = f"/dynamics/bodies/{token(link)}/shape"
+            if not plate.area > 0.0 or not math.isfinite(plate.polar):
+                raise BlockError(path, "nothing is left of the plate; is the polygon flat, or are the holes too wide?")
+            bodies.append(plate.body(shape.density, self.scale * shape.thickness))
+        return joined(bodies)
+
+    def _part(self, link: str, part: Part, density: float) -> Body:
+        centre, density = self.place(link, part.at), density if part.density is None else part.density
+        length = self.scale * part.length
+        if part.form == "prism":
+            section = shapes.rectangle(centre, length, self.scale * (part.width or 0.0))
+            return section.body(density, self.scale * (part.thickness or 0.0))
+        return shapes.cylinder(
+            centre,
+            self.scale * (part.diameter or 0.0),
+            length,
+            density,
+            bore=self.scale * part.bore,
+            in_plane=part.axis == "in_plane",
+        )
