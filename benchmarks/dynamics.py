@@ -1,0 +1,255 @@
+"""Forces of linkages: how fast they are had, and whether a limit on them is met where a known linkage meets it.
+
+    python -m benchmarks.dynamics [speed | analysis | limited] [--count N] [--seed N]
+
+``speed``: force analyses a second of fourbars in closed form, compiled, beside plain vectorised numpy of the same
+formulas and the general equations; 10 000 candidates ordered by their peak torque. ``analysis``: what a block
+``dynamics`` adds to an analysis of 360 steps. ``limited``: planted tasks of motion, with a limit on the torque 5 %
+above that of the linkage that they were made from; every answer is confirmed by the general equations at 1440
+positions. Times are of the processor, on one core.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from kinematics.dynamics import Machine, Places, body, reactions
+from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, peaks
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism
+from synthesis.analyses import parse_request
+from synthesis.analyses.dynamics import peaks_of
+from synthesis.dispatch import solve
+from synthesis.kinds.motion.demanded import demanded
+from synthesis.kinds.motion.verification import verify
+from synthesis.mechanisms.fourbar_weights import JOINTS, fourbars, weights
+from synthesis.model.dynamics import DesignDynamics
+from synthesis.model.linkages import FOURBAR_LINKS, FourbarConfiguration, fourbar_mechanism
+from synthesis.outcome.forces import run_of, shaped, with_forces
+from synthesis.registry import parse_problem
+
+POSITIONS = 72
+SPEED_RPM = 60.0
+SPEED = SPEED_RPM * math.tau / 60.0
+PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0, "B": 8.0}}
+BLOCK = {"gravity": {}, "links": PLATE, "point_masses": [{"joint": "P", "mass": 2.0}], "speed_rpm": SPEED_RPM}
+
+
+def crank_rockers(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Joints O2, A, B, O4, P of fourbars whose input turns through, millimetres."""
+    found: list[np.ndarray] = []
+    while len(found) < count:
+        a, b, c, d = rng.uniform((30.0, 100.0, 100.0, 100.0), (60.0, 300.0, 300.0, 300.0))
+        if 2.0 * (a + max(b, c, d)) >= a + b + c + d:
+            continue
+        o2 = complex(*rng.normal(size=2)) * 50.0
+        joint_a = o2 + a * np.exp(1j * rng.uniform(0.0, math.tau))
+        o4 = o2 + d
+        gap = o4 - joint_a
+        along = (abs(gap) ** 2 + b * b - c * c) / (2.0 * abs(gap))
+        joint_b = joint_a + gap / abs(gap) * complex(along, math.sqrt(b * b - along * along))
+        found.append(np.array([o2, joint_a, joint_b, o4, joint_a + (joint_b - joint_a) * complex(0.5, 0.4)]))
+    return np.array(found)
+
+
+def cpu_of(work: Callable[[], Any], repeats: int = 5) -> float:
+    """Least processor time of a few runs, after one that compiles."""
+    work()
+    times = []
+    for _ in range(repeats):
+        begun = time.process_time()
+        work()
+        times.append(time.process_time() - begun)
+    return min(times)
+
+
+def in_numpy(linkages: Fourbars, carried: Weights) -> np.ndarray:
+    """Peak torque by the formulas of the closed form in plain numpy, all positions at once, without loads."""
+    steps = np.linspace(0.0, 1.0, POSITIONS + 1)
+    a, b, c = (value[:, None] for value in (linkages.a, linkages.b, linkages.c))
+    u2 = np.exp(1j * (linkages.start[:, None] + linkages.span[:, None] * steps))
+    crank = a * u2
+    diagonal = (linkages.o4 - linkages.o2)[:, None] - crank
+    squared = np.abs(diagonal) ** 2
+    along = 0.5 * (squared + b * b - c * c)
+    height = np.sqrt(b * b * squared - along**2)
+    u3 = diagonal * (along + 1j * linkages.sign[:, None] * height) / (squared * b)
+    u4 = (b * u3 - diagonal) / c
+
+    def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return u.real * v.imag - u.imag * v.real
+
+    def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return u.real * v.real + u.imag * v.imag
+
+    s = cross(u4, u3)
+    w3, w4 = SPEED * cross(crank, u4) / (b * s), SPEED * cross(crank, u3) / (c * s)
+    pull, cosine = -SPEED * SPEED * crank, dot(u3, u4)
+    alpha4 = (dot(pull, u3) - w3**2 * b + w4**2 * c * cosine) / (c * s)
+    alpha3 = (dot(pull, u4) + w4**2 * c - w3**2 * b * cosine) / (b * s)
+    m, g, inertia = carried.mass, carried.cg, carried.inertia
+    arms = [g[:, k, None] * u for k, u in enumerate((u2, u3, u4))]
+    rates = [np.full_like(u2, -SPEED * SPEED), 1j * alpha3 - w3**2, 1j * alpha4 - w4**2]
+    bases = [0.0, pull, 0.0]
+    need = [
+        m[:, k, None] * (base + rate * arm - carried.gravity)
+        for k, (base, rate, arm) in enumerate(zip(bases, rates, arms, strict=True))
+    ]
+    arm_p = linkages.point[:, None] * u3
+    payload = carried.pins[:, 2, None] * (carried.gravity - pull - rates[1] * arm_p)
+    turned2 = cross(arms[0], need[0])
+    turned3 = inertia[:, 1, None] * alpha3 + cross(arms[1], need[1]) - cross(arm_p, payload)
+    turned4 = inertia[:, 2, None] * alpha4 + cross(arms[2], need[2])
+    b_on_output = turned4 / (c * s) * u3 + turned3 / (b * s) * u4
+    a_on_input = -(need[1] - payload + b_on_output)
+    return np.abs(turned2 - cross(crank, a_on_input)).max(axis=1)
+
+
+def in_general(joints: np.ndarray, carried: Weights) -> np.ndarray:
+    """Peak torque by the general equations of the skeleton, for all fourbars and positions at once."""
+    mechanism = Mechanism(dict(zip(JOINTS, joints.T * 1e-3, strict=True)), FOURBAR_LINKS, "input")
+    bases, ends = (joints[:, [0, 1, 3]] * 1e-3, joints[:, [1, 2, 2]] * 1e-3)
+    centres = bases + carried.cg * (ends - bases) / np.abs(ends - bases)
+    machine = Machine(
+        mechanism,
+        {
+            link: body(0.0)._replace(mass=carried.mass[:, k], cg=centres[:, k], inertia=carried.inertia[:, k])
+            for k, link in enumerate(("input", "coupler", "output"))
+        },
+        {"P": carried.pins[:, 2]},
+        carried.gravity,
+    )
+    start = np.asarray(mechanism.reference_input)
+    inputs = start[:, None] + math.tau * np.linspace(0.0, 1.0, POSITIONS + 1)
+    found = reactions(machine, Places(mechanism, drive(mechanism, inputs, speed=SPEED, order=2)))
+    return np.abs(found.drive).max(axis=1)
+
+
+def speed(count: int, seed: int) -> None:
+    """Analyses a second, three ways, which agree."""
+    joints = crank_rockers(np.random.default_rng(seed), count)
+    stated = shaped(DesignDynamics.model_validate(BLOCK), FOURBAR_LINKS)
+    whole = np.full(count, math.tau)
+    linkages, carried = fourbars(joints, whole, 1e-3), weights(stated, joints, "mm")
+    analyses = count * (POSITIONS + 1)
+    few = min(count, 500)
+    some = [column[:few] for column in linkages]
+    light = carried._replace(
+        **{name: getattr(carried, name)[:few] for name in ("mass", "cg", "inertia", "pins", "arm", "force", "about")}
+    )
+    compiled, plain = peaks(linkages, carried, SPEED, POSITIONS + 1)[:, DRIVE], in_numpy(Fourbars(*some), light)
+    general = in_general(joints[:few], light)
+    differ = max(float(np.abs(one / compiled[:few] - 1.0).max()) for one in (plain, general))
+    print(f"{count} fourbars, {POSITIONS + 1} positions each; three ways to the peak torque differ by {differ:.1e}")
+    spent = cpu_of(lambda: peaks(linkages, carried, SPEED, POSITIONS + 1))
+    print(f"closed form, compiled, kinematics included: {analyses / spent / 1e6:.1f} M analyses/s")
+    spent = cpu_of(lambda: in_numpy(Fourbars(*some), light))
+    print(f"the same in plain numpy: {few * (POSITIONS + 1) / spent / 1e6:.2f} M analyses/s")
+    spent = cpu_of(lambda: in_general(joints[:few], light))
+    print(f"general equations, kinematics included: {few * (POSITIONS + 1) / spent / 1e3:.0f} k analyses/s")
+
+    def order() -> np.ndarray:
+        carried = weights(stated, joints, "mm")
+        return np.argsort(peaks(fourbars(joints, whole, 1e-3), carried, SPEED, POSITIONS + 1)[:, DRIVE])
+
+    print(f"{count} candidates weighed by their shapes and ordered by peak torque: {cpu_of(order, 3):.2f} s")
+
+
+def analysis(count: int, seed: int) -> None:
+    """What forces add to an analysis of 360 steps."""
+    added = []
+    for row in crank_rockers(np.random.default_rng(seed), count):
+        o2, a, b, o4, p = (complex(z) for z in row)
+        vector = (p - a) / (b - a)
+        stated: dict[str, Any] = {
+            "mechanism": {
+                "type": "fourbar",
+                "fixed_pivots": {"input": [o2.real, o2.imag], "output": [o4.real, o4.imag]},
+                "links": {"input": abs(a - o2), "coupler": abs(b - a), "output": abs(b - o4)},
+                "coupler_point": {"distance": abs(p - a), "angle": math.degrees(np.angle(vector))},
+                "assembly": "open",
+            },
+            "motion": {"from": 0.0, "to": 360.0, "steps": 360, "speed_rpm": SPEED_RPM},
+        }
+        bodies = {
+            link: {"shape": PLATE if link == "coupler" else {**PLATE, "holes": {}}} for link in ("input", "coupler")
+        }
+        block = {"gravity": {}, "bodies": bodies, "point_masses": [{"joint": "P", "mass": 2.0}]}
+        plain, forced = parse_request(stated), parse_request({**stated, "dynamics": block})
+        added.append(1e3 * (cpu_of(forced.answer, 3) - cpu_of(plain.answer, 3)))
+    print(
+        f"forces add to an analysis of 360 steps: median {statistics.median(added):.1f} ms, worst {max(added):.1f} ms"
+    )
+
+
+def limited(count: int, seed: int) -> None:
+    """Planted motions with a limit on their torque: how many are answered, and whether the answers keep it."""
+    rng = np.random.default_rng(seed)
+    answered, kept, spent = 0, 0, []
+    for n, row in enumerate(crank_rockers(rng, count)):
+        problem, limit = planted(rng, row, n)
+        begun = time.process_time()
+        result = solve(problem)
+        spent.append(time.process_time() - begun)
+        designs = [design for design in result.designs if design.verification.passed]
+        answered += bool(designs)
+        for design in designs:
+            run = run_of(problem.dynamics, design, 1440)
+            _, found = peaks_of(run.mechanism, run.block, problem.length_unit, run.at, run.speed)
+            kept += bool(found["drive"].value <= limit * (1.0 + 1e-4))
+            if found["drive"].value > limit * (1.0 + 1e-4):
+                print(f"task {n}: {found['drive'].value} over {limit}")
+        if not designs:
+            print(f"task {n}: none; {result.summary}")
+    print(f"{answered} of {count} answered; {kept} designs confirmed")
+    print(f"CPU: median {statistics.median(spent):.2f} s, worst {max(spent):.2f} s")
+
+
+def planted(rng: np.random.Generator, row: np.ndarray, n: int) -> tuple[Any, float]:
+    """Three positions of a body that a known linkage carries, and its torque with 5 % more."""
+    o2, a, b, o4, p = (complex(z) for z in row)
+    mechanism = Mechanism(
+        dict(zip(("O2", "A", "B", "O4", "P"), (o2, a, b, o4, p), strict=True)), FOURBAR_LINKS, "input"
+    )
+    inputs = float(mechanism.reference_input) + np.sort(rng.uniform(0.0, 2.0, 3))
+    inputs[0] = float(mechanism.reference_input)
+    motion = drive(mechanism, inputs)
+    angles = np.degrees(motion.angles["coupler"][0] - motion.angles["coupler"][0][0])
+    positions = [
+        {"x": float(z.real), "y": float(z.imag), "angle": float(turned)}
+        for z, turned in zip(motion.joints["P"][0], angles, strict=True)
+    ]
+    stated = {"kind": "motion", "positions": positions, "max_designs": 5, "dynamics": BLOCK, "seed": n}
+    bare = parse_problem(stated)
+    peak = _peak(bare, row)
+    return parse_problem({**stated, "constraints": {"max_drive_torque": 1.05 * peak}}), 1.05 * peak
+
+
+def _peak(problem: Any, row: np.ndarray) -> float:
+    """The torque of the linkage that a task was made from, as of a design that was answered."""
+    design = verify(problem, fourbar_mechanism(FourbarConfiguration(*(complex(z) for z in row))), demanded(problem))
+    assert design is not None
+    return float(with_forces(problem, design).forces.drive_torque.max)
+
+
+def main() -> None:
+    """Run one part, or all."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited"])
+    parser.add_argument("--count", type=int)
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+    for name, part, count in (("speed", speed, 10_000), ("analysis", analysis, 20), ("limited", limited, 100)):
+        if asked.part in (None, name):
+            part(asked.count or count, asked.seed)
+
+
+if __name__ == "__main__":
+    main()
