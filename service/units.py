@@ -47,6 +47,7 @@ def symbols(problem: StatedProblem) -> dict[Dimension, str]:
         Dimension.OUTPUT_PER_RADIAN: f"{way}/rad",
         Dimension.OUTPUT_PER_RADIAN_SQUARED: f"{way}/rad²",
         Dimension.LENGTH_PER_RADIAN: f"{length}/rad",
+        Dimension.ANGLE_PER_LENGTH: f"°/{length}",
         Dimension.ROTATIONAL_SPEED: "1/min",
         Dimension.RADIAN_FREQUENCY: "rad/s",
         Dimension.PERCENT: "%",

@@ -7,11 +7,12 @@ from typing import Any
 from kinematics.linkage import warm
 from synthesis.model.answer import Result
 from synthesis.model.kind import Progress, part_of
-from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.forces import all_with_forces
 from synthesis.outcome.front import front_of
 from synthesis.outcome.layout import all_laid_out
+from synthesis.outcome.manufacture import all_made
 from synthesis.outcome.measured_order import LOOKED_AT, least_first, searched_for, searched_on
 from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
@@ -52,16 +53,27 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
         rest = part_of(told, SEARCH_SHARE, 1.0)
         result = _relaxed(asked, result, relaxation(asked, kind.solve, rest, kind.verify, kind.nearer))
     if isinstance(problem, LinkageProblem):
-        result = result if problem.layout is None else all_laid_out(problem.layout, result)
-        result = searched_on(problem, all_with_forces(problem, result), lambda other: kind.solve(other, _silent))
+        if problem.rank_by in LOOKED_AT:
+            measured = _measured(problem, result, problem.rank_by)
+            result = searched_on(problem, measured, lambda narrower: kind.solve(narrower, _silent))
         designs, remark = usable_first(searched_for(problem), result.designs)
         if problem.rank_by in LOOKED_AT:
             result = least_first(problem, result.model_copy(update={"designs": designs}))
         else:
             result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
+        result = _measured(problem, result, "planes", "yield", *FORCES)
         result = result.model_copy(update={"front": front_of(result.designs)})
     told(1.0, "verified")
     return result
+
+
+def _measured(problem: LinkageProblem, result: Result[Any], *orders: str) -> Result[Any]:
+    """An answer with what is measured on finished designs for these orders, as far as it is stated."""
+    if "planes" in orders and problem.layout is not None:
+        result = all_laid_out(problem.layout, result)
+    if "yield" in orders and problem.manufacture is not None:
+        result = all_made(problem, result)
+    return all_with_forces(problem, result) if set(FORCES) & set(orders) else result
 
 
 def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> Result[Any]:

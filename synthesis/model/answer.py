@@ -21,9 +21,9 @@ def _blank(value: object) -> bool:
     return value is None
 
 
-def optional(description: str | None = None) -> Any:
-    """A field of an answer that is left out where it has no value."""
-    return Field(default=None, exclude_if=_blank, description=description)
+def optional(description: str | None = None, alias: str | None = None) -> Any:
+    """A field of an answer that is left out where it has no value; ``alias`` is its name where Python has none such."""
+    return Field(default=None, exclude_if=_blank, description=description, alias=alias)
 
 
 class Check(Answer):

@@ -34,6 +34,7 @@ class Dimension(StrEnum):
     OUTPUT_PER_RADIAN = "output per radian"
     OUTPUT_PER_RADIAN_SQUARED = "output per radian squared"
     LENGTH_PER_RADIAN = "length per radian"
+    ANGLE_PER_LENGTH = "angle per length"
     ROTATIONAL_SPEED = "rotational speed"
     RADIAN_FREQUENCY = "radian frequency"
     FORCE = "force"
@@ -61,6 +62,7 @@ OUTPUT = Dimension.OUTPUT
 OUTPUT_PER_RADIAN = Dimension.OUTPUT_PER_RADIAN
 OUTPUT_PER_RADIAN_SQUARED = Dimension.OUTPUT_PER_RADIAN_SQUARED
 LENGTH_PER_RADIAN = Dimension.LENGTH_PER_RADIAN
+ANGLE_PER_LENGTH = Dimension.ANGLE_PER_LENGTH
 ROTATIONAL_SPEED = Dimension.ROTATIONAL_SPEED
 RADIAN_FREQUENCY = Dimension.RADIAN_FREQUENCY
 FORCE = Dimension.FORCE

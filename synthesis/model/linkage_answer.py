@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import Annotated, Generic, Literal, TypeVar
 
-from pydantic import Discriminator, Field
+from pydantic import ConfigDict, Discriminator, Field
 
 from synthesis.model.answer import Answer, Point, Result, Verification, optional
 from synthesis.model.dimension import Angle, Length
 from synthesis.model.forces_answer import DesignForces
+from synthesis.model.manufacture_answer import MANUFACTURE, Manufactured, Yield
 
 _BODY_ANGLE = optional(
     "Angle of the body's line at the first target, absolute, degrees; left out where it is the demanded one exactly."
@@ -287,6 +288,8 @@ class MotionMetrics(UsedRange):
 class LinkageMetrics(MotionMetrics):
     """Measured properties of a linkage that were not demanded."""
 
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, serialize_by_alias=True)
+
     same_branch: bool
     visits_in_order: bool
     input_rotation: Angle | None = optional(
@@ -307,6 +310,9 @@ class LinkageMetrics(MotionMetrics):
     rms_residual: float = Field(
         description="Root mean square over the targets of P's distance as a share of the task's size and, where an "
         "angle is demanded, its difference in radians, added in squares."
+    )
+    yield_: Yield | None = optional(
+        "Share of the linkages made that are good, where the problem states tolerances and a quality.", alias="yield"
     )
 
 
@@ -366,6 +372,7 @@ class LinkageDesign(Answer):
     metrics: LinkageMetrics
     layout: Layout | None = LAYOUT
     forces: DesignForces | None = PEAKS
+    manufacture: Manufactured | None = MANUFACTURE
 
 
 class Front(Answer):

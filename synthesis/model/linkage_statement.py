@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from synthesis.model.dimension import ANGLE, FORCE, LENGTH, POWER, TORQUE
 from synthesis.model.dynamics import DesignDynamics
 from synthesis.model.layout import StatedLayout
+from synthesis.model.manufacture import Held, Made, Manufacture
 from synthesis.model.space import Space
 from synthesis.model.statement import (
     ABSURD,
@@ -31,7 +32,7 @@ Force = Literal["drive_torque", "joint_force", "shaking_force", "shaking_moment"
 
 FORCES: tuple[Force, ...] = get_args(Force)
 
-RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes"] | Force
+RankBy = Literal["quality", "accuracy", "size", "transmission_angle", "planes", "yield"] | Force
 """What designs of linkages are ordered by (docs/ranking.md)."""
 
 
@@ -158,12 +159,24 @@ class LinkageProblem(StatedProblem):
     dynamics: DesignDynamics | None = Field(
         default=None, description="What each design weighs and carries, and how fast it is driven: its forces."
     )
+    manufacture: Manufacture | None = Field(
+        default=None, description="How exactly a shop makes each design, and what it must then still do."
+    )
     rank_by: RankBy = "quality"
 
     @property
     def force_units(self) -> Literal["si", "consistent"] | None:
         """Those of the block `dynamics`."""
         return None if self.dynamics is None else self.dynamics.units
+
+    @property
+    def made(self) -> Made | str:
+        """What is demanded at the targets of the task, for the block ``manufacture``; or why that is not built."""
+        return f"is built for motion, path and function; {self.kind} does not take it"
+
+    def held_to(self, _design: Any) -> Held:
+        """What a design of this task is held to at its targets, where :attr:`made` says that there is such."""
+        raise NotImplementedError(f"{self.kind} says nothing of its targets")
 
     @property
     def first_pose(self) -> tuple[complex, float] | None:
@@ -176,6 +189,10 @@ class LinkageProblem(StatedProblem):
         if self.rank_by == "planes" and self.layout is None:
             listed.append(Contradiction("/rank_by", "planes are counted where a layout is stated; state one"))
         listed += self._forces_without_loads()
+        if self.rank_by == "yield" and (self.manufacture is None or not self.manufacture.sampled):
+            detail = "a yield is sampled where manufacture has tolerances and a quality; state them"
+            listed.append(Contradiction("/rank_by", detail))
+        listed += self._faults_of_manufacture()
         if self.space is None or self.first_pose is not None:
             return listed
         if self.space.body is not None:
@@ -199,6 +216,14 @@ class LinkageProblem(StatedProblem):
             detail = "the joint force index is that of the first of the loads; state one"
             return [Contradiction(path, detail) for path, name in demanded.items() if name == "joint_force_index"]
         return []
+
+    def _faults_of_manufacture(self) -> list[Contradiction]:
+        if self.manufacture is None:
+            return []
+        made = self.made
+        if isinstance(made, str):
+            return [Contradiction("/manufacture", made)]
+        return [Contradiction(f"/manufacture{path}", detail) for path, detail in self.manufacture.faults(made)]
 
     @property
     def error_measure(self) -> str | None:

@@ -1,4 +1,4 @@
-"""Orders by what takes too long to be measured of every candidate: planes, and forces.
+"""Orders by what takes too long to be measured of every candidate: planes, yield, and forces.
 
 The search is in the usual order of its kind, for more designs than are wanted; they are measured, and then ordered.
 """
@@ -22,7 +22,7 @@ SEARCHES, NARROWER, PATIENCE_S = 4, 0.8, 4.0
 """Further searches at most where forces order, the share of the least force that each may have, and the processor time
 after which none is begun."""
 
-LOOKED_AT: Mapping[str, int] = {"planes": 40} | dict.fromkeys(FORCES, 100)
+LOOKED_AT: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCES, 100)
 """Designs at least that are measured, the first of the usual order, for each such order."""
 
 
@@ -78,14 +78,15 @@ def _as_stated(problem: LinkageProblem, design: Any) -> Any:
 def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
     """As many designs as are wanted of an answer to :func:`searched_for`, measured, those with the least first.
 
-    Those with as much stay in their order. What could not be measured comes after what could, and designs that break
-    a check last.
+    Of yields the greatest is first. Those with as much stay in their order. What could not be measured comes after what
+    could, and designs that break a check last.
     """
-    measure = _planes if problem.rank_by == "planes" else partial(value_of, name=problem.rank_by)
+    measure = _MEASURES.get(problem.rank_by) or partial(value_of, name=problem.rank_by)
+    sense = -1.0 if problem.rank_by == "yield" else 1.0
 
     def place(design: Any) -> tuple[bool, float]:
         measured = measure(design)
-        return not design.verification.passed, math.inf if measured is None else measured
+        return not design.verification.passed, math.inf if measured is None else sense * measured
 
     designs = sorted(result.designs, key=place)[: problem.max_designs]
     told = _told(problem.rank_by, result.designs, measure) if result.designs else ""
@@ -94,6 +95,14 @@ def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
 
 def _planes(design: Any) -> float | None:
     return float(design.layout.count) if design.layout.buildable else None
+
+
+def _yield(design: Any) -> float | None:
+    return None if design.metrics.yield_ is None else float(design.metrics.yield_.value)
+
+
+_MEASURES: Mapping[str, Callable[[Any], float | None]] = {"planes": _planes, "yield": _yield}
+"""What is no force."""
 
 
 def _told(order: str, designs: list[Any], measure: Callable[[Any], float | None]) -> str:

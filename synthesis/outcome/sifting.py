@@ -15,6 +15,7 @@ from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.forces import held_to_forces
 from synthesis.outcome.layout import held_to_planes
+from synthesis.outcome.manufacture import held_to_yield
 from synthesis.proof.room import judged_by_room
 
 DEFECTS = {
@@ -141,6 +142,7 @@ class Sifting(Generic[Design]):
             if judged is None:
                 return self._undriven
             verdict = held_to_planes(self.stated, held_to_forces(self.stated, judged))
+            verdict = held_to_yield(self.stated, verdict)
         if verdict.verification.passed:
             self.passed.append(verdict)
             return ""

@@ -60,12 +60,14 @@ PURE = {
     "PlanetaryMechanism": {"addendum"},  # in modules
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's
     "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
+    "Quality": {"yield"},
     "QuickReturnMetrics": {"time_ratio", "link_ratio", "reach", "quality"},
     "QuickReturnProblem": {"time_ratio"},
     "Ratio": {"value"},
     "RatioRange": {"least", "greatest"},
     "Reachable": {"max_link_ratio", "tolerance"},
     "Rest": {"off_end"},
+    "Sensitivity": {"x", "y", "travel", "share"},  # length by length
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
     "StageRatio": {"min", "max"},
@@ -77,6 +79,7 @@ PURE = {
     "TablePoint": {"x", "y"},
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units
+    "Yield": {"value", "low", "high"},
 }
 
 

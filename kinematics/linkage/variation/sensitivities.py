@@ -27,6 +27,9 @@ import numpy as np
 
 from kinematics.linkage.variation.driven import Complex, Real, Task, Whole, deviations
 
+POLISHED = 2
+"""Steps of Newton's method by which nearest inputs are made exact; the kernels leave a millionth of a radian."""
+
 
 class Sensitivities(NamedTuple):
     """How the deviations at targets follow n dimensions.
@@ -150,17 +153,23 @@ def sensitivities(task: Task, nominal: Real) -> Sensitivities:
     driven = deviations(square, nominal[None])
     inputs, offsets = driven.inputs[0], driven.offsets[0]
     n = len(nominal)
+    follows = task.adjusted and task.guides
+    following = np.zeros((len(inputs), n))
+    weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]]) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        at = _loop(task, nominal, inputs, task.assemblies)
-        every, speeds = _measured(task, at)
-        following = np.zeros((len(inputs), n))
-        if task.adjusted and task.guides:
-            weights = np.array([1.0 / task.units[0]] * 2 + [1.0 / task.units[1]]) ** 2
-            motion = every[:, :, n]
-            slope = np.einsum("c,tcj,tc->tj", weights, every, motion) + np.einsum(
-                "c,tc,tcj->tj", weights, offsets, speeds
-            )
-            following = -slope[:, :n] / slope[:, n:]
+        for last in [False] * (POLISHED * follows) + [True]:
+            every, speeds = _measured(task, _loop(task, nominal, inputs, task.assemblies))
+            if not follows:
+                break
+            # The slope of half the sum of squares with the input, and its derivatives.
+            slope = np.einsum("c,tc,tc->t", weights, offsets, every[:, :, n])
+            slopes = np.einsum("c,tcj,tc->tj", weights, every, every[:, :, n])
+            slopes += np.einsum("c,tc,tcj->tj", weights, offsets, speeds)
+            following = -slopes[:, :n] / slopes[:, n:]
+            if not last:
+                inputs = inputs - slope / slopes[:, n]
+                there = dataclasses.replace(square, adjusted=False, inputs=inputs, used=None)
+                offsets = deviations(there, nominal[None]).offsets[0]
     fixed, motion = every[:, :, :n], every[:, :, n]
     rates = fixed + motion[:, :, None] * following[:, None, :]
     least, least_rates = _transmission(task, nominal, inputs, following)

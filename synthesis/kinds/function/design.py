@@ -18,6 +18,7 @@ from synthesis.model.linkage_answer import (
     LinkageResult,
     SliderCrankMechanism,
 )
+from synthesis.model.manufacture_answer import MANUFACTURE, Manufactured
 
 FunctionMechanism = Annotated[FourbarMechanism | SliderCrankMechanism, Discriminator("type")]
 
@@ -115,6 +116,7 @@ class FunctionDesign(Answer):
     structural_error: StructuralError
     layout: Layout | None = LAYOUT
     forces: DesignForces | None = PEAKS
+    manufacture: Manufactured | None = MANUFACTURE
 
 
 class FunctionResult(LinkageResult[FunctionDesign]):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field
 from synthesis.kinds.function.functions import FunctionStatement, Real
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
+from synthesis.model.manufacture import Held, Made
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -40,6 +41,9 @@ EXACT_PAIRS = 3
 """Pairs that a linkage meets with everything but its three proportions given; each open zero or scale adds one."""
 
 MOST_EXACT = 7
+
+HELD_PLACES = 41
+"""Places of the range, ends included, at which a function that is approximated is held to as it is made."""
 
 
 class Pair(Statement):
@@ -190,6 +194,38 @@ class FunctionProblem(LinkageProblem):
     def slides(self) -> bool:
         """Whether the output is a slider."""
         return self.mechanism == "slider_crank"
+
+    @property
+    def made(self) -> Made | str:
+        """Places of the output, at the inputs that its dial says."""
+        count = len(self.precision_shares) if self.aim == "precision" else HELD_PLACES
+        return Made(self.slides, not self.slides, False, count if self.pairs is None else len(self.pairs))
+
+    def held_to(self, design: Any) -> Held:
+        """Pairs and precision points, or places of the whole range, as they stand on the dials."""
+        values = self._held_values()
+        if self.pairs is not None:
+            outputs = self.values[:, 1]
+        else:
+            assert self.function is not None
+            outputs = self.function.values(values)
+        dials = design.dials
+        inputs, places = (
+            dial.place + dial.scale * (shown - dial.at)
+            for dial, shown in ((dials.input, values), (dials.output, outputs))
+        )
+        if self.slides:
+            return Held(np.radians(inputs), travels=places, free=False)
+        return Held(np.radians(inputs), angles=np.radians(places), free=False)
+
+    def _held_values(self) -> Real:
+        """Values of the input at which linkages are held as they are made."""
+        if self.pairs is not None:
+            return self.values[:, 0]
+        assert self.function is not None
+        low, high = self.function.interval
+        shares = self.precision_shares if self.aim == "precision" else np.linspace(0.0, 1.0, HELD_PLACES)
+        return np.asarray(low + (high - low) * shares)
 
     @property
     def from_ground(self) -> bool:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from typing import Literal
+from typing import Any, Literal
 
+import numpy as np
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine, whole_point
 from synthesis.kinds.motion.stated_positions import Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.manufacture import Held, Made
 from synthesis.model.statement import Contradiction, Flag, PartialPoint
 
 LEAST_LENGTH = 1e-12
@@ -182,6 +184,28 @@ class MotionProblem(LinkageProblem):
         default=False,
         description="Add a crank that turns through and moves the linkage from the first position to the last.",
     )
+
+    @property
+    def made(self) -> Made | str:
+        """Poses at inputs that are free."""
+        if self.driver is not None:
+            return "is not built for linkages with a driver dyad; leave one of the two out"
+        if self.slider == "RP" or self.input_side.dyad == "PR":
+            return "is built for fourbars, and for slider-cranks with the slider on the output side"
+        return Made(True, True, True, len(self.positions))
+
+    def held_to(self, design: Any) -> Held:
+        """The positions, with their tolerances."""
+        limits = np.array(self.limits)
+        limits[:, 2] = np.radians(limits[:, 2])
+        stands = design.mechanism.reference_body_angle
+        return Held(
+            inputs=np.radians([target.input_angle for target in design.targets]),
+            points=np.array([position.point for position in self.positions]),
+            angles=np.radians([position.angle for position in self.positions]),
+            body=math.radians(self.positions[0].angle if stands is None else stands),
+            limits=limits,
+        )
 
     @property
     def first_pose(self) -> tuple[complex, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
+from synthesis.model.manufacture import Held, Made
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -254,6 +255,29 @@ class PathProblem(LinkageProblem):
         """How far the curve may be from each point, shape (points,), in length units; None where nothing is stated."""
         stated = [point.tolerance for point in self.points if point.tolerance is not None]
         return np.array(stated) if len(stated) == len(self.points) else None
+
+    @property
+    def made(self) -> Made | str:
+        """Places of P, at inputs that are free where the timing is."""
+        if self.mechanism == "geared_fivebar":
+            return "is built for fourbars and slider-cranks, not for geared fivebars"
+        if self.placement_free:
+            return "is not built for curves whose place is left open; state no placement_free"
+        return Made(True, False, not self.prescribed, len(self.points))
+
+    def held_to(self, design: Any) -> Held:
+        """The points, with their tolerances, in any direction."""
+        widths = self.tolerances
+        limits = None
+        if widths is not None:
+            limits = np.stack([widths, widths, np.zeros(len(widths))], axis=1)
+        return Held(
+            inputs=np.radians([target.input_angle for target in design.targets]),
+            points=np.array([point.point for point in self.points]),
+            free=not self.prescribed,
+            limits=limits,
+            around=True,
+        )
 
     @property
     def matched(self) -> bool:

@@ -20,6 +20,7 @@ DEMANDS: dict[str, Any] = {
         for name in ("drive_torque", "joint_force", "shaking_force", "shaking_moment", "power", "joint_force_index")
     },
     "space": {"box": [[-1e6, -1e6], [1e6, 1e6]]},
+    "manufacture": {"tolerances": {"length": 1e-3}},
     "constraints": {"min_transmission_angle": 1.0},
     "constraints.min_transmission_angle": 1.0,
     "constraints.grashof": "non_grashof",

@@ -36,5 +36,5 @@ NO_EFFECT = {
 }
 """Fields with which no answer changes, and why."""
 
-ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space", "DesignDynamics"})
-"""Models whose fields have rows or tests of their own: paths, skeletons beside dimensions, rooms, masses."""
+ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "Manufacture"})
+"""Models whose fields have rows or tests of their own: paths, skeletons beside dimensions, rooms, masses, shops."""

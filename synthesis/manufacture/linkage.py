@@ -1,0 +1,245 @@
+"""A finished fourbar or slider-crank by its dimensions, and what it is held to, as the compiled variants take them."""
+
+from __future__ import annotations
+
+import cmath
+import dataclasses
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.variation import Task, deviations
+from kinematics.linkage.variation.driven import Sort
+from synthesis.model.manufacture import Held, Manufacture
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+NAMES = {
+    "fourbar": (
+        "fixed_pivots.input.x",
+        "fixed_pivots.input.y",
+        "fixed_pivots.output.x",
+        "fixed_pivots.output.y",
+        "links.input",
+        "links.coupler",
+        "links.output",
+    ),
+    "slider_crank": ("fixed_pivot.x", "fixed_pivot.y", "offset", "links.crank", "links.coupler"),
+}
+"""Dimensions by the type of the mechanism, in the order of the variants; those of P come after them."""
+
+OF_POINT = ("coupler_point.along", "coupler_point.across")
+
+LIMIT_SLACK = 1e-9
+"""Relative rounding at a limit."""
+
+OPPOSITE = 0.5
+"""Share of the own assembly's miss at a target below which the opposite assembly is the one that is meant there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linkage:
+    """A linkage by its dimensions.
+
+    Attributes
+    ----------
+    type : str
+        ``fourbar`` or ``slider_crank``.
+    row : float, shape (n,)
+        Its dimensions, those of P last, as of :func:`kinematics.linkage.variation.deviations`.
+    sign : int
+        Its assembly: open is +1, crossed −1.
+    slide_angle : float or None
+        Direction of the slide, radians.
+    foot : complex
+        The foot of the fixed pivot on the slide's line, from which travels are counted.
+    reference : float
+        Input angle of the reference, radians.
+    """
+
+    type: str
+    row: Real
+    sign: int
+    slide_angle: float | None
+    foot: complex
+    reference: float
+
+    def names(self, *, guides: bool) -> list[str]:
+        """The names of the dimensions, those of P only where it is guided."""
+        return [*NAMES[self.type], *(OF_POINT if guides else ())]
+
+    def pivots(self, *, guides: bool) -> NDArray[np.bool_]:
+        """Which of the dimensions are places of fixed pivots, or a slide's offset; the others are lengths."""
+        named = self.names(guides=guides)
+        return np.array([name.startswith("fixed_pivot") or name == "offset" for name in named])
+
+
+def linkage_of(mechanism: Any) -> Linkage | None:
+    """The dimensions of the mechanism of an answer or a request; None of a type that is not built.
+
+    Parameters
+    ----------
+    mechanism : a model of a mechanism
+        Its fields ``fixed_pivots`` or ``fixed_pivot``, ``links``, ``slide``, ``coupler_point``, ``assembly`` and
+        ``reference_input_angle`` are read; its skeleton is not looked at.
+    """
+    stated = mechanism.model_dump(exclude={"skeleton"})
+    if stated["type"] not in NAMES or stated.get("driven_by") == "slider":
+        return None
+    point = stated["coupler_point"]
+    on_link = cmath.rect(point["distance"], math.radians(point["angle"]))
+    links, sign = stated["links"], 1 if stated["assembly"] == "open" else -1
+    reference = math.radians(stated.get("reference_input_angle") or 0.0)
+    if stated["type"] == "fourbar":
+        pivots = stated["fixed_pivots"]
+        row = [*pivots["input"], *pivots["output"], links["input"], links["coupler"], links["output"]]
+        return Linkage("fourbar", np.array([*row, on_link.real, on_link.imag]), sign, None, 0j, reference)
+    pivot, line = complex(*stated["fixed_pivot"]), complex(*stated["slide"]["point"])
+    angle = math.radians(stated["slide"]["angle"])
+    along = cmath.exp(1j * angle)
+    between = (pivot - line) * along.conjugate()
+    row = [pivot.real, pivot.imag, between.imag, links["crank"], links["coupler"]]
+    foot = line + along * between.real
+    return Linkage("slider_crank", np.array([*row, on_link.real, on_link.imag]), sign, angle, foot, reference)
+
+
+@dataclass(frozen=True, eq=False)
+class Product:
+    """A linkage with its task, as a shop makes it.
+
+    Attributes
+    ----------
+    linkage : Linkage
+        As drawn.
+    task : Task
+        Its targets, where a target with a tolerance of the task's own is the place at which the linkage as drawn
+        passes it.
+    own : float, shape (t, 3)
+        How far that place lies from the demanded one: x, y and angle; 0 of what has no tolerance of its own.
+    limits : float, shape (t, 3)
+        The task's own tolerances, infinite where there is none.
+    around : bool
+        Whether those of x are of the distance, in any direction.
+    """
+
+    linkage: Linkage
+    task: Task
+    own: Real
+    limits: Real
+    around: bool
+
+    @cached_property
+    def nominal(self) -> Real:
+        """The dimensions as drawn, shape (n,)."""
+        return self.linkage.row[: self.task.dimensions]
+
+    @property
+    def names(self) -> list[str]:
+        """What the dimensions are called."""
+        return self.linkage.names(guides=self.task.guides)
+
+    @property
+    def held_apart(self) -> bool:
+        """Whether the task has tolerances of its own."""
+        return bool(np.isfinite(self.limits).any())
+
+    def keeps_own(self, offsets: Real) -> NDArray[np.bool_]:
+        """Whether variants with these offsets (v, t, 3) keep the task's own tolerances, shape (v,)."""
+        off = np.abs(offsets + self.own)
+        if self.around:
+            off[..., 0] = off[..., 1] = np.hypot(off[..., 0], off[..., 1])
+        return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
+
+
+def product(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float, float] | None) -> Product | str:
+    """A linkage with what it is held to; in words why there is none.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        As drawn.
+    held : Held
+        What it is held to.
+    stated : Manufacture
+        The block of the statement.
+    used : pair of float or None
+        The range of the input on which it must stay on its branch, radians.
+    """
+    count = len(held.inputs)
+    sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
+    task = Task(
+        sort,
+        np.full(count, linkage.sign, np.int64),
+        held.inputs,
+        slide_angle=linkage.slide_angle,
+        points=held.points,
+        angles=held.angles,
+        travels=held.travels,
+        origin=linkage.foot,
+        adjusted=False,
+        units=_units(stated, held),
+    )
+    row = linkage.row[: task.dimensions]
+    if sort == "poses":
+        angles = _coupler_angles(linkage, task, held)
+        if angles is None:
+            return "the linkage cannot be assembled in its reference"
+        task = dataclasses.replace(task, angles=angles)
+    if used is None:
+        task = dataclasses.replace(task, assemblies=_assemblies(task, row))
+    offsets = deviations(task, row[None]).offsets[0]
+    if not np.isfinite(offsets).all():
+        return "the linkage cannot be assembled at every target"
+    limits = np.full((count, 3), math.inf)
+    if held.limits is not None:
+        limits = np.where((held.limits > 0.0) & np.isfinite(held.limits), held.limits, math.inf)
+    own = np.where(np.isfinite(limits), offsets, 0.0)
+    adjusted = stated.input == "adjusted" or (stated.input is None and sort != "outputs" and held.free)
+    task = dataclasses.replace(
+        task,
+        used=used,
+        adjusted=adjusted,
+        points=None if task.points is None else task.points + own[:, 0] + 1j * own[:, 1],
+        angles=None if task.angles is None else task.angles + own[:, 2],
+    )
+    return Product(linkage, task, own, limits, held.around)
+
+
+def _units(stated: Manufacture, held: Held) -> tuple[float, float]:
+    """What errors are measured in: the quality; where none is stated, the size of the task and a radian."""
+    quality = stated.quality
+    if quality is not None and (quality.max_error is not None or quality.max_angle_error is not None):
+        angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
+        return quality.max_error or math.inf, angle
+    places = held.points if held.points is not None else held.travels
+    size = 1.0 if places is None else float(np.abs(places - places[0]).max())
+    return size or 1.0, 1.0
+
+
+def _coupler_angles(linkage: Linkage, task: Task, held: Held) -> Real | None:
+    """Demanded angles of the line A → B: the body's, by how the body stands on the coupler in the reference."""
+    assert held.angles is not None
+    at = dataclasses.replace(
+        task,
+        assemblies=task.assemblies[:1],
+        inputs=np.array([linkage.reference]),
+        points=np.zeros(1, np.complex128),
+        angles=np.array([held.body]),
+    )
+    turned = deviations(at, linkage.row[None]).offsets[0, 0, 2]
+    return held.angles + turned if math.isfinite(turned) else None
+
+
+def _assemblies(task: Task, row: Real) -> NDArray[np.int64]:
+    """The assembly that is meant at each target, where a linkage is not held to one: the opposite if clearly nearer."""
+    misses = []
+    for sign in (1, -1):
+        off = deviations(dataclasses.replace(task, assemblies=sign * task.assemblies), row[None])
+        miss = np.hypot(off.distances[0] / task.units[0], off.angles[0] / task.units[1])
+        misses.append(np.where(np.isfinite(miss), miss, np.inf))
+    return np.where(misses[1] < OPPOSITE * misses[0], -task.assemblies, task.assemblies)

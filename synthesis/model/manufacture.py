@@ -1,0 +1,188 @@
+"""The block ``manufacture`` of a statement: how exactly a shop makes a linkage, and what it must then still do.
+
+See docs/manufacture.md. What a kind says of its task to it, and what a design is held to at its targets, are here too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, Field
+
+from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.statement import Contradiction, Count, NonNegative, PositiveLength, Sizable, Statement
+
+Real = NDArray[np.float64]
+
+MOST_SAMPLES = 1_000_000
+
+MOST_DRIVEN = 5_000_000
+"""Samples of a design times its targets: some seconds of one core."""
+
+CONFIDENCE = 0.99
+"""Of the interval of a yield."""
+
+
+class Tolerances(Statement):
+    """How far dimensions may be off, either way; each of them independently of all others."""
+
+    length: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Of every link, and of P's place on its link, along it and across."
+    )
+    pivot: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0, description="Of each coordinate of a fixed pivot, and of the offset of a slide."
+    )
+
+
+class Quality(Statement):
+    """What a linkage must still do as it is made, to be good."""
+
+    model_config = ConfigDict(populate_by_name=True, serialize_by_alias=True)
+
+    max_error: PositiveLength | None = Field(
+        default=None, description="Greatest distance of P from each target, or of a slider from its place."
+    )
+    max_angle_error: Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=180.0), Sizable] | None = Field(
+        default=None, description="Greatest difference of the body's angle, or the output's, at each target, degrees."
+    )
+    yield_: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] | None = Field(
+        default=None,
+        alias="yield",
+        description="Share of the linkages made that must be good: a demand. It counts as kept where the lower end of "
+        "the interval of the sampled yield reaches it.",
+    )
+
+
+class Manufacture(Statement):
+    """How a linkage is made, and what is asked of it as it is made (docs/manufacture.md)."""
+
+    tolerances: Tolerances | None = None
+    distribution: Literal["uniform", "normal"] = Field(
+        default="uniform",
+        description="Of every dimension: evenly within its tolerance, or normal with a third of the tolerance as its "
+        "standard deviation.",
+    )
+    quality: Quality | None = None
+    input: Literal["adjusted", "fixed"] | None = Field(
+        default=None,
+        description="adjusted: the input is set to where the linkage comes nearest to each target; fixed: it stands "
+        "as drawn. Left out: adjusted, and fixed where the task states inputs.",
+    )
+    samples: Annotated[Count, Field(ge=100, le=MOST_SAMPLES)] = Field(
+        default=100_000, description="Linkages that are drawn by chance for the yield of a design."
+    )
+    seed: Annotated[Count, Field(ge=0, le=2**53 - 1)] | None = Field(
+        default=None, description="Of what is drawn by chance; left out, that of the problem."
+    )
+
+    @property
+    def demanded_yield(self) -> float | None:
+        """The yield that designs are held to."""
+        return None if self.quality is None else self.quality.yield_
+
+    @property
+    def sampled(self) -> bool:
+        """Whether there is a yield: something is off, and something is to be kept."""
+        return self.tolerances is not None and self.quality is not None
+
+    def faults(self, task: Made) -> list[Contradiction]:
+        """What no single field shows, with paths below the block."""
+        listed = [*self._missing(), *self._beside(task)]
+        wanted = self.demanded_yield
+        if wanted is not None and self.samples < (needed := needed_samples(wanted)):
+            listed.append(Contradiction("/samples", f"cannot show a yield of {wanted:g}; {needed} or more can"))
+        if self.sampled and self.samples * task.targets > MOST_DRIVEN:
+            most = MOST_DRIVEN // task.targets
+            detail = f"for {task.targets} targets are too many; state {most} at most"
+            listed.append(Contradiction("/samples", detail))
+        return listed
+
+    def _missing(self) -> list[Contradiction]:
+        """Blocks that say nothing, or ask what cannot be told."""
+        tolerances, quality = self.tolerances, self.quality
+        if tolerances is None and quality is None:
+            return [Contradiction("", "says nothing of how it is made; state tolerances")]
+        if tolerances is None:
+            return [Contradiction("/tolerances", "missing: a quality is kept or not by how exactly a linkage is made")]
+        if tolerances.length == 0.0 and tolerances.pivot == 0.0:
+            return [Contradiction("/tolerances", "nothing is off: state one above 0")]
+        if quality is not None and quality.max_error is None and quality.max_angle_error is None:
+            return [Contradiction("/quality", "says not when a linkage is good; state max_error or max_angle_error")]
+        return []
+
+    def _beside(self, task: Made) -> list[Contradiction]:
+        """What the task does not have."""
+        listed = []
+        if self.input == "adjusted" and not task.free_inputs:
+            listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
+        quality = self.quality
+        if quality is not None and quality.max_error is not None and not task.distances:
+            detail = "the task asks for angles alone; state max_angle_error"
+            listed.append(Contradiction("/quality/max_error", detail))
+        if quality is not None and quality.max_angle_error is not None and not task.angles:
+            detail = "the task asks for no angles; state max_error"
+            listed.append(Contradiction("/quality/max_angle_error", detail))
+        return listed
+
+
+def needed_samples(demanded: float) -> int:
+    """Samples of which, if all are good, a yield is shown."""
+    return math.ceil(math.log(0.5 * (1.0 - CONFIDENCE)) / math.log(demanded))
+
+
+class Made(NamedTuple):
+    """What a kind says of its task to the block: what is demanded at its targets, and how many there are.
+
+    Attributes
+    ----------
+    distances, angles : bool
+        Whether places, and whether angles, are demanded.
+    free_inputs : bool
+        Whether the inputs at the targets are free.
+    targets : int
+        Their number.
+    """
+
+    distances: bool
+    angles: bool
+    free_inputs: bool
+    targets: int
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What a design is held to at its t targets, and the inputs at which it stands there.
+
+    Attributes
+    ----------
+    inputs : float, shape (t,)
+        Radians, in one run.
+    points : complex, shape (t,), or None
+        Demanded places of P.
+    angles : float, shape (t,), or None
+        Demanded absolute angles of the body where there are points, else of the output, radians.
+    travels : float, shape (t,), or None
+        Demanded places of a slider along its line, from the foot of the fixed pivot.
+    body : float
+        Absolute angle of the body where the linkage stands in its reference, radians.
+    free : bool
+        Whether the inputs are free.
+    limits : float, shape (t, 3), or None
+        How far the design may be off in x, y and angle (radians) by the task's own tolerances; 0 and infinite where
+        there is none.
+    around : bool
+        Whether the limit in x is one of the distance, in any direction.
+    """
+
+    inputs: Real
+    points: NDArray[np.complex128] | None = None
+    angles: Real | None = None
+    travels: Real | None = None
+    body: float = 0.0
+    free: bool = True
+    limits: Real | None = None
+    around: bool = False

@@ -1,0 +1,63 @@
+"""What an answer says of a design as it is made (docs/manufacture.md)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from synthesis.model.answer import Answer, optional
+from synthesis.model.dimension import ANGLE_PER_LENGTH, Angle, Length
+
+
+class Yield(Answer):
+    """Share of the linkages made that are good, by sampling."""
+
+    value: float
+    low: float = Field(description="Lower end of the interval that holds the yield with 99 % confidence.")
+    high: float = Field(description="Its upper end.")
+    samples: int
+
+
+class WorstCase(Answer):
+    """The greatest errors of the linkages of which every dimension is at one end of its tolerance."""
+
+    assembles: bool = Field(description="Whether all of them can be assembled at the targets, and stay on the branch.")
+    max_error: Length | None = optional("Greatest distance from a target; left out where some cannot be assembled.")
+    max_angle_error: Angle | None = optional("Greatest difference of an angle, degrees; left out likewise.")
+
+
+class Sensitivity(Answer):
+    """How what is measured at the targets follows one dimension: derivatives, where the input follows as it is set."""
+
+    dimension: str = Field(description="By its field of the mechanism; P's place is along A → B and across.")
+    tolerance: Length
+    x: list[float] | None = optional("Of P's x at each target.")
+    y: list[float] | None = optional("Of P's y at each target.")
+    travel: list[float] | None = optional("Of the slider's place at each target.")
+    angle: Annotated[list[float], ANGLE_PER_LENGTH] | None = optional(
+        "Of the body's angle, or the output's, at each target."
+    )
+    transmission: Annotated[float, ANGLE_PER_LENGTH] | None = optional(
+        "Of the least transmission angle over the used range."
+    )
+    share: float = Field(
+        description="What its tolerance adds to the sum of the squares of all errors, in the first order and in the "
+        "units of the quality, as a share of what all tolerances do."
+    )
+
+
+class Manufactured(Answer):
+    """A design as a shop makes it."""
+
+    seed: int | None = optional("Of the samples of the yield.")
+    worst_case: WorstCase | None = optional("With every dimension at an end of its tolerance.")
+    matter: list[str] = Field(
+        default=[], description="The dimensions whose tolerances matter, the first most: four fifths of the errors."
+    )
+    sensitivities: list[Sensitivity] = Field(default=[], description="Of each dimension, in the order of the shares.")
+    remark: str | None = optional("Why there is less.")
+
+
+MANUFACTURE = optional("The design as it is made; left out where the problem states no `manufacture`.")
+"""The same field of every design."""

@@ -1,0 +1,195 @@
+"""Linkages as they are made, by another formulation than the product's: Freudenstein's half-angle equation in plain
+numpy, the nearest input by golden section, and the branch by the discriminant along the way.
+
+A sample is one linkage; its dimensions are a row: O2 (x, y), O4 (x, y), input, coupler, output, P (along, across), or
+of a slider-crank O2 (x, y), offset, crank, coupler, P (along, across).
+
+Source: Norton, Design of Machinery, Eq. 4.8 to 4.13 (fourbar) and 4.16 to 4.17 (slider-crank).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+STEPS = 26
+WAY = 33
+"""Inputs of the used range at which a sample is looked at."""
+
+
+@dataclass
+class Stated:
+    """A design and what it is held to, read off a job's JSON: demanded P, body angles or outputs, and inputs."""
+
+    row: np.ndarray
+    slide: float | None
+    foot: complex
+    inputs: np.ndarray
+    points: np.ndarray | None
+    turns: np.ndarray | None
+    outputs: np.ndarray | None
+    used: tuple[float, float] | None
+    free: bool
+
+    @property
+    def slides(self) -> bool:
+        return self.slide is not None
+
+
+def stated(problem: dict[str, Any], design: dict[str, Any]) -> Stated:
+    """A design of a motion, path or function problem, as the service answers."""
+    m = design["mechanism"]
+    p = m["coupler_point"]
+    local = p["distance"] * np.exp(1j * math.radians(p["angle"]))
+    if m["type"] == "fourbar":
+        slide, foot = None, 0j
+        row = [*m["fixed_pivots"]["input"], *m["fixed_pivots"]["output"]]
+        row += [m["links"]["input"], m["links"]["coupler"], m["links"]["output"]]
+    else:
+        slide, pivot = math.radians(m["slide"]["angle"]), complex(*m["fixed_pivot"])
+        line = complex(*m["slide"]["point"])
+        foot = line + np.exp(1j * slide) * ((pivot - line) * np.exp(-1j * slide)).real
+        row = [pivot.real, pivot.imag, m["offset"], m["links"]["crank"], m["links"]["coupler"]]
+    row = np.array([*row, local.real, local.imag])
+    targets = design["targets"]
+    inputs = np.radians([target["input_angle"] for target in targets])
+    points = turns = outputs = None
+    kind = problem["kind"]
+    if kind == "function":
+        places = np.array([target["output_place"] - target["error"] for target in targets])
+        outputs = places if slide is not None else np.radians(places)
+    else:
+        listed = problem["positions"] if kind == "motion" else problem["points"]
+        points = np.array([complex(one["x"], one["y"]) for one in listed])
+    if kind == "motion":
+        first = problem["positions"][0]["angle"]
+        joints = {name: complex(*place) for name, place in m["skeleton"]["joints"].items()}
+        body = math.radians(m.get("reference_body_angle") or first)
+        turns = np.radians([one["angle"] for one in listed]) - body + np.angle(joints["B"] - joints["A"])
+    used = design["metrics"].get("used_range")
+    free = kind != "function" and problem.get("timing") != "prescribed"
+    used = None if used is None else tuple(sorted(np.radians(used)))
+    return Stated(row, slide, foot, inputs, points, turns, outputs, used, free)
+
+
+def posed(of: Stated, rows: np.ndarray, theta: np.ndarray, sign: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """P, the angle of A → B, and the output (angle of O4 → B, or the slider's place); NaN where it does not close."""
+    if of.slides:
+        o2, offset, a, b = rows[:, 0] + 1j * rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4]
+        along = np.exp(1j * of.slide)
+        crank = a * np.exp(1j * theta)
+        rise = -(offset + (crank / along).imag) / b
+        turned = np.arcsin(np.where(np.abs(rise) <= 1.0, rise, np.nan))
+        phi = of.slide + (turned if sign > 0 else math.pi - turned)
+        pin = o2 + crank
+        place = pin + b * np.exp(1j * phi)
+        output = ((place - of.foot) / along).real
+    else:
+        o2, o4 = rows[:, 0] + 1j * rows[:, 1], rows[:, 2] + 1j * rows[:, 3]
+        a, b, c = rows[:, 4], rows[:, 5], rows[:, 6]
+        ground = o4 - o2
+        d = np.abs(ground)
+        zero = np.angle(ground)
+        turned = theta - zero
+        k1, k2, k3 = d / a, d / c, (a * a - b * b + c * c + d * d) / (2.0 * a * c)
+        cosine = np.cos(turned)
+        first = cosine - k1 - k2 * cosine + k3
+        second = -2.0 * np.sin(turned)
+        third = k1 - (k2 + 1.0) * cosine + k3
+        root = second * second - 4.0 * first * third
+        root = np.sqrt(np.where(root >= 0.0, root, np.nan))
+        output = 2.0 * np.arctan2(-second - sign * root, 2.0 * first) + zero
+        pin = o2 + a * np.exp(1j * theta)
+        phi = np.angle(o4 + c * np.exp(1j * output) - pin)
+    return pin + (rows[:, -2] + 1j * rows[:, -1]) * np.exp(1j * phi), phi, output
+
+
+def missed(of: Stated, rows: np.ndarray, theta: np.ndarray, sign: int, k: int) -> tuple[np.ndarray, np.ndarray]:
+    """Distance and angle (radians) from target k."""
+    p, phi, output = posed(of, rows, theta, sign)
+    zero = np.zeros(len(rows))
+    if of.outputs is not None:
+        off = output - of.outputs[k]
+        if of.slides:
+            return np.abs(off), zero
+        return zero, np.abs(np.mod(off + math.pi, math.tau) - math.pi)
+    distance = np.abs(p - of.points[k])
+    if of.turns is None:
+        return distance, zero
+    return distance, np.abs(np.mod(phi - of.turns[k] + math.pi, math.tau) - math.pi)
+
+
+def branch(of: Stated) -> int:
+    """The sign of the root that the design as drawn has at its targets."""
+    row = of.row[None]
+    misses = []
+    for sign in (1, -1):
+        off = [missed(of, row, of.inputs[k : k + 1], sign, k) for k in range(len(of.inputs))]
+        misses.append(np.nansum([d[0] / np.abs(of.row).max() + t[0] if np.isfinite(d[0]) else 9.0 for d, t in off]))
+    return 1 if misses[0] <= misses[1] else -1
+
+
+def good(
+    of: Stated, rows: np.ndarray, error: float | None, angle: float | None, *, fixed: bool = False, reach: float = 0.2
+) -> np.ndarray:
+    """Which samples keep the quality (length units, degrees) at every target and stay on their branch."""
+    distance_unit = math.inf if error is None else error
+    angle_unit = math.inf if angle is None else math.radians(angle)
+    sign = branch(of)
+    kept = np.ones(len(rows), bool)
+    least, most = np.full(len(rows), np.inf), np.full(len(rows), -np.inf)
+    for k, nominal in enumerate(of.inputs):
+        here = np.flatnonzero(kept)
+
+        def share(theta: np.ndarray, which: np.ndarray, k: int = k) -> np.ndarray:
+            off = missed(of, rows[which], theta, sign, k)
+            taken = np.maximum(off[0] / distance_unit, off[1] / angle_unit)
+            return np.where(np.isfinite(taken), taken, np.inf)
+
+        at = np.full(len(here), nominal)
+        best = share(at, here)
+        if not fixed and of.free:
+            at, best = _nearest(share, here, float(nominal), reach)
+        kept[here] = best <= 1.0
+        least[here], most[here] = np.minimum(least[here], at), np.maximum(most[here], at)
+    if of.used is not None:
+        before, after = of.inputs.min() - of.used[0], of.used[1] - of.inputs.max()
+        for part in np.linspace(0.0, 1.0, WAY):
+            here = np.flatnonzero(kept)
+            low, high = least[here] - before, most[here] + after
+            kept[here] = np.isfinite(posed(of, rows[here], low + part * (high - low), sign)[0])
+    return kept
+
+
+def _nearest(share: Any, here: np.ndarray, nominal: float, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """The inputs with the least share and that share, by golden section."""
+    low, high = np.full(len(here), nominal - reach), np.full(len(here), nominal + reach)
+    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    f, g = share(one, here), share(two, here)
+    for _ in range(STEPS):
+        left = f <= g
+        high, low = np.where(left, two, high), np.where(left, low, one)
+        fresh = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
+        value = share(fresh, here)
+        one, two = np.where(left, fresh, two), np.where(left, one, fresh)
+        f, g = np.where(left, value, g), np.where(left, f, value)
+    return np.where(f <= g, one, two), np.minimum(f, g)
+
+
+def dimensions_off(of: Stated, tolerances: dict[str, float]) -> np.ndarray:
+    """The tolerance of each dimension of a row."""
+    length, pivot = tolerances.get("length", 0.0), tolerances.get("pivot", 0.0)
+    off = [pivot] * (3 if of.slides else 4) + [length] * ((2 if of.slides else 3) + 2)
+    return np.array(off)
+
+
+def samples(of: Stated, tolerances: dict[str, float], distribution: str, count: int, seed: int) -> np.ndarray:
+    """Rows of dimensions that are off by chance."""
+    off, rng = dimensions_off(of, tolerances), np.random.default_rng([seed, 77])
+    shape = count, len(off)
+    share = rng.random(shape) * 2.0 - 1.0 if distribution == "uniform" else rng.normal(0.0, 1.0 / 3.0, shape)
+    return of.row + off * share

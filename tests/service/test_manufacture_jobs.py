@@ -1,0 +1,211 @@
+"""The block ``manufacture`` through HTTP: every field of it, beside other demands; and what is refused."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from synthesis.model.manufacture import Manufacture
+from tests.service.answers import finished
+from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, TOLERATED
+from tests.service.test_space import TURNS
+from tests.statements import fields
+
+OPEN = {**MOTION, **BOTH_OPEN}
+BLOCK = {
+    "tolerances": {"length": 0.1, "pivot": 0.05},
+    "quality": {"max_error": 0.2, "max_angle_error": 0.2},
+    "samples": 8001,
+}
+ANGLES = {
+    "tolerances": {"length": 0.004, "pivot": 0.002},
+    "quality": {"max_angle_error": 0.004},
+    "samples": 8001,
+}
+POINTS = {"tolerances": {"length": 0.05}, "quality": {"max_error": 0.05}, "samples": 8001}
+
+
+def changed(block: dict[str, Any], place: str, value: Any) -> dict[str, Any]:
+    block = copy.deepcopy(block)
+    *outer, last = place.split(".")
+    at = block
+    for name in outer:
+        at = at.setdefault(name, {})
+    at[last] = value
+    return block
+
+
+def made(client, problem, block):
+    job = finished(client, {**problem, "manufacture": block})
+    assert job["status"] == "succeeded", job["error"]
+    return job["result"]
+
+
+FIELDS: dict[str, Any] = {
+    "tolerances": {"length": 0.2},
+    "tolerances.length": 0.3,
+    "tolerances.pivot": 0.3,
+    "distribution": "normal",
+    "quality": {"max_error": 0.15},
+    "quality.max_error": 0.1,
+    "quality.max_angle_error": 0.1,
+    "quality.yield": 0.9,
+    "input": "fixed",
+    "samples": 9001,
+    "seed": 12,
+}
+"""Of each field another value than that of the block."""
+
+
+def test_every_field_has_a_value():
+    assert FIELDS.keys() == fields(Manufacture.model_json_schema()).keys()
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_a_field_makes_another_answer(client, name):
+    assert made(client, MOTION, changed(BLOCK, name, FIELDS[name])) != made(client, MOTION, BLOCK)
+
+
+def test_designs_are_told_as_they_are_made_and_still_drawn(client):
+    job = finished(client, {**MOTION, "manufacture": BLOCK})
+    designs = job["result"]["designs"]
+    assert designs
+    for n, design in enumerate(designs):
+        told, told_yield = design["manufacture"], design["metrics"]["yield"]
+        assert told_yield.keys() == {"value", "low", "high", "samples"}
+        assert 0.0 <= told_yield["low"] <= told_yield["value"] <= told_yield["high"] <= 1.0
+        assert told["seed"] == 0
+        assert told["worst_case"].keys() == {"assembles", "max_error", "max_angle_error"}
+        assert {one["dimension"] for one in told["sensitivities"]} == {
+            *(f"fixed_pivots.{side}.{axis}" for side in ("input", "output") for axis in "xy"),
+            *(f"links.{link}" for link in ("input", "coupler", "output")),
+            *(f"coupler_point.{way}" for way in ("along", "across")),
+        }
+        for one in told["sensitivities"]:
+            assert one["tolerance"] == (0.05 if one["dimension"].startswith("fixed") else 0.1)
+            assert len(one["x"]) == len(one["y"]) == len(one["angle"]) == len(design["targets"])
+        assert client.get(f"/v1/jobs/{job['id']}/designs/{n}.svg").status_code == 200
+    report = client.get(f"/v1/jobs/{job['id']}/report.html")
+    assert report.status_code == 200, report.text
+    assert "Manufacture: worst case: max error" in report.text
+    assert "Yield: low" in report.text
+    again = finished(client, job["problem"])
+    assert again["result"] == job["result"]
+
+
+@pytest.mark.parametrize(
+    ("problem", "block", "quantities"),
+    [
+        (MOTION, BLOCK, {"x", "y", "angle"}),
+        ({**PATH, "max_designs": 2}, POINTS, {"x", "y"}),
+        (TURNS, ANGLES, {"angle"}),
+    ],
+    ids=["motion", "path", "function"],
+)
+def test_a_kind_tells_what_it_measures(client, problem, block, quantities):
+    for design in made(client, problem, block)["designs"]:
+        assert 0.0 < design["metrics"]["yield"]["value"] < 1.0
+        for one in design["manufacture"]["sensitivities"]:
+            assert one.keys() == quantities | {"dimension", "tolerance", "share", "transmission"}
+
+
+def test_without_the_block_there_is_nothing_of_it(client):
+    job = finished(client, MOTION)
+    assert job["problem"]["manufacture"] is None
+    for design in job["result"]["designs"]:
+        assert "manufacture" not in design
+        assert "yield" not in design["metrics"]
+
+
+def test_tolerances_alone_have_no_yield(client):
+    for design in made(client, MOTION, {"tolerances": {"length": 0.1}})["designs"]:
+        assert "yield" not in design["metrics"]
+        assert design["manufacture"].keys() == {"worst_case", "matter", "sensitivities"}
+
+
+def test_beside_a_room_planes_and_constraints(client):
+    """All demands hold at once: each of them has its check."""
+    demands = {
+        "space": {"box": [[-400.0, -400.0], [400.0, 400.0]], "link_width": 10.0},
+        "layout": {"link_width": 5.0, "pin_diameter": 4.0, "thickness": 4.0, "max_planes": 4},
+        "constraints": {"min_transmission_angle": 5.0, "link_length": {"max": 300.0}},
+        "rank_by": "yield",
+    }
+    block = changed(BLOCK, "quality", {"max_error": 0.4, "max_angle_error": 0.4, "yield": 0.5})
+    (design,) = made(client, {**MOTION, **demands}, block)["designs"]
+    checks = {check["name"]: check for check in design["verification"]["checks"]}
+    assert {"yield", "box", "planes", "transmission_angle", "longest_link"} <= checks.keys()
+    assert all(check["passed"] for check in checks.values())
+    assert checks["yield"]["limit"] == 0.5 <= checks["yield"]["value"] == design["metrics"]["yield"]["low"]
+    none = made(client, {**MOTION, **demands, "constraints": {"min_transmission_angle": 11.0}}, block)
+    assert [gap["check"] for gap in none["nearest_miss"]["gaps"]] == ["transmission_angle"]
+
+
+def test_beside_tolerances_of_positions(client):
+    stated = {**MOTION, **TOLERATED}
+    (tight,), (wide,) = (
+        made(client, stated, changed(BLOCK, "tolerances.length", length))["designs"] for length in (0.1, 0.4)
+    )
+    assert 0.0 < wide["metrics"]["yield"]["value"] < tight["metrics"]["yield"]["value"] < 1.0
+
+
+def test_a_demand_that_none_keeps_is_told_as_the_nearest_miss(client):
+    result = made(client, MOTION, changed(changed(BLOCK, "quality.yield", 0.99), "quality.max_error", 0.02))
+    assert result["designs"] == []
+    assert result["search"]["rejected"] == {"yield": 1}
+    (gap,) = result["nearest_miss"]["gaps"]
+    assert gap["check"] == "yield"
+    assert gap["limit"] == 0.99
+    assert gap["value"] == result["nearest_miss"]["design"]["metrics"]["yield"]["low"]
+
+
+REFUSED: dict[str, tuple[dict[str, Any], Any, str]] = {
+    "an empty block": (OPEN, {}, "/manufacture"),
+    "no tolerances": (OPEN, {"quality": {"max_error": 0.1}}, "/manufacture/tolerances"),
+    "tolerances of nothing": (OPEN, {**BLOCK, "tolerances": {}}, "/manufacture/tolerances"),
+    "a quality of nothing": (OPEN, {**BLOCK, "quality": {"yield": 0.9}}, "/manufacture/quality"),
+    "a negative tolerance": (OPEN, changed(BLOCK, "tolerances.length", -0.1), "/manufacture/tolerances/length"),
+    "a yield of all": (OPEN, changed(BLOCK, "quality.yield", 1.0), "/manufacture/quality/yield"),
+    "a yield of none": (OPEN, changed(BLOCK, "quality.yield", 0.0), "/manufacture/quality/yield"),
+    "too few samples for a yield": (OPEN, changed(BLOCK, "quality.yield", 0.9999), "/manufacture/samples"),
+    "too many samples": (OPEN, {**BLOCK, "samples": 10_000_000}, "/manufacture/samples"),
+    "too many samples for so many points": (
+        {"kind": "path", "points": [{"x": float(k), "y": k * k * 0.01} for k in range(100)]},
+        {**POINTS, "samples": 100_000},
+        "/manufacture/samples",
+    ),
+    "no such distribution": (OPEN, {**BLOCK, "distribution": "triangular"}, "/manufacture/distribution"),
+    "no such field": (OPEN, {**BLOCK, "process": "milled"}, "/manufacture/process"),
+    "an angle of a path": (
+        PATH,
+        changed(POINTS, "quality.max_angle_error", 1.0),
+        "/manufacture/quality/max_angle_error",
+    ),
+    "a distance of an output that turns": (
+        TURNS,
+        changed(ANGLES, "quality.max_error", 1.0),
+        "/manufacture/quality/max_error",
+    ),
+    "inputs that are stated": (TURNS, {**ANGLES, "input": "adjusted"}, "/manufacture/input"),
+    "a driver": ({**MOTION, **DRIVEN, "driver_dyad": True}, BLOCK, "/manufacture"),
+    "a block that turns": ({**OPEN, "output_side": {"dyad": "RP"}}, BLOCK, "/manufacture"),
+    "a slider that drives": ({**OPEN, "input_side": {"dyad": "PR"}}, BLOCK, "/manufacture"),
+    "a fivebar": ({**PATH, "mechanism": "geared_fivebar"}, POINTS, "/manufacture"),
+    "a place that is free": (
+        {**PATH, "method": "curve_match", "placement_free": ["position"]},
+        POINTS,
+        "/manufacture",
+    ),
+    "a rank without a yield": ({**OPEN, "rank_by": "yield"}, {"tolerances": {"length": 0.1}}, "/rank_by"),
+    "a number for the block": (OPEN, 3, "/manufacture"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_is_refused_by_its_field(client, name):
+    problem, block, path = REFUSED[name]
+    answer = client.post("/v1/jobs", json={"problem": {**problem, "manufacture": block}})
+    assert answer.status_code == 422, answer.text
+    assert f"/problem{path}" in [error["path"] for error in answer.json()["errors"]]

@@ -1,0 +1,211 @@
+"""Designs as a shop makes them: yields against another formulation, derivatives against differences, and refusals."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kinematics.linkage.variation import deviations
+from kinematics.linkage.variation.sensitivities import sensitivities
+from synthesis.dispatch import solve
+from synthesis.manufacture.sampled import interval
+from synthesis.registry import KINDS, examples, parse_problem
+from tests.kinematics.variation_twin import crank_rocker, slider
+from tests.oracles import made_linkages
+from tests.service.stated.linkages import BOTH_OPEN, FITTED, MOTION, PATH, TOLERATED
+
+Statement = dict[str, Any]
+
+FINE = {"length": 0.1, "pivot": 0.05}
+SLIDES = {**MOTION, **BOTH_OPEN, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
+TIMED = examples("path")[1]
+LOGARITHM = {**examples("function")[2], "max_designs": 2}
+PAIRS = {**examples("function")[1], "constraints": {"max_link_ratio": 10.0}, "max_designs": 2}
+
+TASKS: dict[str, tuple[Statement, Statement]] = {
+    "motion": ({**MOTION, **BOTH_OPEN}, {"quality": {"max_error": 0.2, "max_angle_error": 0.2}}),
+    "motion, fixed and normal": (
+        {**MOTION, **BOTH_OPEN},
+        {"quality": {"max_error": 0.2, "max_angle_error": 0.3}, "input": "fixed", "distribution": "normal"},
+    ),
+    "motion, the angle alone": ({**MOTION, **BOTH_OPEN}, {"quality": {"max_angle_error": 0.05}}),
+    "motion, with a slider": (SLIDES, {"quality": {"max_error": 0.2, "max_angle_error": 0.1}}),
+    "path": ({**PATH, "max_designs": 2}, {"quality": {"max_error": 0.1}}),
+    "path, timed": (TIMED, {"quality": {"max_error": 0.3}}),
+    "function, of a slider": (LOGARITHM, {"quality": {"max_error": 0.15}}),
+    "function": (PAIRS, {"quality": {"max_angle_error": 0.5}, "tolerances": {"length": 0.004, "pivot": 0.001}}),
+}
+
+
+@cache
+def answered(name: str) -> Statement:
+    problem, block = TASKS[name]
+    stated = {**problem, "manufacture": {"tolerances": FINE, "samples": 8001, **block}}
+    return {"problem": stated, **json.loads(solve(parse_problem(stated)).model_dump_json())}
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_yields_are_those_of_another_formulation(name: str) -> None:
+    answer = answered(name)
+    problem, block = answer["problem"], answer["problem"]["manufacture"]
+    assert answer["designs"]
+    for design in answer["designs"]:
+        of = made_linkages.stated(problem, design)
+        distribution = block.get("distribution", "uniform")
+        rows = made_linkages.samples(of, block["tolerances"], distribution, 3000, 1)
+        quality = block["quality"].get("max_error"), block["quality"].get("max_angle_error")
+        share = made_linkages.good(of, rows, *quality, fixed=block.get("input") == "fixed").mean()
+        told = design["metrics"]["yield"]
+        assert told["samples"] == 8001
+        assert told["low"] <= told["value"] <= told["high"]
+        spread = math.sqrt(max(share * (1.0 - share), 1e-3) * (1.0 / 3000.0 + 1.0 / 8001.0))
+        assert abs(told["value"] - share) < 4.5 * spread
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_the_block_adds_to_an_answer_and_changes_nothing(name: str) -> None:
+    problem, _ = TASKS[name]
+    plain, made = json.loads(solve(parse_problem(problem)).model_dump_json()), dict(answered(name))
+    del made["problem"]
+    for design in made["designs"]:
+        del design["manufacture"], design["metrics"]["yield"]
+    answered.cache_clear()
+    assert made == plain
+
+
+@pytest.mark.parametrize("name", ["motion", "motion, with a slider", "path", "function, of a slider", "function"])
+def test_the_worst_case_is_the_worst_corner(name: str) -> None:
+    """At every corner by the other formulation: half of a hundredth more is never missed, as much less always is."""
+    answer = answered(name)
+    block = answer["problem"]["manufacture"]
+    design = answer["designs"][0]
+    of = made_linkages.stated(answer["problem"], design)
+    off = made_linkages.dimensions_off(of, block["tolerances"])
+    guided = of.outputs is None
+    open_ones = [k for k in range(len(off)) if guided or k < len(off) - 2]
+    signs = np.zeros((2 ** len(open_ones), len(off)))
+    signs[:, open_ones] = np.array(np.meshgrid(*[[-1.0, 1.0]] * len(open_ones))).reshape(len(open_ones), -1).T
+    worst, quality = design["manufacture"]["worst_case"], block["quality"]
+    assert worst["assembles"]
+    share = max(
+        worst[name] / quality[name] for name in ("max_error", "max_angle_error") if name in worst and name in quality
+    )
+    for scale, all_good in ((1.005, True), (0.995, False)):
+        wide = [quality[name] * share * scale if name in quality else None for name in ("max_error", "max_angle_error")]
+        assert made_linkages.good(of, of.row + signs * off, *wide).all() == all_good
+
+
+@pytest.mark.parametrize("make", [crank_rocker, slider])
+@pytest.mark.parametrize("sort", ["poses", "points", "outputs"])
+@pytest.mark.parametrize("adjusted", [True, False])
+def test_derivatives_are_differences(make: Any, sort: str, adjusted: bool) -> None:
+    nominal, task = make(sort, adjusted=adjusted)
+    found = sensitivities(task, nominal)
+    driven = deviations(dataclasses.replace(task, greatest=False), nominal[None])
+    assert found.inputs == pytest.approx(driven.inputs[0], abs=1e-5)
+    assert found.offsets == pytest.approx(driven.offsets[0], abs=1e-4)
+    step = 1e-3
+    for k in range(len(nominal)):
+        changes = np.eye(len(nominal))[k] * step * np.array([[2.0], [1.0], [-1.0], [-2.0]])
+        near = [sensitivities(task, nominal + change) for change in changes]
+        off, least = np.array([one.offsets for one in near]), np.array([one.least for one in near])
+        difference = (8.0 * (off[1] - off[2]) - (off[0] - off[3])) / (12.0 * step)
+        assert found.rates[:, :, k] == pytest.approx(difference, abs=1e-8)
+        slope = (8.0 * (least[1] - least[2]) - (least[0] - least[3])) / (12.0 * step)
+        assert found.least_rates[k] == pytest.approx(slope, abs=1e-8)
+
+
+def test_tolerances_that_matter_come_first_and_widen_errors() -> None:
+    answer = answered("motion")
+    for design in answer["designs"]:
+        told = design["manufacture"]
+        shares = [one["share"] for one in told["sensitivities"]]
+        assert shares == sorted(shares, reverse=True)
+        assert sum(shares) == pytest.approx(1.0)
+        assert told["matter"] == [one["dimension"] for one in told["sensitivities"][: len(told["matter"])]]
+        assert sum(shares[: len(told["matter"])]) >= 0.8 > sum(shares[: len(told["matter"]) - 1])
+
+
+def test_positions_with_tolerances_are_held_where_the_design_passes_them() -> None:
+    """The quality is kept about the place as drawn, and the position's own tolerance on top of that."""
+    block = {"tolerances": FINE, "samples": 8001}
+    stated = {**MOTION, **TOLERATED}
+    loose = {**block, "quality": {"max_error": 50.0, "max_angle_error": 90.0}}
+    near, own, plain = (
+        solve(parse_problem({**problem, "manufacture": {**block, **more}})).designs[0].metrics.yield_.value
+        for problem, more in (
+            (stated, {"quality": {"max_error": 0.4, "max_angle_error": 0.4}}),
+            (stated, {**loose, "tolerances": {"length": 1.0, "pivot": 1.0}}),
+            ({**MOTION, **FITTED}, {**loose, "tolerances": {"length": 1.0, "pivot": 1.0}}),
+        )
+    )
+    assert 0.1 < near < 1.0
+    # With no quality to speak of, only the tolerances of the positions are broken by samples.
+    assert 0.1 < own < plain - 0.1
+
+
+def test_a_demanded_yield_is_a_check_and_ranks() -> None:
+    open_ones = {**MOTION, **BOTH_OPEN, "max_designs": 4}
+    block = {"tolerances": FINE, "quality": {"max_error": 0.2, "max_angle_error": 0.2}, "samples": 8001}
+    usual = solve(parse_problem({**open_ones, "max_designs": 40, "manufacture": block})).designs
+    ranked = solve(parse_problem({**open_ones, "rank_by": "yield", "manufacture": block}))
+    assert "Ordered by yield" in ranked.summary
+    best = sorted((design.metrics.yield_.value for design in usual), reverse=True)[:4]
+    assert [design.metrics.yield_.value for design in ranked.designs] == best
+    limit = 0.5 * (best[0] + min(design.metrics.yield_.value for design in usual))
+    block["quality"] = {**block["quality"], "yield": limit}
+    held = solve(parse_problem({**open_ones, "manufacture": block}))
+    assert held.search.rejected["yield"] > 0
+    for design in held.designs:
+        (check,) = [check for check in design.verification.checks if check.name == "yield"]
+        assert check.passed
+        assert check.value == design.metrics.yield_.low >= check.limit == limit
+
+
+def test_a_yield_out_of_reach_is_the_nearest_miss() -> None:
+    block = {"tolerances": FINE, "quality": {"max_error": 0.02, "max_angle_error": 0.2, "yield": 0.99}, "samples": 8001}
+    answer = solve(parse_problem({**MOTION, "manufacture": block}))
+    assert answer.designs == []
+    (gap,) = answer.nearest_miss.gaps
+    assert (gap.check, gap.limit) == ("yield", 0.99)
+    assert answer.nearest_miss.design.metrics.yield_.low == gap.value < 0.99
+
+
+@pytest.mark.parametrize(
+    ("count", "low", "high"), [(0, 0.0, 0.4113), (1, 0.0005, 0.5443), (5, 0.1283, 0.8717), (10, 0.5887, 1.0)]
+)
+def test_the_interval_holds_what_the_binomial_says(count: int, low: float, high: float) -> None:
+    """Of 10 at 99 %: each end is where as many or more (fewer) good ones have a chance of a half per cent."""
+    ends = interval(count, 10)
+    assert ends == pytest.approx((low, high), abs=6e-5)
+    for end, counts in ((ends[0], range(count, 11)), (ends[1], range(count + 1))):
+        chance = sum(math.comb(10, k) * end**k * (1.0 - end) ** (10 - k) for k in counts)
+        assert end in (0.0, 1.0) or chance == pytest.approx(0.005)
+
+
+def test_the_same_seed_gives_the_same_yield_and_another_another() -> None:
+    block = {"tolerances": FINE, "quality": {"max_error": 0.2}, "samples": 2000}
+
+    def told(own: Statement, **more: Any) -> tuple[float, int]:
+        (design,) = solve(parse_problem({**MOTION, **more, "manufacture": {**block, **own}})).designs
+        return design.metrics.yield_.value, design.manufacture.seed
+
+    assert told({}) == told({})
+    assert told({})[1] == 0
+    assert told({}, seed=5) == told({"seed": 5}) != told({})
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if hasattr(KINDS[kind].problem, "made")])
+def test_a_kind_takes_the_block_or_refuses_it_by_its_path(kind: str) -> None:
+    problem = parse_problem({**examples(kind)[0], "manufacture": {"tolerances": {"length": 0.1}}})
+    faults = [fault for fault in problem.contradictions() if fault.path.startswith("/manufacture")]
+    assert bool(faults) == (kind not in ("motion", "path", "function"))
+    for fault in faults:
+        assert fault.path == "/manufacture"
+        assert "motion, path and function" in fault.detail
