@@ -15,7 +15,20 @@ from starlette.types import Lifespan
 from service.access.gate import Gate
 from service.access.keys import KeyStore
 from service.analyst import Analyst
-from service.api import analyses, designs, docs, errors, events, forces, health, jobs, metrics, problems, studio
+from service.api import (
+    analyses,
+    designs,
+    docs,
+    errors,
+    events,
+    forces,
+    health,
+    jobs,
+    metrics,
+    outlines,
+    problems,
+    studio,
+)
 from service.drawings import Drawings
 from service.jobs.database import connect, sqlite_file, upgrade
 from service.jobs.desk import JobDesk
@@ -32,7 +45,7 @@ _DESCRIPTION = """Designs mechanisms and verifies every answer by driving it.
 
 State a problem in a job (`POST /v1/jobs`), wait for it or come back for it, and read the designs from its result.
 `GET /v1/problems` lists what can be asked, each with an example that runs as it is. A mechanism that exists already is
-analysed at once (`POST /v1/analyses`).
+analysed at once (`POST /v1/analyses`), and the outlines in a drawing are read (`POST /v1/outlines`).
 
 Angles are degrees, counter-clockwise from +x; lengths are plain numbers in the problem's `length_unit`. Unknown fields
 are refused. Errors are `application/problem+json` (RFC 9457); validation errors name each field by its JSON pointer."""
@@ -101,7 +114,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         redirect_slashes=False,
         # Problems and designs have one schema each, whether they come or go.
         separate_input_output_schemas=False,
-        openapi_tags=[jobs.TAG, analyses.TAG, problems.TAG, health.TAG],
+        openapi_tags=[jobs.TAG, analyses.TAG, outlines.TAG, problems.TAG, health.TAG],
     )
     errors.install(app)
     docs.install(app)
@@ -112,6 +125,7 @@ def application(lifespan: Lifespan[FastAPI]) -> FastAPI:
         forces.stating,
         events.router,
         analyses.router,
+        outlines.router,
         problems.router,
         health.router,
         metrics.router,

@@ -18,41 +18,22 @@ MAX_VALUES = 20_000
 million tiny faults would keep the validation busy for a second."""
 
 
-class JsonRequest(Request):
-    """A request whose body is checked and parsed by the rules of this module."""
+class BoundedRequest(Request):
+    """A request whose body is read up to a limit."""
 
-    _checked: Any
-
-    async def read(self, limit: int) -> None:
-        """Read and parse the body, at most ``limit`` bytes.
+    async def limited(self, limit: int) -> bytes:
+        """The body, ``limit`` bytes at most, and not compressed.
 
         Raises
         ------
         Refusal
             413, 415 or 400, as documented for the endpoints that take a body.
         """
-        self._refuse_foreign()
-        self._body = await self._limited(limit)
-        self._checked = _parsed(self._body)
-
-    async def json(self) -> Any:
-        """The parsed body; :meth:`read` comes first."""
-        return self._checked
-
-    def _refuse_foreign(self) -> None:
-        media_type = self.headers.get("content-type", "").partition(";")[0].strip().lower()
-        if media_type != "application/json":
-            raise Refusal(
-                415, "unsupported-media-type", "Unsupported media type", "The body must be application/json.",
-                headers={"Accept": "application/json"},
-            )  # fmt: skip
         if self.headers.get("content-encoding", "identity").strip().lower() != "identity":
             raise Refusal(
                 415, "unsupported-media-type", "Unsupported media type", "The body must not be compressed.",
                 headers={"Accept-Encoding": "identity"},
             )  # fmt: skip
-
-    async def _limited(self, limit: int) -> bytes:
         # The header is only a promise, but a body that announces itself as too large need not be read at all.
         announced = self.headers.get("content-length", "0")
         if announced.isdecimal() and (len(announced) > 18 or int(announced) > limit):
@@ -67,6 +48,41 @@ class JsonRequest(Request):
             # Nobody reads the answer; it ends the request without the log of a defect.
             raise Refusal(400, "incomplete-body", "Incomplete body", "The connection ended before the body.") from None
         return bytes(body)
+
+    @property
+    def media_type(self) -> str:
+        """The type that the body is announced as, without its parameters; empty where it is not."""
+        return self.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+def foreign(detail: str, *accepted: str) -> Refusal:
+    """The body is of a type that is not taken; these are."""
+    return Refusal(
+        415, "unsupported-media-type", "Unsupported media type", detail, headers={"Accept": ", ".join(accepted)}
+    )
+
+
+class JsonRequest(BoundedRequest):
+    """A request whose body is checked and parsed by the rules of this module."""
+
+    _checked: Any
+
+    async def read(self, limit: int) -> None:
+        """Read and parse the body, at most ``limit`` bytes.
+
+        Raises
+        ------
+        Refusal
+            413, 415 or 400, as documented for the endpoints that take a body.
+        """
+        if self.media_type != "application/json":
+            raise foreign("The body must be application/json.", "application/json")
+        self._body = await self.limited(limit)
+        self._checked = _parsed(self._body)
+
+    async def json(self) -> Any:
+        """The parsed body; :meth:`read` comes first."""
+        return self._checked
 
 
 class JsonRoute(GuardedRoute):

@@ -39,7 +39,7 @@ class FieldError(BaseModel):
 
     path: str = Field(
         description="JSON pointer into the request body; a query parameter is at /query/name, "
-        "a header at /header/name.",
+        "a header at /header/name, an element of a drawing at /its-id.",
         examples=["/problem/positions/1/x"],
     )
     detail: str = Field(description="What is wrong there, in a sentence.")
@@ -105,6 +105,16 @@ def invalid_mechanism(errors: Sequence[tuple[str, str]]) -> Refusal:
 def invalid_request(errors: Sequence[tuple[str, str]]) -> Refusal:
     """Something else of the request cannot be meant; ``errors`` are pairs of path and detail."""
     return Refusal(422, "invalid-request", "Invalid request", _counted(len(errors)), errors=errors)
+
+
+def malformed_drawing(detail: str) -> Refusal:
+    """The body is no drawing that can be read."""
+    return Refusal(400, "malformed-drawing", "Malformed drawing", detail)
+
+
+def invalid_drawing(detail: str, errors: Sequence[tuple[str, str]] = ()) -> Refusal:
+    """The drawing has no outlines to be had; ``errors`` are pairs of an element's place and detail."""
+    return Refusal(422, "invalid-drawing", "Invalid drawing", detail, errors=errors)
 
 
 def store_unavailable() -> Refusal:

@@ -1,0 +1,91 @@
+"""Affine maps of the plane in complex numbers, and what SVG writes of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.outlines.curves import Complex
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_FUNCTION = re.compile(r"[\s,]*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)")
+_NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
+_ARGUMENTS = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
+
+CONFORMAL = 1e-9
+"""A map that stretches one way more than the other by less than this share keeps circles."""
+
+
+@dataclass(frozen=True)
+class Affine:
+    """z ↦ turn·z + flip·z̄ + shift."""
+
+    turn: complex = 1.0
+    flip: complex = 0.0
+    shift: complex = 0.0
+
+    def __call__(self, points: Complex) -> Complex:
+        """Where points go, of any shape."""
+        return np.asarray(self.turn * points + self.flip * np.conj(points) + self.shift)
+
+    def __matmul__(self, first: Affine) -> Affine:
+        """This map after another."""
+        return Affine(
+            self.turn * first.turn + self.flip * first.flip.conjugate(),
+            self.turn * first.flip + self.flip * first.turn.conjugate(),
+            self.turn * first.shift + self.flip * first.shift.conjugate() + self.shift,
+        )
+
+    @property
+    def enlargement(self) -> float | None:
+        """By what factor circles grow; None where they do not stay circles."""
+        larger, smaller = sorted((abs(self.turn), abs(self.flip)), reverse=True)
+        return larger if smaller <= CONFORMAL * larger else None
+
+    @classmethod
+    def of_matrix(cls, a: float, b: float, c: float, d: float, e: float, f: float) -> Affine:
+        """The map (x, y) ↦ (ax + cy + e, bx + dy + f)."""
+        along, across = complex(a, b), complex(c, d)
+        return cls(0.5 * (along - 1j * across), 0.5 * (along + 1j * across), complex(e, f))
+
+
+def transform_of(text: str) -> Affine:
+    """What the attribute ``transform`` says.
+
+    Raises
+    ------
+    ValueError
+        It is not a list of transforms.
+    """
+    whole, at = Affine(), 0
+    text = text.strip()
+    while at < len(text):
+        found = _FUNCTION.match(text, at)
+        if found is None or not _NUMBERS.fullmatch(found[2]):
+            raise ValueError("its transform cannot be read")
+        numbers = [float(number) for number in re.findall(NUMBER, found[2])]
+        if len(numbers) not in _ARGUMENTS[found[1]]:
+            raise ValueError(f"its transform has {len(numbers)} numbers in {found[1]}(...)")
+        whole = whole @ _function(found[1], numbers)
+        at = found.end()
+        while at < len(text) and text[at] in ", \t\r\n":
+            at += 1
+    return whole
+
+
+def _function(name: str, numbers: list[float]) -> Affine:
+    first = numbers[0]
+    if name == "matrix":
+        return Affine.of_matrix(*numbers)
+    if name == "translate":
+        return Affine(shift=complex(first, numbers[1] if len(numbers) == 2 else 0.0))
+    if name == "scale":
+        return Affine.of_matrix(first, 0.0, 0.0, numbers[-1], 0.0, 0.0)
+    if name == "rotate":
+        turn = complex(np.exp(1j * np.radians(first)))
+        centre = complex(numbers[1], numbers[2]) if len(numbers) == 3 else 0.0
+        return Affine(turn=turn, shift=centre - turn * centre)
+    slope = float(np.tan(np.radians(first)))
+    return Affine.of_matrix(1.0, slope if name == "skewY" else 0.0, slope if name == "skewX" else 0.0, 1.0, 0.0, 0.0)

@@ -1,0 +1,199 @@
+"""The curves of a DXF drawing, as seen from above."""
+
+from __future__ import annotations
+
+import io
+import logging
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from ezdxf import path, recover, units
+from ezdxf.audit import AuditError, Auditor
+from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.enums import InsertUnits
+from ezdxf.lldxf.const import DXFError
+from ezdxf.path import Curve3To, Curve4To
+
+from service.outlines.curves import NONE, Circle, Complex, Curve, Source, line, quadratic
+from service.outlines.drawing import Drawing
+from service.outlines.faults import Malformed, Unsuitable
+from service.outlines.limits import FARTHEST, MOST_DEPTH, MOST_ELEMENTS, MOST_PIECES
+from service.outlines.path_data import ARC_SEGMENTS
+from service.outlines.splines import cubics
+
+PATHS = {"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SOLID", "TRACE"}
+"""Types of entities that are curves."""
+
+TEXTS = {"TEXT", "MTEXT", "ATTRIB", "ATTDEF"}
+
+MOST_FIT_POINTS = 500
+"""Of a spline that is stated by the points that it passes; its control points are the solution of linear equations."""
+
+FLAT = 1e-6
+"""What leaves its plane by less than this share of its extent lies flat."""
+
+# What is wrong with a file is told to whoever sent it.
+logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
+
+_GUESSED = {AuditError.INVALID_INTEGER_VALUE, AuditError.INVALID_FLOATING_POINT_VALUE}
+_LINE = re.compile(r"near line (\d+)")
+
+
+class DxfReader:
+    """Goes through the entities of a drawing."""
+
+    def __init__(self, layers: dict[str, bool]) -> None:
+        self.hidden = {name for name, shown in layers.items() if not shown}
+        self.found: list[Curve] = []
+        self.left_out: list[tuple[Source, str]] = []
+        self.visited = self.pieces = 0
+
+    def visit(self, entity: DXFEntity, above: Source, depth: int) -> None:
+        """Read an entity; ``above`` is the insert that it comes from, if any."""
+        self.visited += 1
+        if self.visited > MOST_ELEMENTS:
+            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} entities, those of blocks counted each time.")
+        type_ = entity.dxftype()
+        layer, handle, invisible = (_attribute(entity, name) for name in ("layer", "handle", "invisible"))
+        if layer in (None, "0") and above.layer:
+            layer = above.layer
+        if str(layer).lower() in self.hidden or invisible:
+            return
+        source = Source(type_, str(handle) if handle else above.id, above.name, str(layer or "0"))
+        try:
+            if type_ == "INSERT":
+                self.insert(entity, replace(source, name=str(_attribute(entity, "name") or "")), depth)
+            elif type_ == "SPLINE":
+                self.add(Curve(source, _spline(entity), bool(entity.closed)))  # type: ignore[attr-defined]
+            elif type_ in PATHS:
+                self.add(_curve(entity, source))
+            else:
+                raise ValueError("it is text" if type_ in TEXTS else "entities of its type give no outline")
+        except Unsuitable:
+            raise
+        except ValueError as error:
+            self.left_out.append((source, str(error)))
+        except (DXFError, TypeError, AttributeError, ArithmeticError, LookupError):
+            # What the library makes of an entity that lacks what its type has is any of these.
+            self.left_out.append((source, "it lacks what an entity of its type has"))
+
+    def insert(self, entity: Any, source: Source, depth: int) -> None:
+        """Read the entities of a block where it is inserted."""
+        if depth >= MOST_DEPTH:
+            raise Unsuitable(f"The drawing has blocks more than {MOST_DEPTH} deep in one another.")
+        rows, columns = (max(int(entity.dxf.get(name, 1)), 1) for name in ("row_count", "column_count"))
+        if rows * columns > MOST_ELEMENTS:
+            raise Unsuitable(f"A block is inserted {rows} × {columns} times, more than {MOST_ELEMENTS}.")
+        if entity.block() is None:
+            raise ValueError("it inserts a block that is not in the drawing")
+        for one in entity.multi_insert() if rows * columns > 1 else (entity,):
+            for inner in one.virtual_entities():
+                self.visit(inner, source, depth + 1)
+
+    def add(self, curve: Curve) -> None:
+        """A curve of the drawing."""
+        self.pieces += max(len(curve.pieces), 1)
+        if self.pieces > MOST_PIECES:
+            raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
+        self.found.append(curve)
+
+
+def curves_of(content: bytes) -> Drawing:
+    """The curves of the model space.
+
+    Raises
+    ------
+    Malformed
+        It is no DXF.
+    Unsuitable
+        It is larger than is read here.
+    """
+    if b"\0" in content:
+        raise Malformed("The drawing holds NUL characters, which no text form of DXF does.")
+    if not content.rstrip().endswith(b"EOF"):
+        raise Malformed("The drawing does not end with EOF; is it whole?")
+    try:
+        document, auditor = recover.read(io.BytesIO(content))
+        entities = list(document.modelspace())
+        layers = {layer.dxf.name.lower(): not (layer.is_off() or layer.is_frozen()) for layer in document.layers}
+        unit = document.header.get("$INSUNITS", 0)
+    except Exception as error:  # a broken file brings the library to errors of any sort
+        raise Malformed(f"The drawing cannot be read as DXF ({type(error).__name__}).") from None
+    _refuse_guesses(auditor)
+    reader = DxfReader(layers)
+    for entity in entities:
+        reader.visit(entity, Source(""), 0)
+    return Drawing("dxf", reader.found, reader.left_out, _millimetres(unit))
+
+
+def _attribute(entity: DXFEntity, name: str) -> Any:
+    """An attribute of an entity; None where it has none, or none of this name."""
+    return entity.dxf.get(name) if entity.dxf.is_supported(name) else None
+
+
+def _refuse_guesses(auditor: Auditor) -> None:
+    """The library makes a number of anything, `i.5` among them; a drawing of such numbers was made by nobody."""
+    for fault in auditor.errors:
+        if fault.code in _GUESSED:
+            line = _LINE.search(fault.message)
+            raise Malformed(f"A number of the drawing cannot be read{f', near line {line[1]}' if line else ''}.")
+
+
+def _millimetres(unit: int) -> float | None:
+    """Millimetres in a unit of the drawing, by the header's $INSUNITS; None of none."""
+    try:
+        return float(units.conversion_factor(InsertUnits(unit), InsertUnits.Millimeters))
+    except (TypeError, ValueError, LookupError):
+        return None
+
+
+def _curve(entity: Any, source: Source) -> Curve:
+    if entity.dxftype() == "CIRCLE" and abs(entity.dxf.extrusion.normalize().z) > 1.0 - 1e-9:
+        centre = entity.ocs().to_wcs(entity.dxf.center)
+        if not 0.0 < entity.dxf.radius <= FARTHEST:
+            raise ValueError("its radius is not positive, or too large")
+        return Curve(source, NONE, True, Circle(complex(centre.x, centre.y), float(entity.dxf.radius)))
+    drawn = path.make_path(entity, segments=_segments(entity))
+    if not len(drawn):
+        raise ValueError("it has no length")
+    if drawn.has_sub_paths:
+        raise ValueError("it has several parts")
+    at = complex(drawn.start.x, drawn.start.y)
+    heights, pieces = [drawn.start.z], []
+    for command in drawn.commands():
+        end = complex(command.end.x, command.end.y)
+        heights += [point.z for point in command]
+        if isinstance(command, Curve4To):
+            controls = [complex(point.x, point.y) for point in (command.ctrl1, command.ctrl2)]
+            pieces.append(np.array([[at, *controls, end]]))
+        elif isinstance(command, Curve3To):
+            pieces.append(quadratic(at, complex(command.ctrl.x, command.ctrl.y), end))
+        else:
+            pieces.append(line(at, end))
+        at = end
+    return Curve(source, _flat(np.concatenate(pieces), heights), drawn.is_closed)
+
+
+def _segments(entity: Any) -> int:
+    """What the library is asked for: it takes a third of it for a bulge."""
+    return 3 * ARC_SEGMENTS if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") else ARC_SEGMENTS
+
+
+def _spline(entity: Any) -> Complex:
+    if entity.fit_point_count() > MOST_FIT_POINTS and not entity.control_point_count():
+        raise ValueError(f"it passes through more than {MOST_FIT_POINTS} points")
+    tool = entity.construction_tool()
+    points = np.array([complex(point.x, point.y) for point in tool.control_points])
+    if not np.all(np.abs(points) <= FARTHEST):
+        raise ValueError("its coordinates are too large, or no numbers")
+    weights = tool.weights() or [1.0] * len(points)
+    return _flat(cubics(tool.degree, tool.knots(), points, weights), [point.z for point in tool.control_points])
+
+
+def _flat(pieces: Complex, heights: list[float]) -> Complex:
+    rise = max(heights) - min(heights)
+    if not rise <= FLAT * float(np.abs(pieces - pieces[0, 0]).max()):
+        raise ValueError("it does not lie in a plane parallel to xy")
+    return pieces

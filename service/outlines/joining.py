@@ -1,0 +1,68 @@
+"""Open curves that meet at their ends are one outline: a rectangle of four lines, a slot of lines and arcs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from service.outlines.curves import Curve, backwards
+
+FREE, BRANCH = -1, -2
+"""Instead of the end that an end meets: it meets none, or more than one."""
+
+
+def joined(curves: Sequence[Curve], reach: float) -> tuple[list[list[Curve]], list[tuple[Curve, str]]]:
+    """The closed chains of open curves, and the curves that are in none with the reason.
+
+    Curves are joined where the ends of two of them, and of no third one, lie within ``reach`` of one another. In a
+    chain each begins where the one before it ends.
+    """
+    partner = _partners(curves, reach)
+    seen: set[int] = set()
+    chains, alone = [], []
+    # From their free ends first: what is left then are rings.
+    for begin in sorted(range(2 * len(curves)), key=lambda end: partner[end] >= 0):
+        if begin // 2 in seen:
+            continue
+        # The end 2k is where curve k starts, 2k + 1 where it ends.
+        members, end = [], begin
+        while end >= 0 and end // 2 not in seen:
+            seen.add(end // 2)
+            one = curves[end // 2]
+            members.append(one if end % 2 == 0 else backwards(one))
+            last = int(partner[end ^ 1])
+            end = last
+        if partner[begin] >= 0:
+            chains.append(members)
+        else:
+            alone += [(one, _reason(members, BRANCH in (partner[begin], end))) for one in members]
+    return chains, alone
+
+
+def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
+    """The end that each end meets, by number; or FREE, or BRANCH."""
+    if not curves:
+        return np.empty(0, np.int64)
+    places = np.array([place for one in curves for place in (one.start, one.end)])
+    pairs = np.stack([places.real, places.imag], axis=1)
+    # Of the nearest three one is the end itself; where all three are near, it is a branch.
+    away, near = cKDTree(pairs).query(pairs, k=3, distance_upper_bound=reach * (1.0 + 1e-9))
+    count = np.isfinite(away).sum(axis=1)
+    own = np.arange(len(places))
+    other = np.where(near[:, 0] == own, near[:, 1], near[:, 0])
+    partner = np.where(count == 1, FREE, np.where(count == 2, other, BRANCH))
+    # An end with one neighbour whose neighbour has two is at the edge of a branch.
+    mutual = (partner >= 0) & (partner[np.maximum(partner, 0)] == own)
+    return np.asarray(np.where((partner >= 0) & ~mutual, BRANCH, partner))
+
+
+def _reason(members: Sequence[Curve], branching: bool) -> str:
+    if branching:
+        return "more than two open elements meet at one point there"
+    gap = abs(members[-1].end - members[0].start)
+    if len(members) == 1:
+        return f"it is open: its ends are {gap:.4g} apart"
+    return f"it is open: it is joined to {len(members) - 1} others, and their ends are {gap:.4g} apart"

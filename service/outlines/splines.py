@@ -1,0 +1,79 @@
+"""B-splines, rational ones too, as cubic Béziers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline
+
+from service.outlines.curves import Complex
+
+HIGHEST_DEGREE = 15
+"""Of a spline that is read; drawings have 3, seldom 5."""
+
+MOST_CUBICS = 64
+"""For one span between knots."""
+
+TRUE = 1e-6
+"""How far the cubics may lie from the spline, as a share of its extent: far less than any flattening tolerance."""
+
+
+def cubics(degree: int, knots: Sequence[float], points: Complex, weights: Sequence[float]) -> Complex:
+    """A B-spline as cubics that have its points and its tangents at their ends, shape (n, 4).
+
+    Each span between knots takes as many as keep to the spline in their middles; splines of the third degree that are
+    not rational are met exactly.
+
+    Parameters
+    ----------
+    points : complex, shape (m,)
+        Control points.
+    knots : sequence of m + degree + 1 floats
+    weights : sequence of m floats
+        Ones where the spline is not rational.
+
+    Raises
+    ------
+    ValueError
+        The numbers are no spline's, or it bends too sharply.
+    """
+    t, w = np.array(knots, float), np.array(weights, float)
+    if not 1 <= degree <= HIGHEST_DEGREE or len(points) <= degree or len(t) != len(points) + degree + 1:
+        raise ValueError("it has a number of knots, or a degree, that no spline has")
+    if not (np.isfinite(t).all() and np.isfinite(w).all() and np.all(np.diff(t) >= 0.0) and w.min() > 0.0):
+        raise ValueError("its knots do not ascend, or its weights are not positive")
+    curve = BSpline(t, np.stack([w * points.real, w * points.imag, w], axis=1), degree)
+    slope = curve.derivative()
+    inner = t[degree : len(points) + 1]
+    spans = np.unique(inner)
+    if len(spans) < 2:
+        raise ValueError("its knots span nothing")
+    extent = float(np.abs(points - points[0]).max())
+    count = 1
+    while count <= MOST_CUBICS:
+        ends = np.unique(spans[:-1, None] + np.diff(spans)[:, None] * np.linspace(0.0, 1.0, count + 1))
+        low, high = ends[:-1], ends[1:]
+        # The tangent at a knot belongs to the span that it is asked for.
+        inside = 1e-9 * (high - low)
+        start, end = _at(curve, low), _at(curve, high)
+        first = _slope(curve, slope, low + inside) * (high - low) / 3.0
+        last = _slope(curve, slope, high - inside) * (high - low) / 3.0
+        found = np.stack([start, start + first, end - last, end], axis=1)
+        middle = found @ np.array([1.0, 3.0, 3.0, 1.0]) / 8.0
+        if np.abs(middle - _at(curve, 0.5 * (low + high))).max() <= TRUE * extent:
+            return np.asarray(found)
+        count *= 2
+    raise ValueError("it bends too sharply to be followed")
+
+
+def _at(curve: BSpline, t: NDArray[np.float64]) -> Complex:
+    x, y, w = curve(t).T
+    return np.asarray((x + 1j * y) / w)
+
+
+def _slope(curve: BSpline, slope: BSpline, t: NDArray[np.float64]) -> Complex:
+    _, _, w = curve(t).T
+    dx, dy, dw = slope(t).T
+    return np.asarray((dx + 1j * dy - dw * _at(curve, t)) / w)

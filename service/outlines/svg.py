@@ -1,0 +1,276 @@
+"""The curves of an SVG drawing, with y upwards from the lower edge of its page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from service.outlines.affine import NUMBER, Affine, transform_of
+from service.outlines.curves import NONE, Circle, Complex, Curve, Source, polyline
+from service.outlines.drawing import Drawing
+from service.outlines.faults import Malformed, Unsuitable
+from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS, MOST_PIECES
+from service.outlines.path_data import subpaths_of, unit_arc
+from service.outlines.xml_tree import Node, parsed
+
+SVG = "http://www.w3.org/2000/svg"
+INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"
+XLINK = "http://www.w3.org/1999/xlink"
+
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "Q": 0.25}
+"""Of the absolute units. A pixel is one too by the letter; but it is what a drawing has that has no unit at all."""
+
+PIXELS = {"px": 1.0, "": 1.0, **{unit: length * 96.0 / 25.4 for unit, length in MILLIMETRES.items()}}
+"""User units of a length."""
+
+_LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z%]*)\s*")
+_NUMBERS = re.compile(rf"[\s,]*+(?:{NUMBER}[\s,]*+)*+")
+_HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\b")
+
+GROUPS = {"svg", "g", "a", "switch"}
+UNSEEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "style", "script", "title", "desc", "metadata"}
+"""What draws nothing where it stands. Gradients, filters and the like have no shapes below them."""
+
+OPAQUE = {"text": "it is text; turn it into paths", "image": "it is a picture", "foreignObject": "it is no shape"}
+
+
+class SvgReader:
+    """Goes through the elements of a drawing."""
+
+    def __init__(self, root: Node) -> None:
+        self.root = root
+        self.found: list[Curve] = []
+        self.left_out: list[tuple[Source, str]] = []
+        self.visited = self.pieces = 0
+        self.by_id: dict[str, Node] = {}
+        pending = [root]
+        while pending:
+            node = pending.pop()
+            if "id" in node.attributes:
+                self.by_id.setdefault(node.attributes["id"], node)
+            pending += node.children
+
+    def visit(self, node: Node, above: Affine, layer: str | None, depth: int) -> None:
+        """Read an element and what it holds; ``above`` is where its parent's coordinates lie in the drawing."""
+        self.visited += 1
+        if self.visited > MOST_ELEMENTS:
+            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements, used ones counted each time.")
+        if depth > MOST_DEPTH:
+            raise Unsuitable(f"The drawing has groups or uses more than {MOST_DEPTH} deep in one another.")
+        space, _, name = node.name.rpartition(" ")
+        if space not in (SVG, "") or name in UNSEEN or _hidden(node):
+            return
+        source = Source(name, node.attributes.get("id"), _name_of(node), layer)
+        try:
+            place = above @ transform_of(node.attributes.get("transform", ""))
+            if name in GROUPS:
+                if name == "svg" and depth:
+                    raise ValueError("it is a drawing in the drawing, with a page of its own")
+                below = _layer_of(node) or layer
+                for child in node.children:
+                    self.visit(child, place, below, depth + 1)
+            elif name == "use":
+                self.use(node, place, layer, depth)
+            elif name in OPAQUE:
+                raise ValueError(OPAQUE[name])
+            elif name in SHAPES:
+                for curve in SHAPES[name](node):
+                    self.add(replace(curve, source=source), place)
+        except ValueError as error:
+            if isinstance(error, (Unsuitable, Malformed)):
+                raise
+            self.left_out.append((source, str(error)))
+
+    def use(self, node: Node, place: Affine, layer: str | None, depth: int) -> None:
+        """Read the element that is used here."""
+        link = node.attributes.get("href", node.attributes.get(f"{XLINK} href", ""))
+        used = self.by_id.get(link[1:]) if link.startswith("#") else None
+        if used is None:
+            raise ValueError("it uses something that is not in the drawing")
+        place = place @ Affine(shift=complex(_length(node, "x"), _length(node, "y")))
+        if used.name.rpartition(" ")[2] != "symbol":
+            return self.visit(used, place, layer, depth + 1)
+        if "viewBox" in used.attributes:
+            raise ValueError("it uses a symbol with a view box")
+        for child in used.children:
+            self.visit(child, place, layer, depth + 1)
+        return None
+
+    def add(self, curve: Curve, place: Affine) -> None:
+        """A curve in the coordinates of its element."""
+        self.pieces += max(len(curve.pieces), 1)
+        if self.pieces > MOST_PIECES:
+            raise Unsuitable(f"The drawing has more than {MOST_PIECES} lines and curves.")
+        if curve.circle is not None:
+            centre, radius = curve.circle.centre, curve.circle.radius
+            if (larger := place.enlargement) is not None:
+                circle = Circle(complex(place(np.array(centre))), larger * radius)
+                return self.found.append(replace(curve, circle=circle))
+            curve = replace(curve, circle=None, pieces=centre + radius * unit_arc(0.0, 2.0 * np.pi))
+        return self.found.append(replace(curve, pieces=place(curve.pieces)))
+
+
+def curves_of(content: bytes) -> Drawing:
+    """The curves of a drawing.
+
+    Raises
+    ------
+    Malformed
+        It is no SVG.
+    Unsuitable
+        It is larger than is read here.
+    """
+    root = parsed(content)
+    if root.name not in (f"{SVG} svg", "svg"):
+        raise Malformed("The drawing is XML, but its root is no <svg>.")
+    place, unit = _page(root)
+    reader = SvgReader(root)
+    reader.visit(root, place, None, 0)
+    return Drawing("svg", reader.found, reader.left_out, unit)
+
+
+def _page(root: Node) -> tuple[Affine, float | None]:
+    """Where user units lie in the drawing, and how many millimetres one is, where that is stated.
+
+    The drawing keeps user units, and has its origin at the lower left corner of the page. Where the page is stretched
+    one way more than the other, the smaller stretch is the unit.
+    """
+    width, height = (_stated(root.attributes.get(name, "")) for name in ("width", "height"))
+    box = _numbers(root.attributes.get("viewBox", ""), "its viewBox")
+    if box and (len(box) != 4 or min(box[2:]) <= 0.0):
+        raise Malformed("The viewBox of the drawing is not four numbers with a width and a height.")
+    tall = box[3] if box else height[0] * PIXELS[height[1]] if height else 0.0
+    left, top = box[:2] if box else (0.0, 0.0)
+    if not box:
+        # Then a user unit is a pixel, and that is stated by nobody.
+        return Affine.of_matrix(1.0, 0.0, 0.0, -1.0, 0.0, tall), None
+    spans = ((width, box[2]), (height, box[3]))
+    scales = [stated[0] * PIXELS[stated[1]] / span if stated else None for stated, span in spans]
+    known = [scale for scale in scales if scale]
+    least = min(known, default=1.0)
+    across, up = 1.0, 1.0
+    if len(known) == 2 and root.attributes.get("preserveAspectRatio", "").split()[:1] == ["none"]:
+        across, up = known[0] / least, known[1] / least
+    absolute = [stated for stated in (width, height) if stated and stated[1] in MILLIMETRES]
+    unit = least * 25.4 / 96.0 if absolute else None
+    return Affine.of_matrix(across, 0.0, 0.0, -up, -across * left, up * (top + tall)), unit
+
+
+def _stated(text: str) -> tuple[float, str] | None:
+    """A length with its unit; None where there is none, or one of the window it is shown in."""
+    found = _LENGTH.fullmatch(text)
+    if not found or found[2] not in PIXELS or not 0.0 < float(found[1]) < float("inf"):
+        return None
+    return float(found[1]), found[2]
+
+
+def _length(node: Node, name: str, default: float = 0.0) -> float:
+    """An attribute in user units."""
+    if name not in node.attributes:
+        return default
+    found = _LENGTH.fullmatch(node.attributes[name])
+    if not found or found[2] not in PIXELS:
+        raise ValueError(f"its {name} is no length, or one that depends on the page")
+    return float(found[1]) * PIXELS[found[2]]
+
+
+def _numbers(text: str, what: str) -> list[float]:
+    if not _NUMBERS.fullmatch(text):
+        raise (
+            Malformed(f"The numbers of {what} cannot be read.")
+            if what == "its viewBox"
+            else ValueError(f"the numbers of {what} cannot be read")
+        )
+    return [float(number) for number in re.findall(NUMBER, text)]
+
+
+def _hidden(node: Node) -> bool:
+    return node.attributes.get("display") == "none" or bool(_HIDDEN.search(node.attributes.get("style", "")))
+
+
+def _name_of(node: Node) -> str | None:
+    title = next((child for child in node.children if child.name.rpartition(" ")[2] == "title"), None)
+    told = node.attributes.get(f"{INKSCAPE} label") or "".join(title.text if title else []).strip()
+    return told or None
+
+
+def _layer_of(node: Node) -> str | None:
+    """A group that is named is the layer of what it holds."""
+    return _name_of(node) or node.attributes.get("id")
+
+
+_BLANK = Source("")
+
+
+def _path(node: Node) -> Iterator[Curve]:
+    try:
+        subpaths = subpaths_of(node.attributes.get("d", ""))
+    except ValueError as error:
+        raise (error if isinstance(error, Unsuitable) else ValueError(f"its path data is wrong: {error}")) from None
+    for subpath in subpaths:
+        yield Curve(_BLANK, np.concatenate(subpath.pieces), subpath.closed)
+
+
+def _polygon(node: Node) -> Iterator[Curve]:
+    numbers = _numbers(node.attributes.get("points", ""), "its points")
+    if len(numbers) % 2 or len(numbers) < 4:
+        raise ValueError("its points are not pairs of numbers, two at least")
+    points = np.array(numbers[::2]) + 1j * np.array(numbers[1::2])
+    closed = node.name.endswith("polygon")
+    yield Curve(_BLANK, polyline(np.append(points, points[0]) if closed else points), closed)
+
+
+def _line(node: Node) -> Iterator[Curve]:
+    ends = [complex(_length(node, f"x{k}"), _length(node, f"y{k}")) for k in (1, 2)]
+    yield Curve(_BLANK, polyline(np.array(ends)), False)
+
+
+def _circle(node: Node) -> Iterator[Curve]:
+    radius = _length(node, "r")
+    if radius > 0.0:
+        yield Curve(_BLANK, NONE, True, Circle(complex(_length(node, "cx"), _length(node, "cy")), radius))
+
+
+def _ellipse(node: Node) -> Iterator[Curve]:
+    rx = _length(node, "rx", _length(node, "ry"))
+    ry = _length(node, "ry", rx)
+    centre = complex(_length(node, "cx"), _length(node, "cy"))
+    if rx > 0.0 and rx == ry:
+        yield Curve(_BLANK, NONE, True, Circle(centre, rx))
+    elif rx > 0.0 and ry > 0.0:
+        turn = unit_arc(0.0, 2.0 * np.pi)
+        yield Curve(_BLANK, centre + rx * turn.real + 1j * ry * turn.imag, True)
+
+
+def _rect(node: Node) -> Iterator[Curve]:
+    corner = complex(_length(node, "x"), _length(node, "y"))
+    width, height = _length(node, "width"), _length(node, "height")
+    if width <= 0.0 or height <= 0.0:
+        return
+    rx = _length(node, "rx", _length(node, "ry"))
+    ry = _length(node, "ry", rx)
+    rx, ry = min(max(rx, 0.0), 0.5 * width), min(max(ry, 0.0), 0.5 * height)
+    if rx == 0.0 or ry == 0.0:
+        corners = corner + np.array([0.0, width, complex(width, height), 1j * height, 0.0])
+        yield Curve(_BLANK, polyline(corners), True)
+        return
+    # Quarter turns about the centres of its corners, and sides between them.
+    centres = [complex(width - rx, ry), complex(width - rx, height - ry), complex(rx, height - ry), complex(rx, ry)]
+    pieces: list[Complex] = []
+    for k, centre in enumerate(centres):
+        quarter = unit_arc((k - 1) * 0.5 * np.pi, 0.5 * np.pi)
+        rounded = corner + centre + rx * quarter.real + 1j * ry * quarter.imag
+        if pieces:
+            pieces.append(polyline(np.array([pieces[-1][-1, 3], rounded[0, 0]])))
+        pieces.append(rounded)
+    pieces.append(polyline(np.array([pieces[-1][-1, 3], pieces[0][0, 0]])))
+    yield Curve(_BLANK, np.concatenate(pieces), True)
+
+
+SHAPES = {
+    "path": _path, "polygon": _polygon, "polyline": _polygon, "line": _line, "circle": _circle, "ellipse": _ellipse,
+    "rect": _rect,
+}  # fmt: skip

@@ -1,0 +1,82 @@
+"""XML that anybody may have written, as a tree: no entity is expanded, nothing is fetched, and its size is bounded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from service.outlines.faults import Malformed, Unsuitable
+from service.outlines.limits import MOST_DEPTH, MOST_ELEMENTS
+
+DEEPEST = 4 * MOST_DEPTH
+"""Elements within one another, of all sorts."""
+
+MOST_ATTRIBUTES = 64
+"""Attributes of an element."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """An element: its name is ``namespace name``, with a space between; likewise its attributes'."""
+
+    name: str
+    attributes: dict[str, str]
+    children: list[Node] = field(default_factory=list)
+    text: list[str] = field(default_factory=list)
+
+
+def parsed(content: bytes) -> Node:
+    """The root of a document.
+
+    Raises
+    ------
+    Malformed
+        It is not well-formed, or declares entities.
+    Unsuitable
+        It has more elements, or more of them within one another, than a drawing here.
+    """
+    parser = expat.ParserCreate(namespace_separator=" ")
+    parser.buffer_text = True
+    parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+    open_: list[Node] = []
+    roots: list[Node] = []
+    count = 0
+
+    def begin(name: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        if count > MOST_ELEMENTS:
+            raise Unsuitable(f"The drawing has more than {MOST_ELEMENTS} elements.")
+        if len(open_) >= DEEPEST:
+            raise Unsuitable(f"The drawing has more than {DEEPEST} elements within one another.")
+        if len(attributes) > MOST_ATTRIBUTES:
+            raise Unsuitable(f"An element of the drawing has more than {MOST_ATTRIBUTES} attributes.")
+        node = Node(name, attributes)
+        (open_[-1].children if open_ else roots).append(node)
+        open_.append(node)
+
+    def end(name: str) -> None:
+        open_.pop()
+
+    def characters(text: str) -> None:
+        if open_:
+            open_[-1].text.append(text)
+
+    def entity(*_: object) -> None:
+        raise Malformed("The drawing declares XML entities, which are not expanded here; save it without them.")
+
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = characters
+    parser.EntityDeclHandler = entity
+    parser.UnparsedEntityDeclHandler = entity
+    try:
+        parser.Parse(content, True)
+    except expat.ExpatError as error:
+        # The message is the parser's own, "mismatched tag: line 3, column 5"; it holds nothing of the drawing.
+        raise Malformed(f"The drawing is not well-formed XML: {error}.") from None
+    except (ValueError, LookupError) as error:
+        if isinstance(error, (Malformed, Unsuitable)):
+            raise
+        raise Malformed("The drawing has an encoding that is not known here; save it as UTF-8.") from None
+    return roots[0]
