@@ -5,6 +5,9 @@
 /** @typedef {{id: string, kind: string, label: string | null, status: string, created_at: string, progress: Progress}} JobItem */
 /** @typedef {JobItem & {problem: any, result: any, error: any}} Job */
 /** @typedef {{kind: string, title: string, description: string, schema: any, example: any, files: Record<string, string[]>}} Kind */
+/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, polygon: [number, number][] | null, circle: {center: [number, number], radius: number} | null, area: number, joined: number}} Drawn */
+/** @typedef {{element: string, id: string | null, name: string | null, layer: string | null, reason: string}} LeftOut */
+/** @typedef {{millimetres_per_unit: number | null, length_unit: string | null, scale: number, tolerance: number, outlines: Drawn[], left_out: LeftOut[], left_out_count: number}} Outlines */
 
 const KEY = "mechsynth.key";
 const RECONNECT_MS = 1000;
@@ -131,6 +134,13 @@ export async function motion(id, design, steps, signal) {
 /** @param {any} question @param {AbortSignal} signal */
 export async function analysis(question, signal) {
   return (await patiently(() => post("/v1/analyses", question, signal), signal)).json();
+}
+
+/** The closed outlines of a drawing. @param {Blob} drawing @param {string} unit of the answer, where the drawing states its own @returns {Promise<Outlines>} */
+export async function outlines(drawing, unit) {
+  const headers = { "Content-Type": "application/octet-stream" };
+  const asked = () => ask(`/v1/outlines?${new URLSearchParams({ length_unit: unit })}`, { method: "POST", headers, body: drawing });
+  return (await patiently(asked)).json();
 }
 
 /**

@@ -2,6 +2,7 @@
 
 import { lines } from "./controls.js";
 import { el, shown, svg } from "./dom.js";
+import { DrawingImport } from "./drawing_import.js";
 import { hatched, legend, outline } from "./hatch.js";
 import { Pen } from "./pen.js";
 import { areas, rolesOf, stateArea } from "./room.js";
@@ -21,6 +22,7 @@ const TOOLS = /** @type {Tool[]} */ (["polygon", "rectangle", "circle"]);
  * @property {string} [chosen] JSON pointer of the area that is chosen
  * @property {string} [role] that is drawn next
  * @property {Pen | null} [pen]
+ * @property {DrawingImport} [drawing] that is being imported
  */
 
 export class RoomEditor {
@@ -39,6 +41,13 @@ export class RoomEditor {
     memory.pen = null;
     this.node = svg("g", { class: "room" }, ...this.areas.map((area) => this.held(area)));
     this.said = el("p", { class: "note", role: "status" });
+    // What was found in a drawing stands there until it is placed; it speaks to the canvas as it is then.
+    this.drawing = memory.drawing ??= new DrawingImport(problem, () => {});
+    this.drawing.placed = (path) => {
+      memory.chosen = path;
+      this.rest();
+      changed(true);
+    };
     this.tools = this.bar();
     this.rest();
   }
@@ -71,8 +80,8 @@ export class RoomEditor {
     const used = roles.filter((one) => this.areas.some((area) => area.role === one));
     return el("fieldset", { class: "choice", id: "room-tools" }, el("legend", {}, "Room"),
       el("div", { class: "row" }, el("label", { for: "room-role" }, "Draw"), pick,
-        el("div", { class: "row", role: "group", "aria-label": "Shape" }, ...buttons), this.remover),
-      this.said, used.length > 0 && legend(used));
+        el("div", { class: "row", role: "group", "aria-label": "Shape" }, ...buttons), this.remover, this.drawing.button),
+      this.said, this.drawing.node, used.length > 0 && legend(used));
   }
 
   /** Take the pen. @param {import("./room.js").Role} role @param {Tool} tool */
