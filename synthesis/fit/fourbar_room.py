@@ -7,6 +7,9 @@ which keeps its length, the coupler turns by dθ₃ = −Re(f̄ df)/Re(f̄ i b e
     A = O2 + a e^{iθ},   B = A + b e^{iθ₃},   P = A + p e^{iθ₃},   O4 = O2 + d e^{iγ}.
 
 The crank's angles from the ground line move with the unknowns too, those between the ends in proportion.
+
+A linkage that carries a body has one unknown more, the direction ψ of A → B on the body as it is drawn: the body is
+turned by θ₃ − ψ.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from numpy.typing import NDArray
 
 from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import crank_range, two_bars, unit
-from synthesis.fit.room import BOXED, CYCLE, GROUPS, O2, O4, PLACES, A, B, P
+from synthesis.fit.room import BOXED, CYCLE, GROUPS, O2, O4, PLACES, TURN, A, B, P
 from synthesis.fit.room_margins import ROW, add_derivative, margins_of, parabola, room_margins, steps_of
 from synthesis.numerics.augmented_lagrangian import load_of
 
@@ -28,6 +31,9 @@ Complex = NDArray[np.complex128]
 
 LINKAGE = 9
 """Unknowns of a fourbar's chart; those of a fit behind them move the crank's angles alone."""
+
+NO_BODY = -1
+"""In place of the index of ψ among the unknowns: the linkage carries none."""
 
 FROM_TOGGLE = 1e-3
 """Radians that a cycle ends before a toggle, where joints have no derivative."""
@@ -57,7 +63,7 @@ def way_of(lengths: Real, ends: Real, whole: bool, room: Real) -> tuple[float, f
 
 
 @njit(**OPTIONS)
-def _stand(x: Real, lengths: Real, sign: float, angle: float, places: Complex) -> bool:
+def _stand(x: Real, lengths: Real, sign: float, angle: float, body: int, places: Complex) -> bool:
     """The joints with the crank at an angle from the ground line, written; False where the linkage does not close."""
     ground = unit(x[2])
     pin = lengths[1] * unit(x[2] + angle)
@@ -67,6 +73,8 @@ def _stand(x: Real, lengths: Real, sign: float, angle: float, places: Complex) -
     places[B] = places[A] + lengths[2] * along
     places[O4] = places[O2] + lengths[0] * ground
     places[P] = places[A] + complex(x[POINT], x[POINT + 1]) * along
+    if body >= 0:
+        places[TURN] = along * unit(-x[body])
     return bool(closes)
 
 
@@ -79,6 +87,7 @@ def stands(
     end: float,
     ring: bool,
     first: float,
+    body: int,
     places: Complex,
     home: Complex,
 ) -> bool:
@@ -96,29 +105,32 @@ def stands(
         Crank angles from the ground line: of the motion, and of the first position.
     ring : bool
         Whether the end is the beginning again.
+    body : int
+        Which unknown ψ is, or :data:`NO_BODY`.
     places, home : complex
         Written.
     """
     n = len(places)
     parts = n if ring else n - 1
     for k in range(n):
-        if not _stand(x, lengths, sign, begin + (end - begin) * k / parts, places[k]):
+        if not _stand(x, lengths, sign, begin + (end - begin) * k / parts, body, places[k]):
             return False
-    return bool(_stand(x, lengths, sign, first, home))
+    return bool(_stand(x, lengths, sign, first, body, home))
 
 
 @njit(**OPTIONS)
 def fourbar_margins(
-    x: Real, lengths: Real, sign: float, ends: Real, whole: bool, room: Real, values: Real, rows: Real
+    x: Real, lengths: Real, sign: float, ends: Real, whole: bool, body: int, room: Real, values: Real, rows: Real
 ) -> bool:
     """The margins of a fourbar's room and their rows, written; False where its motion does not close.
 
-    ``ends``, shape (2,), are crank angles from the ground line at the first and the last point.
+    ``ends``, shape (2,), are crank angles from the ground line at the first and the last point; ``body`` is as for
+    :func:`stands`.
     """
     begin, end, ring, _ = way_of(lengths, ends, whole, room)
     moving = room[BOXED] > 0.0 or room[GROUPS] > 0.0
     places, home = np.zeros((steps_of(ring) if moving else 0, PLACES), np.complex128), np.zeros(PLACES, np.complex128)
-    if not stands(x, lengths, sign, begin, end, ring, ends[0], places, home):
+    if not stands(x, lengths, sign, begin, end, ring, ends[0], body, places, home):
         return False
     room_margins(room, places, ring, home, values, rows)
     return True
@@ -133,6 +145,7 @@ def room_rows(
     ends: Real,
     turns: Real,
     whole: bool,
+    body: int,
     room: Real,
     multipliers: Real,
     values: Real,
@@ -152,6 +165,8 @@ def room_rows(
         Crank angles from the ground line at the first and the last point, and their derivatives.
     whole : bool
         Whether the crank turns through its whole turn.
+    body : int
+        As for :func:`stands`.
     room : float64, shape (r,)
         Of :func:`synthesis.fit.room.packed`.
     multipliers : float64, shape (margins + 1 or more,)
@@ -168,7 +183,7 @@ def room_rows(
     """
     count, unknowns = margins_of(room), len(x)
     rows = np.empty((count, ROW))
-    if not fourbar_margins(x, lengths, sign, ends, whole, room, values, rows):
+    if not fourbar_margins(x, lengths, sign, ends, whole, body, room, values, rows):
         return -1
     begin, end, ring, moves = way_of(lengths, ends, whole, room)
     n = steps_of(ring)
@@ -195,7 +210,7 @@ def room_rows(
                 known[step] = True
                 share = 0.0 if step == n else step / parts
                 angle = ends[0] if step == n else begin + (end - begin) * share
-                _slopes_at(x, lengths, slopes, sign, angle, turns, share, ring, moves or step == n, by[step])
+                _slopes_at(x, lengths, slopes, sign, angle, turns, share, ring, moves or step == n, body, by[step])
             add_derivative(row, -root * shares[s], by[step], out)
         m += 1
     return m
@@ -212,6 +227,7 @@ def _slopes_at(
     share: float,
     ring: bool,
     moves: bool,
+    body: int,
     by: Complex,
 ) -> None:
     """Derivatives of the joints by the unknowns, shape (6, unknowns), at a share of the motion, with the crank at an
@@ -223,6 +239,7 @@ def _slopes_at(
     f = a * crank + b * along - d * ground
     per = (f.conjugate() * 1j * b * along).real
     p = complex(x[POINT], x[POINT + 1])
+    spin = 1j * along * unit(-x[body]) if body >= 0 else 0j
     by[:] = 0.0
     for j in range(5):
         by[j, 0], by[j, 1] = 1.0, 1j
@@ -244,6 +261,7 @@ def _slopes_at(
         at_b, at_p = pin + bar + 1j * b * along * turn, pin + 1j * p * along * turn
         if number == 0:
             by[A, 2], by[B, 2], by[P, 2], by[O4, 2] = pin, at_b, at_p, base
+            by[TURN, 2] = spin * turn
         elif number < 5:
             for i in range(4):
                 much = slopes[number - 1, i]
@@ -251,11 +269,15 @@ def _slopes_at(
                 by[B, LENGTHS + i] += at_b * much
                 by[P, LENGTHS + i] += at_p * much
                 by[O4, LENGTHS + i] += base * much
+                by[TURN, LENGTHS + i] += spin * turn * much
         elif moves:
             for i in range(unknowns):
                 much = turns[0, i] if ring else (1.0 - share) * turns[0, i] + share * turns[1, i]
                 by[A, i] += pin * much
                 by[B, i] += at_b * much
                 by[P, i] += at_p * much
+                by[TURN, i] += spin * turn * much
     by[P, POINT] += along
     by[P, POINT + 1] += 1j * along
+    if body >= 0:
+        by[TURN, body] -= spin

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synthesis.fit.fourbar_room import stands, way_of
+from synthesis.fit.fourbar_room import NO_BODY, stands, way_of
 from synthesis.fit.room import O2, O4, PLACES, A, B, packed, zones_alone
 from synthesis.fit.room_margins import ROW, margins_of, room_margins, steps_of
 from synthesis.model.space import Space
@@ -93,7 +93,7 @@ def placed_in_room(
     x = np.zeros(9)
     begin, end, ring, _ = way_of(linkage.lengths, linkage.ends, False, room)
     own, home = np.zeros((steps_of(ring), PLACES), np.complex128), np.zeros(PLACES, np.complex128)
-    if not stands(x, linkage.lengths, linkage.sign, begin, end, ring, linkage.first, own, home):
+    if not stands(x, linkage.lengths, linkage.sign, begin, end, ring, linkage.first, NO_BODY, own, home):
         return None
     sides = np.stack([boxes.left, boxes.right, boxes.low, boxes.high], axis=1) / scale
     low, high = (math.log(max(size / scale, 1e-9)) if size < math.inf else math.inf for size in sizes)

@@ -77,6 +77,7 @@ def packed(
     parts: Sequence[Sequence[int]] = FOURBAR_PARTS,
     first: complex | None = None,
     pivots: Sequence[int] = (O2, O4, A, B),
+    aim: float = AIM,
 ) -> Real:
     """A room in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty where nothing is demanded.
 
@@ -93,10 +94,12 @@ def packed(
         P of the body as it is drawn, in the problem's coordinates, of a linkage that carries one.
     pivots : four joints
         The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage does not have.
+    aim : float
+        Share of the task's size by which everything is kept more narrowly than it is checked.
     """
     if space is None:
         return NONE
-    zones = _zones(space, origin, size, pivots, first is not None)
+    zones = _zones(space, origin, size, pivots, first is not None, aim)
     moves = space.swept
     carries = space.body is not None and first is not None
     links = [[joint for joint in part if not (carries and joint == P)] for part in parts] if moves else []
@@ -113,13 +116,13 @@ def packed(
     windows = WINDOWS * (4 if space.box is not None else 0) + WINDOWS * (len(links) + bodies) * groups
     header = np.zeros(HEADER)
     header[COUNT] = len(zones) + windows
-    header[HALF], header[WANTED] = 0.5 * space.link_width / size, space.clearance / size + AIM
+    header[HALF], header[WANTED] = 0.5 * space.link_width / size, space.clearance / size + aim
     header[LEFT : HIGH + 1] = -np.inf, np.inf, -np.inf, np.inf
     if space.box is not None:
         (left, low), (right, high) = space.box
         header[LEFT : HIGH + 1] = (
-            (left - origin.real) / size + AIM, (right - origin.real) / size - AIM,
-            (low - origin.imag) / size + AIM, (high - origin.imag) / size - AIM,
+            (left - origin.real) / size + aim, (right - origin.real) / size - aim,
+            (low - origin.imag) / size + aim, (high - origin.imag) / size - aim,
         )  # fmt: skip
     header[BOXED], header[CYCLE] = space.box is not None, space.over == "cycle"
     if first is not None:
@@ -172,7 +175,9 @@ def _pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
     return records
 
 
-def _zones(space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool) -> list[list[list[float]]]:
+def _zones(
+    space: Space, origin: complex, size: float, pivots: Sequence[int], carries: bool, aim: float
+) -> list[list[list[float]]]:
     """Of each pivot that has zones the records: joint, on the body or not, radius, margin, count of corners, these."""
     fixed, moving = space.fixed_pivots, space.moving_pivots
     demanded = (
@@ -191,7 +196,7 @@ def _zones(space: Space, origin: complex, size: float, pivots: Sequence[int], ca
             corners = _anticlockwise((corners - origin) / size)
             half = radius / size if len(corners) == 1 else _half_width(zone) / size
             on_body = carries and isinstance(zone, MovingZone) and zone.frame == "body"
-            head = [float(joint), float(on_body), radius / size, min(AIM, NARROW * half), float(len(corners))]
+            head = [float(joint), float(on_body), radius / size, min(aim, NARROW * half), float(len(corners))]
             records.append([*head, *corners.view(np.float64).tolist()])
         tables.append(records)
     return tables

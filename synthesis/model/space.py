@@ -79,6 +79,13 @@ class Space(Statement):
         """Whether something is demanded of the motion, and not of the pivots alone."""
         return self.box is not None or bool(self.obstacles)
 
+    @property
+    def demanding(self) -> bool:
+        """Whether something is demanded at all."""
+        sides = (self.fixed_pivots, self.moving_pivots)
+        zoned = any(side is not None and (side.input or side.output) for side in sides)
+        return self.swept or zoned
+
     def carried(self, first: complex, place: complex, turn: complex) -> Self:
         """The same room where the body is elsewhere in its first position: what is drawn on the body goes with it.
 

@@ -14,7 +14,7 @@ from benchmarks.fit.task import generator
 from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.fit.chart import FOURBAR, natural
-from synthesis.fit.fourbar_room import fourbar_margins, room_rows, way_of
+from synthesis.fit.fourbar_room import NO_BODY, fourbar_margins, room_rows, way_of
 from synthesis.fit.room import packed
 from synthesis.fit.room_margins import ROW, margins_of
 from synthesis.model.space import Space
@@ -41,7 +41,7 @@ def rows_of(x: Real, ends: Real, turns: Real, room: Real) -> tuple[Real, Real, R
     multipliers[count] = 1.0
     residuals, jacobian = np.zeros(count), np.zeros((count, len(x)))
     m = room_rows(
-        x, lengths, slopes, 1.0, ends, turns, False, room, multipliers, values, residuals, jacobian, 0
+        x, lengths, slopes, 1.0, ends, turns, False, NO_BODY, room, multipliers, values, residuals, jacobian, 0
     )  # fmt: skip
     assert m >= 0
     return values, residuals[:m], jacobian[:m]
@@ -108,7 +108,7 @@ def test_zones_are_of_the_first_point() -> None:
     lengths = np.array([1.0, 0.4, 1.0, 1.0])
     x = np.array([0.1, 0.0, 0.3, *np.log(lengths), 0.5, 0.4])
     values, rows = np.empty(1), np.empty((1, ROW))
-    assert fourbar_margins(x, lengths, 1.0, np.array([0.4, 1.0]), False, room, values, rows)
+    assert fourbar_margins(x, lengths, 1.0, np.array([0.4, 1.0]), False, NO_BODY, room, values, rows)
     assert values[0] == pytest.approx(0.1, abs=1e-3)
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.task import Complex, MotionTask, Real
+from synthesis.model.linkage_statement import Region
 from synthesis.model.zones import AnyOf, Area, Zone
 
 
@@ -60,16 +61,10 @@ def drawn(task: MotionTask, areas: tuple[Area, ...], rng: np.random.Generator, c
     return np.asarray((areas[-1].sampled(rng, count) - task.origin) / task.size) if areas else None
 
 
-def box_of(task: MotionTask, areas: tuple[Area, ...], place: complex) -> Real:
-    """The box (x from, to, y from, to) around all areas, of several zones the one nearest to a place; task coordinates.
-
-    Infinite where there are none. What is in the box may still lie outside an area that is no rectangle.
-    """
-    box = np.array([-np.inf, np.inf, -np.inf, np.inf])
-    at = np.asarray(task.to_problem(place))
-    for area in areas:
-        nearest = min(area.zones, key=lambda zone: float(zone.distance_each(at))) if isinstance(area, AnyOf) else area
-        left, right, low, high = nearest.bounds
-        own = np.array([left, right, low, high]) - np.array([task.origin.real] * 2 + [task.origin.imag] * 2)
-        box[::2], box[1::2] = np.maximum(box[::2], own[::2] / task.size), np.minimum(box[1::2], own[1::2] / task.size)
-    return box
+def box_of(task: MotionTask, region: Region | None) -> Real:
+    """A region (x from, to, y from, to) in task coordinates; infinite where there is none."""
+    if region is None:
+        return np.array([-np.inf, np.inf, -np.inf, np.inf])
+    (left, right), (low, high) = region.x, region.y
+    own = np.array([left, right, low, high]) - np.array([task.origin.real] * 2 + [task.origin.imag] * 2)
+    return np.asarray(own / task.size)

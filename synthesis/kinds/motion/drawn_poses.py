@@ -19,7 +19,8 @@ from synthesis.kinds.motion.demanded import demanded
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.kinds.motion.stated_dyads import DyadChoices, whole_point
-from synthesis.kinds.motion.steered import REASONS, SAME_LINKAGE
+from synthesis.kinds.motion.steered import REASONS
+from synthesis.kinds.motion.steered_fit import SAME_LINKAGE
 from synthesis.kinds.motion.steered_starts import deviations
 from synthesis.kinds.motion.task import Real
 from synthesis.kinds.motion.verification import verify

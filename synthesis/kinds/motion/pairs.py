@@ -43,7 +43,10 @@ SHORTLIST = 4000
 """Best-scored pairs from which distinct ones are chosen."""
 
 SWEPT_POOL = 10_000
-"""Of the sound pairs so many of the best, and as many of the rest, are looked at for obstacles."""
+"""Of the sound pairs so many of the best, and as many of the rest, are looked at for obstacles at most."""
+
+SWEPT_AT_ONCE, FITTING = 1000, 500
+"""As many of the best, and of the rest, are looked at at a time, until so many fit."""
 
 WEIGHED_POOL, WEIGHED_AT_ONCE, ENOUGH = 8000, 500, 500
 """Of the sound pairs so many of the best, and as many of the rest, are weighed where forces are limited; so many of
@@ -152,12 +155,17 @@ class Pairs:
         sound = np.flatnonzero(score > 0.0)
         best = sound[np.argsort(-score[sound], kind="stable")]
         # The best ones lie close together: of the rest, too, some are looked at.
-        looked = np.concatenate([best[:SWEPT_POOL], best[SWEPT_POOL :: -(-len(best) // SWEPT_POOL) or 1]])
-        i, j = np.unravel_index(looked, screening.score.shape)
-        joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]
-        kept = looked[fits(self.problem, self.task, np.stack(joints, axis=1))]
-        fitting = np.zeros_like(score)
-        fitting[kept] = score[kept]
+        rest = best[SWEPT_POOL :: -(-len(best) // SWEPT_POOL) or 1]
+        fitting, portions = np.zeros_like(score), SWEPT_POOL // SWEPT_AT_ONCE
+        for k in range(portions):
+            looked = np.concatenate([best[:SWEPT_POOL][k * SWEPT_AT_ONCE :][:SWEPT_AT_ONCE], rest[k::portions]])
+            i, j = np.unravel_index(looked, screening.score.shape)
+            joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]
+            kept = looked[fits(self.problem, self.task, np.stack(joints, axis=1))] if len(looked) else looked
+            fitting[kept] = score[kept]
+            # Where forces are limited these leave only some of them.
+            if np.count_nonzero(fitting) >= FITTING and not looked_at(self.problem):
+                break
         return screening._replace(score=fitting.reshape(screening.score.shape))
 
     def _bearable(self, screening: Screening) -> Screening:

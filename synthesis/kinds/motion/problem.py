@@ -274,9 +274,19 @@ class MotionProblem(LinkageProblem):
     @property
     def steered(self) -> bool:
         """Whether linkages are steered into these: fourbars of which no more is stated than pivots."""
+        return self.few_tolerated and self._pivots_alone
+
+    @property
+    def steered_in_room(self) -> bool:
+        """Whether linkages are steered into the tolerances and a room: the same of any number of positions."""
+        tolerated = self._misses_allowed and (self.few_tolerated or self.approximate)
+        return tolerated and self._pivots_alone and self.space is not None and self.space.demanding
+
+    @property
+    def _pivots_alone(self) -> bool:
+        """Whether a fourbar is asked for of which no more is stated than pivots."""
         sides = self.input_side, self.output_side
-        pins = all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
-        return self.few_tolerated and pins and self.driver is None
+        return self.driver is None and all(side.dyad in ("any", "RR") and side.pivots_alone for side in sides)
 
     @property
     def _toleranced(self) -> bool:

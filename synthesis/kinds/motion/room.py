@@ -1,7 +1,8 @@
 """Which fourbars that carry a body are likely to keep clear of obstacles: looked at in a few positions on their way.
 
 A kernel that leaves out what plainly does not fit, so that only what may fit is driven and proven. What it passes may
-still fail between the positions; what it drops would fail.
+still fail between the positions; what it drops would fail. What costs least comes first: a few positions before those
+between them, the box before obstacles, and circles around outlines before the outlines.
 """
 
 from __future__ import annotations
@@ -50,6 +51,8 @@ def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[n
     spin = np.exp(1j * (at.coupler_angle - home.coupler_angle))
     corners = [zone.outline for zone in space.obstacles]
     starts = np.cumsum([0, *(len(points) for points, _ in corners)])
+    middles = np.array([complex(points.mean()) for points, _ in corners], np.complex128)
+    reaches = np.array([float(np.abs(points - points.mean()).max()) for points, _ in corners])
     outline = (
         np.array([complex(*corner) for corner in space.body.outline]) - point if space.body else np.empty(0, complex)
     )
@@ -57,7 +60,7 @@ def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[n
     _look(
         o2, o4, at.a, at.b, at.p, spin, at.valid, outline,
         np.concatenate([points for points, _ in corners]) if corners else np.empty(0, np.complex128),
-        starts, np.array([radius for _, radius in corners]), _box(space),
+        starts, np.array([radius for _, radius in corners]), middles, reaches, _box(space), _coarse_first(LOOKED_AT),
         0.5 * space.link_width, space.clearance - SURE * task.size, SURE * task.size, out,
     )  # fmt: skip
     return out
@@ -80,6 +83,16 @@ def _box(space: Space) -> Real:
     return np.array([left, right, low, high])
 
 
+def _coarse_first(count: int) -> NDArray[np.int64]:
+    """The numbers below a count, those first that lie far apart."""
+    order: dict[int, None] = {}
+    step = 1 << (count - 1).bit_length()
+    while step:
+        order.update(dict.fromkeys([*range(0, count, step), count - 1]))
+        step //= 2
+    return np.array(list(order), np.int64)
+
+
 @njit(**OPTIONS)
 def _look(
     o2: Complex,
@@ -93,7 +106,10 @@ def _look(
     corners: Complex,
     starts: NDArray[np.int64],
     radii: Real,
+    middles: Complex,
+    reaches: Real,
     box: Real,
+    order: NDArray[np.int64],
     half: float,
     clearance: float,
     slack: float,
@@ -103,25 +119,36 @@ def _look(
     bar, hull, body = np.empty(2, np.complex128), np.empty(3, np.complex128), np.empty(len(outline), np.complex128)
     for n in range(len(o2)):
         free = True
-        for m in range(a.shape[1]):
+        for m in order:
             if not valid[n, m]:
                 continue
+            hull[0], hull[1], hull[2] = a[n, m], b[n, m], p[n, m]
+            for k in range(len(outline)):
+                body[k] = p[n, m] + spin[n, m] * outline[k]
+            coupler = hull[:2] if len(outline) else hull
+            bar[0], bar[1] = o4[n], o2[n]
+            # The other joints of both links are those of the coupler.
+            free = _boxed(coupler, half, box, slack) and _boxed(bar, half, box, slack) and _boxed(body, 0.0, box, slack)
+            free = free and _clear(coupler, half, corners, starts, radii, middles, reaches, clearance)
+            free = free and _clear(body, 0.0, corners, starts, radii, middles, reaches, clearance)
+            bar[1] = b[n, m]
+            free = free and _clear(bar, half, corners, starts, radii, middles, reaches, clearance)
             bar[0], bar[1] = o2[n], a[n, m]
-            free = _clear(bar, half, corners, starts, radii, box, clearance, slack)
-            bar[0], bar[1] = o4[n], b[n, m]
-            free = free and _clear(bar, half, corners, starts, radii, box, clearance, slack)
-            if len(outline):
-                bar[0], bar[1] = a[n, m], b[n, m]
-                free = free and _clear(bar, half, corners, starts, radii, box, clearance, slack)
-                for k in range(len(outline)):
-                    body[k] = p[n, m] + spin[n, m] * outline[k]
-                free = free and _clear(body, 0.0, corners, starts, radii, box, clearance, slack)
-            else:
-                hull[0], hull[1], hull[2] = a[n, m], b[n, m], p[n, m]
-                free = free and _clear(hull, half, corners, starts, radii, box, clearance, slack)
+            free = free and _clear(bar, half, corners, starts, radii, middles, reaches, clearance)
             if not free:
                 break
         out[n] = free
+
+
+@njit(**OPTIONS)
+def _boxed(core: Complex, half: float, box: Real, slack: float) -> bool:
+    """Whether a part lies in the box."""
+    for z in core:
+        if z.real - half < box[0] - slack or z.real + half > box[1] + slack:
+            return False
+        if z.imag - half < box[2] - slack or z.imag + half > box[3] + slack:
+            return False
+    return True
 
 
 @njit(**OPTIONS)
@@ -131,17 +158,20 @@ def _clear(
     corners: Complex,
     starts: NDArray[np.int64],
     radii: Real,
-    box: Real,
+    middles: Complex,
+    reaches: Real,
     clearance: float,
-    slack: float,
 ) -> bool:
-    for n in range(len(core)):
-        z = core[n]
-        if z.real - half < box[0] - slack or z.real + half > box[1] + slack:
-            return False
-        if z.imag - half < box[2] - slack or z.imag + half > box[3] + slack:
-            return False
+    """Whether a part keeps clear of all obstacles; one without corners does."""
+    if not len(core):
+        return True
+    middle, reach = core.mean(), 0.0
+    for z in core:
+        reach = max(reach, abs(z - middle))
     for k in range(len(radii)):
-        if distance(core, corners[starts[k] : starts[k + 1]]) - half - radii[k] < clearance:
+        wanted = clearance + half + radii[k]
+        if abs(middle - middles[k]) - reach - reaches[k] >= wanted:
+            continue
+        if distance(core, corners[starts[k] : starts[k + 1]]) < wanted:
             return False
     return True

@@ -23,6 +23,7 @@ from synthesis.kinds.motion.design import BurmesterBranch, MotionResult
 from synthesis.kinds.motion.drawn_poses import solve_drawn
 from synthesis.kinds.motion.driver_dyad import undriven, with_driver_dyads
 from synthesis.kinds.motion.dyads import DyadConditions
+from synthesis.kinds.motion.in_room import solve_in_room
 from synthesis.kinds.motion.least_squares import solve_least_squares
 from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
 from synthesis.kinds.motion.problem import MotionProblem
@@ -59,6 +60,8 @@ def solve_motion(problem: MotionProblem, progress: Progress) -> MotionResult:
     if problem.driver is not None:
         bare = solve_motion(undriven(problem), part_of(progress, 0.0, 0.8))
         return with_driver_dyads(problem, bare, progress)
+    if problem.steered_in_room:
+        return _in_room(problem, progress)
     if problem.approximate:
         return solve_least_squares(problem, progress)
     if problem.steered:
@@ -82,6 +85,15 @@ def continued(
     search = Sifting[LinkageDesign](bare).search("tolerance_search")
     result = MotionResult(designs=found, curves=[], search=search, summary="")
     return list(with_driver_dyads(problem, result, progress).designs)
+
+
+def _in_room(problem: MotionProblem, progress: Progress) -> MotionResult:
+    """Positions of which some have tolerances, in a room; what is fitted without it only where nothing else is."""
+    exact = None if problem.approximate else _exact(problem, part_of(progress, 0.0, 0.3))
+    found = solve_in_room(problem, exact, part_of(progress, 0.3, 0.8))
+    if any(design.verification.passed for design in found.designs) or not problem.approximate:
+        return found
+    return solve_least_squares(problem, part_of(progress, 0.8, 1.0))
 
 
 def _exact(problem: MotionProblem, progress: Progress) -> MotionResult:

@@ -7,6 +7,7 @@ inequalities of :mod:`synthesis.numerics.augmented_lagrangian`:
 =================== ==== ============================================================
 demand              g, h margin
 =================== ==== ============================================================
+room                g    of :mod:`synthesis.fit.room_margins`, if there is one
 tolerance           g    1 ∓ deviation
 pivot regions       g    distance from each side of a box; moving pivots in the first pose
 link lengths        g    ln(l / least), ln(most / l)
@@ -21,7 +22,8 @@ stated coordinates  h    distance along each axis; of fixed pivots from the grou
 
 What is made least keeps the linkage usable: cosines of transmission angles, lengths of links, and deviations; and, with
 a weight, near to where it started, so that many starts lead to different linkages. Derivatives are central
-differences: a fourbar has no more than twenty unknowns, and what is differenced is smooth.
+differences: a fourbar has few unknowns, and what is differenced is smooth. Those of a room come from its own rows
+(:mod:`synthesis.kinds.motion.steered_room`).
 """
 
 from __future__ import annotations
@@ -32,6 +34,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synthesis.fit.room_margins import margins_of
+from synthesis.kinds.motion.steered_room import steered_room_rows
 from synthesis.numerics.augmented_lagrangian import limit_rows
 from synthesis.numerics.levenberg import ROWS
 
@@ -44,7 +48,8 @@ DIRECTION, ASSEMBLY, SHORTEST, COSINE, LINKS, RATIO, BOXES, GIVEN, LINE, HOME, W
 (0 to 3 for d, a, b, c; −1 where none is), cosine of the least transmission angle, least and most length (0 and infinite
 where open), link ratio (infinite where open), boxes (x from, to, y from, to) of O2, O4, A and B, stated
 coordinates of the same (NaN where open), the ground line (unit normal and offset; NaN where open), the pivots to stay
-near to and the weight of that, and from there on the input's turn from each pose to the next, to half a turn."""
+near to and the weight of that, from there on the input's turn from each pose to the next, to half a turn, and last the
+room (:mod:`synthesis.fit.room`), if there is one."""
 
 OTHERS = 14 + 8
 """Number of residuals beside those of deviations."""
@@ -210,11 +215,14 @@ def steered_rows(
     """Residuals and limits with their Jacobian; see :data:`synthesis.numerics.levenberg.ROWS`.
 
     ``points`` are rows (x, y, angle, and the tolerance of each; 0 where it is held) in task units and radians;
-    ``state`` is the margins alone.
+    ``state`` is the margins alone, those of the room first.
     """
     n, unknowns = len(points), x.size
     count = limits(n)
-    rows = _evaluated(x, points, setting, residuals, state)
+    steps, room = setting[STEPS : STEPS + n - 1], setting[STEPS + n - 1 :]
+    roomy = margins_of(room)
+    own = state[roomy:]
+    rows = _evaluated(x, points, setting, residuals, own)
     if rows < 0:
         return -1
     gradients = np.zeros((count, unknowns))
@@ -233,12 +241,18 @@ def steered_rows(
             jacobian[k, i] = (ahead[k] - behind[k]) / (2.0 * DIFFERENCE)
         for k in range(count):
             # A passage of the ground line that begins or ends within the difference has no margin on one side.
-            if state[k] == np.inf or (further[k] == np.inf and back[k] == np.inf):
+            if own[k] == np.inf or (further[k] == np.inf and back[k] == np.inf):
                 continue
             if back[k] == np.inf:
-                gradients[k, i] = (further[k] - state[k]) / DIFFERENCE
+                gradients[k, i] = (further[k] - own[k]) / DIFFERENCE
             elif further[k] == np.inf:
-                gradients[k, i] = (state[k] - back[k]) / DIFFERENCE
+                gradients[k, i] = (own[k] - back[k]) / DIFFERENCE
             else:
                 gradients[k, i] = (further[k] - back[k]) / (2.0 * DIFFERENCE)
-    return int(limit_rows(state, gradients, equations(n), multipliers, residuals, jacobian, rows))
+    if roomy > 0:
+        rows = steered_room_rows(
+            x, points, setting[ASSEMBLY], steps, room, multipliers, state[:roomy], residuals, jacobian, rows
+        )
+        if rows < 0:
+            return -1
+    return int(limit_rows(own, gradients, equations(n), multipliers[roomy:], residuals, jacobian, rows))

@@ -94,9 +94,9 @@ def starts(problem: MotionProblem, task: MotionTask, tolerances: Real, count: in
     inputs = _side(task, poses, sides[0], areas[0], rng)
     alike = sides[0] == sides[1] and areas[0] == areas[1]
     outputs = inputs if alike else _side(task, poses, sides[1], areas[1], rng)
-    eased = _eased(problem.constraints)
+    softened = eased(problem.constraints)
     limit = problem.constraints.min_transmission_angle or 0.0
-    wanted = demands(eased, task, EASED_ANGLE * limit, problem.rank_by)
+    wanted = demands(softened, task, EASED_ANGLE * limit, problem.rank_by)
     chosen: list[tuple[Real, Complex, NDArray[np.int64]]] = []
     for k, (one, other) in enumerate(zip(inputs, outputs, strict=True)):
         if not len(one.dyads.fixed) or not len(other.dyads.fixed):
@@ -157,15 +157,7 @@ def _side(
     task: MotionTask, poses: Real, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator
 ) -> list[_Drawn]:
     """The dyads of one side for each set."""
-    count = len(poses) * DRAWN
-    fixed = _drawn(task, areas.fixed, complex(task.points.mean()), rng, count)
-    moving = _drawn(task, areas.moving, complex(task.points[0]), rng, count)
-    stated = [stated_pivot(task, choices, fixed=side) for side in (True, False)]
-    free = np.repeat([pivot is None for pivot in stated], 2).astype(np.float64)
-    if stated[0] is not None:
-        fixed[:] = stated[0]
-    if stated[1] is not None:
-        moving[:] = stated[1]
+    fixed, moving, free = drawn_pivots(task, choices, areas, rng, len(poses) * DRAWN)
     of = np.repeat(np.arange(len(poses)), DRAWN)
     places, spins = poses[..., 0] + 1j * poses[..., 1], np.exp(1j * poses[..., 2])
     fixed, moving, off = _brought(places[of], spins[of], fixed, moving - task.points[0], free)
@@ -182,6 +174,21 @@ def _side(
         dyads = Dyads(fixed[best].copy(), pins[best].copy())
         found.append(_Drawn(dyads, 1.0 / (1.0 + (astray[best] / ASTRAY) ** 2)))
     return found
+
+
+def drawn_pivots(
+    task: MotionTask, choices: DyadChoices, areas: SideAreas, rng: np.random.Generator, count: int
+) -> tuple[Complex, Complex, Real]:
+    """Fixed and moving pivots (the body in its first demanded pose) as they are stated, or drawn; and 1 for each of
+    their four coordinates that is not stated, else 0."""
+    fixed = _drawn(task, areas.fixed, complex(task.points.mean()), rng, count)
+    moving = _drawn(task, areas.moving, complex(task.points[0]), rng, count)
+    stated = [stated_pivot(task, choices, fixed=side) for side in (True, False)]
+    if stated[0] is not None:
+        fixed[:] = stated[0]
+    if stated[1] is not None:
+        moving[:] = stated[1]
+    return fixed, moving, np.repeat([pivot is None for pivot in stated], 2).astype(np.float64)
 
 
 def _drawn(task: MotionTask, areas: tuple[Area, ...], centre: complex, rng: np.random.Generator, count: int) -> Complex:
@@ -234,7 +241,7 @@ def _brought(
     return fixed, arms, off
 
 
-def _eased(constraints: Constraints) -> Constraints:
+def eased(constraints: Constraints) -> Constraints:
     """Constraints by which starts are screened; regions are looked at apart."""
     lengths, ratio = constraints.link_length, constraints.max_link_ratio
     if lengths is not None:

@@ -31,7 +31,7 @@ from synthesis.fit.demands import (
     WHOLE,
     margins,
 )
-from synthesis.fit.fourbar_room import fourbar_margins
+from synthesis.fit.fourbar_room import NO_BODY, fourbar_margins
 from synthesis.fit.room_margins import ROW, margins_of
 from synthesis.kinds.path.curve_descent import Descent
 from synthesis.kinds.path.held import held
@@ -208,7 +208,8 @@ def all_broken(family: int, x: Real, theta: Real, sign: Real, setting: Real) -> 
             if values[k] < np.inf:
                 worst[i] = max(worst[i], abs(values[k]) if k >= LIMITS - EQUATIONS else -values[k])
         if roomy > 0:
-            closes = fourbar_margins(x[i], lengths, sign[i], ends, setting[WHOLE] > 0.0, room, kept, rows)
+            turns_through = setting[WHOLE] > 0.0
+            closes = fourbar_margins(x[i], lengths, sign[i], ends, turns_through, NO_BODY, room, kept, rows)
             worst[i] = max(worst[i], -kept.min()) if closes else np.inf
     return worst
 

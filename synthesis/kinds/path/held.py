@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from synthesis.fit import held as fit
 from synthesis.fit.demands import EQUATIONS
-from synthesis.fit.room import AIM
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.limits import LIMIT_WEIGHT, SETTING, limits_of
 from synthesis.kinds.path.point_rows import path_rows
-from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS, VIOLATION_TOLERANCE, hold
+from synthesis.numerics.augmented_lagrangian import MAX_ROUNDS, MAX_STEPS
 from synthesis.numerics.status import Status
 
 Real = NDArray[np.float64]
 
 ROUNDS, STEPS = 8, 80
 """Descents in a room, and steps of each, at most: its margins take thirty times as long as all other demands."""
-
-NEARLY = 0.5 * AIM
-"""Violation of a room, in task sizes, that is none: it is aimed at more narrowly than it is checked."""
 
 
 def held(x: Real, rows: Real, setting: Real, state: Real) -> tuple[Status, float]:
@@ -39,17 +34,10 @@ def held(x: Real, rows: Real, setting: Real, state: Real) -> tuple[Status, float
         With the crank angles first; changed.
     """
     limits, roomy = limits_of(setting), int(margins_of(setting[SETTING:]))
-    most, ended = 2 * len(rows) + limits, np.empty(1)
     rounds, steps = (ROUNDS, STEPS) if roomy else (MAX_ROUNDS, MAX_STEPS)
-    status = Status(
-        hold(path_rows, x, rows, setting, state, most, limits, EQUATIONS, LIMIT_WEIGHT, rounds, steps, ended)
-    )
-    if roomy and status is Status.INFEASIBLE:
-        # A least distance has kinks, at which multipliers do not come to rest.
-        margins = state[len(state) - limits :]
-        room, demands = margins[:roomy], margins[roomy:]
-        equations = np.abs(demands[-EQUATIONS:])
-        off = max(-float(demands[:-EQUATIONS].min()), float(equations[np.isfinite(equations)].max(initial=0.0)))
-        if off <= 10.0 * VIOLATION_TOLERANCE and -float(room.min()) <= NEARLY and math.isfinite(ended[0]):
-            status = Status.STEP_LIMIT
-    return status, float(ended[0])
+    most = 2 * len(rows) + limits
+    return fit.held(
+        path_rows, x, rows, setting, state,
+        most=most, roomy=roomy, limits=limits, equations=EQUATIONS, weight=LIMIT_WEIGHT, rounds=rounds,
+        steps=steps,
+    )  # fmt: skip

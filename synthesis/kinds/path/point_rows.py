@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from synthesis.fit.chart import FOURBAR, LENGTHS, natural
 from synthesis.fit.coupler_curve import fourbar_velocity, place_with_slopes
 from synthesis.fit.demands import EQUATIONS, FAMILY, LIMITS, SIGN, WHOLE, margins
-from synthesis.fit.fourbar_room import room_rows
+from synthesis.fit.fourbar_room import NO_BODY, room_rows
 from synthesis.fit.room_margins import margins_of
 from synthesis.kinds.path.assignment import pool
 from synthesis.kinds.path.limits import ABSOLUTE, ORDERED, PHASED, SETTING, TIMED
@@ -215,7 +215,7 @@ def path_rows(
         kept = state[state.size - LIMITS - roomy : state.size - LIMITS]
         whole = setting[WHOLE] > 0.0
         m = room_rows(
-            x, lengths, slopes, sign, ends, turns, whole, room, multipliers, kept, residuals, jacobian, m
+            x, lengths, slopes, sign, ends, turns, whole, NO_BODY, room, multipliers, kept, residuals, jacobian, m
         )  # fmt: skip
         if m < 0:
             return -1

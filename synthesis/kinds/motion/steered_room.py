@@ -1,0 +1,258 @@
+"""The room of a linkage that is steered: its margins along the motion from the first target to the last.
+
+Pivots and poses are taken to the chart of a fourbar that carries a body (:mod:`synthesis.fit.fourbar_room`), where the
+margins and their derivatives are; the chart, a few numbers, is differenced. A motion begins and ends where the finished
+linkage meets its first and its last target: at the input at which the greatest share of a tolerance is least. With
+shares s_i(φ) that is met by steps δ to the least of max |s_i + s_i' δ|, which lies where one of these lines is zero or
+two are equally far from it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
+from synthesis.fit.coupler_curve import two_bars, unit
+from synthesis.fit.fourbar_room import LINKAGE, fourbar_margins, room_rows
+from synthesis.fit.room_margins import ROW, margins_of
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+BODY, ENDS, CHART = LINKAGE, LINKAGE + 1, LINKAGE + 3
+"""Places in a chart, behind the fourbar's own (lengths themselves, not their logarithms): the direction of A → B on the
+body as it is drawn, and the crank's angles from the ground line at both ends; and how many numbers a chart has."""
+
+DIFFERENCE = 1e-6
+"""Change of an unknown over which the chart is differenced."""
+
+NEAREST_STEPS, GREATEST_STEP, SAME_ANGLE = 12, 0.1, 1e-13
+"""Steps to the nearest input at most, radians of one at most, and those of one that is none."""
+
+AROUND = 4
+"""Greatest steps either way of a pose at which the nearest input is looked for at first."""
+
+
+@njit(**OPTIONS)
+def _pose(x: Real, points: Real, k: int, pose: Real) -> None:
+    """Pose k with its deviations, which stand behind the eight coordinates of the pivots; written."""
+    at = 8
+    for j in range(k + 1):
+        for c in range(3):
+            if j == k:
+                pose[c] = points[k, c]
+            if points[j, 3 + c] > 0.0:
+                if j == k:
+                    pose[c] += points[k, 3 + c] * x[at]
+                at += 1
+
+
+@njit(**OPTIONS)
+def chart_of(x: Real, points: Real, assembly: float, steps: Real, beyond: Real, chart: Real) -> bool:
+    """The chart of steered unknowns, written; False where a link has no length.
+
+    Parameters
+    ----------
+    x, points : float64
+        As for :func:`synthesis.kinds.motion.steered_rows.steered_rows`.
+    assembly : float
+        Sign of the assembly.
+    steps : float64, shape (n − 1,)
+        The input's turn from each pose to the next, to half a turn.
+    beyond : float64, shape (2,)
+        How far beyond the first pose and the last the motion begins and ends, radians: where that is looked for, and
+        written. Not a number where it is to be looked for all around.
+    chart : float64, shape (CHART,)
+        Written.
+    """
+    n = len(points)
+    o2, o4 = complex(x[0], x[1]), complex(x[2], x[3])
+    home = complex(points[0, 0], points[0, 1])
+    arm_a, arm_b = complex(x[4], x[5]) - home, complex(x[6], x[7]) - home
+    pose, turned = np.empty(3), 0.0
+    _pose(x, points, 0, pose)
+    p = complex(pose[0], pose[1])
+    a, b = p + unit(pose[2]) * arm_a, p + unit(pose[2]) * arm_b
+    crank = a - o2
+    for k in range(1, n):
+        _pose(x, points, k, pose)
+        after = complex(pose[0], pose[1]) + unit(pose[2]) * arm_a - o2
+        step = after * crank.conjugate()
+        off = math.atan2(step.imag, step.real) - steps[k - 1]
+        turned += steps[k - 1] + off - 2.0 * math.pi * round(off / (2.0 * math.pi))
+        crank = after
+    ground, bar = o4 - o2, arm_b - arm_a
+    lengths = chart[LENGTHS : LENGTHS + 4]
+    lengths[0], lengths[1], lengths[2], lengths[3] = abs(ground), abs(a - o2), abs(bar), abs(b - o4)
+    if not lengths.min() > 0.0:
+        return False
+    own = (p - a) * (b - a).conjugate() / lengths[2]
+    chart[0], chart[1], chart[2] = o2.real, o2.imag, math.atan2(ground.imag, ground.real)
+    chart[POINT], chart[POINT + 1], chart[BODY] = own.real, own.imag, math.atan2(bar.imag, bar.real)
+    first = (a - o2) * ground.conjugate()
+    begin = math.atan2(first.imag, first.real)
+    for end in range(2):
+        angle, row = (begin, points[0]) if end == 0 else (begin + turned, points[n - 1])
+        chart[ENDS + end] = _nearest(chart, assembly, angle, beyond[end], row)
+        beyond[end] = chart[ENDS + end] - angle
+    return True
+
+
+@njit(**OPTIONS)
+def _nearest(chart: Real, assembly: float, angle: float, beyond: float, row: Real) -> float:
+    """The crank angle beside one at which the greatest share of a pose's tolerances is least; the same angle where a
+    coordinate of the pose is held, which decides then. ``beyond`` is as for :func:`chart_of`."""
+    if not row[3:].min() > 0.0:
+        return angle
+    shares, slopes = np.empty(3), np.empty(3)
+    ahead, after = np.empty(3), np.empty(3)
+    missed, at = np.inf, angle
+    for k in range(1 if beyond == beyond else 2 * AROUND + 1):
+        tried = angle + (beyond if beyond == beyond else GREATEST_STEP * ((k + 1) // 2) * (1 if k % 2 else -1))
+        if _shares(chart, assembly, tried, row, ahead, after) and np.abs(ahead).max() < missed:
+            missed, at = np.abs(ahead).max(), tried
+            shares[:], slopes[:] = ahead, after
+    if missed == np.inf:
+        return angle
+    angle = at
+    for _ in range(NEAREST_STEPS):
+        step = min(max(_evened(shares, slopes), -GREATEST_STEP), GREATEST_STEP)
+        while abs(step) > SAME_ANGLE:
+            closes = _shares(chart, assembly, angle + step, row, ahead, after)
+            if closes and np.abs(ahead).max() < missed:
+                break
+            step *= 0.25
+        if abs(step) <= SAME_ANGLE:
+            break
+        angle += step
+        shares[:], slopes[:] = ahead, after
+        missed = np.abs(shares).max()
+    return angle
+
+
+@njit(**OPTIONS)
+def _evened(shares: Real, slopes: Real) -> float:
+    """δ at which max |s_i + s_i' δ| is least."""
+    best, least = 0.0, np.abs(shares).max()
+    for i in range(len(shares)):
+        for j in range(i + 1):
+            for sign in (-1.0, 1.0):
+                share, slope = shares[i] - sign * shares[j], slopes[i] - sign * slopes[j]
+                if i == j:
+                    share, slope = shares[i], slopes[i]
+                if slope == 0.0:
+                    continue
+                step = -share / slope
+                greatest = np.abs(shares + slopes * step).max()
+                if greatest < least:
+                    best, least = step, greatest
+    return best
+
+
+@njit(**OPTIONS)
+def _shares(chart: Real, assembly: float, angle: float, row: Real, shares: Real, slopes: Real) -> bool:
+    """Deviations from a pose in its tolerances, and their derivatives by the crank's angle; False where the linkage
+    does not close."""
+    lengths = chart[LENGTHS : LENGTHS + 4]
+    ground = lengths[0] * unit(chart[2])
+    crank = lengths[1] * unit(chart[2] + angle)
+    closes, along = two_bars(ground - crank, lengths[2], lengths[3], assembly)
+    if not closes:
+        return False
+    last = crank + lengths[2] * along - ground
+    turn = -(last.conjugate() * 1j * crank).real / (last.conjugate() * 1j * lengths[2] * along).real
+    arm = complex(chart[POINT], chart[POINT + 1]) * along
+    place = complex(chart[0], chart[1]) + crank + arm
+    moves = 1j * (crank + turn * arm)
+    off = math.atan2(along.imag, along.real) - chart[BODY] - row[2]
+    off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+    shares[0], shares[1], shares[2] = (place.real - row[0]) / row[3], (place.imag - row[1]) / row[4], off / row[5]
+    slopes[0], slopes[1], slopes[2] = moves.real / row[3], moves.imag / row[4], turn / row[5]
+    return True
+
+
+@njit(**OPTIONS)
+def steered_room_rows(
+    x: Real,
+    points: Real,
+    assembly: float,
+    steps: Real,
+    room: Real,
+    multipliers: Real,
+    values: Real,
+    residuals: Real,
+    jacobian: Real,
+    m: int,
+) -> int:
+    """Append the rows of a room's margins that bear a load; returns the number of rows, −1 where the motion does not
+    close.
+
+    Parameters
+    ----------
+    x, points, assembly, steps
+        As for :func:`chart_of`.
+    room, multipliers, values
+        As for :func:`synthesis.fit.fourbar_room.room_rows`.
+    residuals, jacobian, m
+        As for :func:`synthesis.numerics.augmented_lagrangian.limit_rows`.
+    """
+    chart, turns, beyond = np.empty(CHART), np.zeros((2, CHART)), np.full(2, np.nan)
+    if not chart_of(x, points, assembly, steps, beyond, chart):
+        return -1
+    turns[0, ENDS], turns[1, ENDS + 1] = 1.0, 1.0
+    by_chart = np.empty((margins_of(room), CHART))
+    count: int = room_rows(
+        chart, chart[LENGTHS : LENGTHS + 4].copy(), np.eye(4), assembly, chart[ENDS : ENDS + 2].copy(), turns, False,
+        BODY, room, multipliers, values, residuals[m:], by_chart, 0,
+    )  # fmt: skip
+    if count <= 0:
+        return m if count == 0 else -1
+    changed, ahead, behind = x.copy(), np.empty(CHART), np.empty(CHART)
+    jacobian[m : m + count] = 0.0
+    for i in range(len(x)):
+        changed[i] = x[i] + DIFFERENCE
+        if not chart_of(changed, points, assembly, steps, beyond.copy(), ahead):
+            return -1
+        changed[i] = x[i] - DIFFERENCE
+        if not chart_of(changed, points, assembly, steps, beyond.copy(), behind):
+            return -1
+        changed[i] = x[i]
+        for j in range(CHART):
+            change = ahead[j] - behind[j]
+            if j == 2 or j >= BODY:
+                change -= 2.0 * math.pi * round(change / (2.0 * math.pi))
+            change /= 2.0 * DIFFERENCE
+            if change != 0.0:
+                for k in range(count):
+                    jacobian[m + k, i] += by_chart[k, j] * change
+    return m + count
+
+
+@njit(**OPTIONS)
+def least_margins(x: Real, points: Real, assemblies: Real, steps: Real, room: Real) -> Real:
+    """The least margin of each of many linkages, −∞ of one whose motion does not close.
+
+    Parameters
+    ----------
+    x : float64, shape (m, unknowns)
+        Of each linkage.
+    points : float64, shape (n, 6)
+        Of all.
+    assemblies, steps : float64, shapes (m,) and (m, n − 1)
+        Of each, as for :func:`chart_of`.
+    room : float64
+        Not empty.
+    """
+    least, chart = np.full(len(x), -np.inf), np.empty(CHART)
+    values, rows = np.empty(margins_of(room)), np.empty((margins_of(room), ROW))
+    for k in range(len(x)):
+        if not chart_of(x[k], points, assemblies[k], steps[k], np.full(2, np.nan), chart):
+            continue
+        lengths, ends = chart[LENGTHS : LENGTHS + 4].copy(), chart[ENDS : ENDS + 2].copy()
+        if fourbar_margins(chart, lengths, assemblies[k], ends, False, BODY, room, values, rows):
+            least[k] = values.min()
+    return least

@@ -1,0 +1,135 @@
+"""Positions with tolerances in a room: slopes of margins, where a motion ends, and planted tasks held by shapely."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmarks.fit.motion import GROUPS, statement
+from benchmarks.fit.task import generator
+from benchmarks.fit.verdict import violations
+from synthesis.dispatch import solve
+from synthesis.fit.room_margins import margins_of
+from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.room_starts import pairs_in_room
+from synthesis.kinds.motion.steered_fit import Steered, begun, demanded_rows, driven, room_left, room_of
+from synthesis.kinds.motion.steered_room import CHART, ENDS, chart_of
+from synthesis.kinds.motion.steered_rows import ASSEMBLY, OTHERS, STEPS, limits, steered_rows
+from synthesis.kinds.motion.task import MotionTask, Real, motion_task
+from synthesis.kinds.motion.verification import demanded
+from synthesis.registry import parse_problem
+from tests.campaign import further
+
+POSITIONS = [
+    {"x": 0.0, "y": 0.0, "angle": 0.0},
+    {"x": 60.0, "y": 50.0, "angle": 25.0, "tolerance": {"x": 12.0, "y": 12.0, "angle": 8.0}},
+    {"x": 90.0, "y": 130.0, "angle": 60.0, "tolerance": {"x": 12.0, "y": 12.0, "angle": 8.0}},
+]
+
+SPACE: dict[str, Any] = {
+    "fixed_pivots": {"input": {"circle": {"center": [-60, 80], "radius": 30}}},
+    "moving_pivots": {"output": {"polygon": [[-80, -60], [0, -60], [0, 20], [-80, 20]], "frame": "body"}},
+    "box": [[-160, -90], [150, 190]],
+    "body": {"outline": [[-10, -40], [10, -40], [10, 40], [-10, 40]]},
+    "obstacles": [{"circle": {"center": [0, 120], "radius": 40}}, {"polygon": [[60, -60], [140, -60], [140, 20]]}],
+    "clearance": 4.0,
+    "link_width": 8.0,
+}
+
+
+def begun_in_room(over: str) -> tuple[MotionProblem, MotionTask, Real, list[Steered]]:
+    """Linkages that are to be steered into the room above."""
+    stated = {"kind": "motion", "positions": POSITIONS, "space": {**SPACE, "over": over}}
+    problem = parse_problem(stated)
+    assert isinstance(problem, MotionProblem)
+    task = motion_task(problem)
+    rows, room = demanded_rows(problem, task), room_of(problem, task)
+    listed, scores = pairs_in_room(problem, task, rows)
+    assert len(listed) == len(scores) > 50
+    assert list(scores) == sorted(scores, reverse=True)
+    return problem, task, rows, [begun(problem, task, rows, start, room) for start in listed[:200:25]]
+
+
+def evaluated(linkage: Steered, x: Real, rows: Real) -> tuple[Real, Real, Real]:
+    """All margins, and residuals and slopes of those of the room that bear a load."""
+    n = len(rows)
+    roomy = margins_of(linkage.setting[STEPS + n - 1 :])
+    count = roomy + limits(n)
+    multipliers, state = np.zeros(count + 1), np.empty(count)
+    multipliers[count] = 1.0
+    residuals = np.zeros(len(x) + OTHERS + count)
+    jacobian = np.zeros((len(residuals), len(x)))
+    assert steered_rows(x, rows, linkage.setting, multipliers, state, residuals, jacobian) > 0
+    first = len(x) - 8 + OTHERS
+    loaded = int(np.count_nonzero(state[:roomy] < 0.0))
+    return state[:roomy], residuals[first : first + loaded], jacobian[first : first + loaded]
+
+
+@pytest.mark.parametrize(("over", "share"), [("used", 0.85), ("cycle", 0.7)])
+def test_rows_of_a_room_have_the_slopes_of_differences(over: str, share: float) -> None:
+    agreed = looked_at = 0
+    _, _, rows, linkages = begun_in_room(over)
+    for linkage in linkages:
+        values, residuals, jacobian = evaluated(linkage, linkage.x, rows)
+        loaded = np.flatnonzero(values < 0.0)
+        assert residuals == pytest.approx(-values[loaded])
+        differences = np.empty((len(loaded), len(linkage.x)))
+        for i in range(len(linkage.x)):
+            step = np.zeros(len(linkage.x))
+            step[i] = 1e-6
+            after, before = (evaluated(linkage, linkage.x + way * step, rows)[0] for way in (1.0, -1.0))
+            differences[:, i] = (after[loaded] - before[loaded]) / 2e-6
+        # The angle at a toggle, where a cycle may end, moves with the lengths; its slope is left out.
+        agreed += int((np.abs(jacobian + differences).max(axis=1) < 1e-3).sum())
+        looked_at += len(loaded)
+    assert looked_at > 30
+    # At a kink a difference is the slope of neither side.
+    assert agreed > share * looked_at
+
+
+def test_a_motion_ends_where_the_greatest_share_of_a_tolerance_is_least() -> None:
+    problem, task, rows, linkages = begun_in_room("used")
+    target, ended = demanded(problem), 0
+    for linkage in linkages:
+        design = driven(problem, task, rows, linkage.x, target)
+        if design is None or isinstance(design, str) or not design.verification.passed:
+            continue
+        chart, beyond = np.empty(CHART), np.full(2, np.nan)
+        steps = linkage.setting[STEPS : STEPS + len(rows) - 1].copy()
+        assert chart_of(linkage.x, rows, linkage.setting[ASSEMBLY], steps, beyond, chart)
+        mine = np.degrees(chart[ENDS : ENDS + 2] + chart[2])
+        off = mine - np.array([design.targets[0].input_angle, design.targets[-1].input_angle])
+        # A start meets its poses to first order only, and the drive goes by the finished linkage.
+        assert np.abs(off - 360.0 * np.round(off / 360.0)).max() < 1.0
+        ended += 1
+    assert ended > 2
+
+
+def test_what_lacks_nothing_of_the_room_is_found_to_fit() -> None:
+    """The least margin of a finished linkage says what the sweep says, but for the narrow aim."""
+    stated = {**statement(generator(1, 6), *GROUPS[6]), "max_designs": 2}
+    problem = parse_problem(stated)
+    assert isinstance(problem, MotionProblem)
+    task = motion_task(problem)
+    rows, room = demanded_rows(problem, task), room_of(problem, task)
+    listed, _ = pairs_in_room(problem, task, rows)
+    linkages = [begun(problem, task, rows, start, room) for start in listed[:40]]
+    left = room_left(linkages, rows, room)
+    assert np.isfinite(left).sum() > 20
+    assert (left < 0.0).sum() > 10
+    assert np.isinf(room_left(linkages, rows, np.zeros(0))).all()
+
+
+@pytest.mark.parametrize("number", further(range(4, 27), [6, 8]))
+def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
+    stated = {**statement(generator(1, number), *GROUPS[number % len(GROUPS)]), "max_designs": 2}
+    result = solve(parse_problem(stated))
+    passed = [design for design in result.designs if design.verification.passed]
+    assert passed
+    assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
+    for design in passed:
+        assert violations(stated, design) == []
+    assert math.isfinite(passed[0].metrics.quality)
