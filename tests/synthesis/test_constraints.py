@@ -285,9 +285,12 @@ CLASSES = ["crank_rocker", "double_crank", "double_rocker", "non_grashof"]
 @pytest.mark.parametrize(
     ("name", "wanted"),
     often(
-        (name, wanted)
-        for name in CASES
-        for wanted in (CLASSES[:1] if name in SEARCHED | {"function", "fitted motion"} else CLASSES)
+        (
+            (name, wanted)
+            for name in CASES
+            for wanted in (CLASSES[:1] if name in SEARCHED | {"function", "fitted motion"} else CLASSES)
+        ),
+        in_turn=3,
     ),
 )
 def test_classes_of_fourbars(name: str, wanted: str) -> None:
