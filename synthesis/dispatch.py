@@ -6,14 +6,15 @@ from typing import Any
 
 from kinematics.linkage import warm
 from synthesis.model.answer import Result
-from synthesis.model.kind import Progress, part_of
+from synthesis.model.kind import Kind, Progress, part_of
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
 from synthesis.outcome.forces import all_with_forces
 from synthesis.outcome.front import front_of
 from synthesis.outcome.layout import all_laid_out
 from synthesis.outcome.manufacture import all_made
-from synthesis.outcome.measured_order import LOOKED_AT, least_first, searched_for, searched_on
+from synthesis.outcome.measured_order import GRIDDED, LOOKED_AT, in_order, least_first, searched_for, searched_on
+from synthesis.outcome.rounding import on_grid
 from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
@@ -56,6 +57,8 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
         if problem.rank_by in LOOKED_AT:
             measured = _measured(problem, result, problem.rank_by)
             result = searched_on(problem, measured, lambda narrower: kind.solve(narrower, _silent))
+        if problem.manufacture is not None and problem.manufacture.gridded:
+            result = _rounded(problem, result, kind)
         designs, remark = usable_first(searched_for(problem), result.designs)
         if problem.rank_by in LOOKED_AT:
             result = least_first(problem, result.model_copy(update={"designs": designs}))
@@ -74,6 +77,16 @@ def _measured(problem: LinkageProblem, result: Result[Any], *orders: str) -> Res
     if "yield" in orders and problem.manufacture is not None:
         result = all_made(problem, result)
     return all_with_forces(problem, result) if set(FORCES) & set(orders) else result
+
+
+def _rounded(problem: LinkageProblem, result: Result[Any], kind: Kind[Any, Any]) -> Result[Any]:
+    """An answer with linkages on the grid; where what is measured orders designs, with those near the first of them."""
+    if problem.rank_by not in LOOKED_AT:
+        return on_grid(problem, result, kind.nearly)
+    first = in_order(problem, result.designs)[: max(problem.max_designs, GRIDDED)]
+    every = problem.model_copy(update={"max_designs": len(first) or 1})
+    rounded = on_grid(every, result.model_copy(update={"designs": first}), kind.nearly)
+    return _measured(problem, rounded, problem.rank_by)
 
 
 def _relaxed(problem: StatedProblem, result: Result[Any], found: Relaxation) -> Result[Any]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.variation import Task, deviations
 from kinematics.linkage.variation.driven import Sort
-from synthesis.model.manufacture import Held, Manufacture
+from synthesis.model.manufacture import Held, Manufacture, Quality
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -156,6 +156,38 @@ class Product:
         return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
 
 
+def demanded(
+    linkage: Linkage, held: Held, units: tuple[float, float], used: tuple[float, float] | None
+) -> tuple[Task, Real] | str:
+    """The task of what a linkage is held to, its inputs as drawn, and its errors there (t, 3); or why there is none."""
+    count = len(held.inputs)
+    sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
+    task = Task(
+        sort,
+        np.full(count, linkage.sign, np.int64),
+        held.inputs,
+        slide_angle=linkage.slide_angle,
+        points=held.points,
+        angles=held.angles,
+        travels=held.travels,
+        origin=linkage.foot,
+        adjusted=False,
+        units=units,
+    )
+    row = linkage.row[: task.dimensions]
+    if sort == "poses":
+        angles = _coupler_angles(linkage, task, held)
+        if angles is None:
+            return "the linkage cannot be assembled in its reference"
+        task = dataclasses.replace(task, angles=angles)
+    if used is None:
+        task = dataclasses.replace(task, assemblies=_assemblies(task, row))
+    offsets = deviations(task, row[None]).offsets[0]
+    if not np.isfinite(offsets).all():
+        return "the linkage cannot be assembled at every target"
+    return dataclasses.replace(task, used=used), offsets
+
+
 def product(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float, float] | None) -> Product | str:
     """A linkage with what it is held to; in words why there is none.
 
@@ -170,52 +202,33 @@ def product(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float
     used : pair of float or None
         The range of the input on which it must stay on its branch, radians.
     """
-    count = len(held.inputs)
-    sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
-    task = Task(
-        sort,
-        np.full(count, linkage.sign, np.int64),
-        held.inputs,
-        slide_angle=linkage.slide_angle,
-        points=held.points,
-        angles=held.angles,
-        travels=held.travels,
-        origin=linkage.foot,
-        adjusted=False,
-        units=_units(stated, held),
-    )
-    row = linkage.row[: task.dimensions]
-    if sort == "poses":
-        angles = _coupler_angles(linkage, task, held)
-        if angles is None:
-            return "the linkage cannot be assembled in its reference"
-        task = dataclasses.replace(task, angles=angles)
-    if used is None:
-        task = dataclasses.replace(task, assemblies=_assemblies(task, row))
-    offsets = deviations(task, row[None]).offsets[0]
-    if not np.isfinite(offsets).all():
-        return "the linkage cannot be assembled at every target"
-    limits = np.full((count, 3), math.inf)
+    found = demanded(linkage, held, _units(stated, held), used)
+    if isinstance(found, str):
+        return found
+    task, offsets = found
+    limits = np.full(offsets.shape, math.inf)
     if held.limits is not None:
         limits = np.where((held.limits > 0.0) & np.isfinite(held.limits), held.limits, math.inf)
     own = np.where(np.isfinite(limits), offsets, 0.0)
-    adjusted = stated.input == "adjusted" or (stated.input is None and sort != "outputs" and held.free)
     task = dataclasses.replace(
         task,
-        used=used,
-        adjusted=adjusted,
+        adjusted=stated.input == "adjusted" or (stated.input is None and held.free),
         points=None if task.points is None else task.points + own[:, 0] + 1j * own[:, 1],
         angles=None if task.angles is None else task.angles + own[:, 2],
     )
     return Product(linkage, task, own, limits, held.around)
 
 
+def units_of(quality: Quality) -> tuple[float, float]:
+    """Its limits of distance and of angle, radians; infinite where none is stated."""
+    angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
+    return quality.max_error or math.inf, angle
+
+
 def _units(stated: Manufacture, held: Held) -> tuple[float, float]:
     """What errors are measured in: the quality; where none is stated, the size of the task and a radian."""
-    quality = stated.quality
-    if quality is not None and (quality.max_error is not None or quality.max_angle_error is not None):
-        angle = math.inf if quality.max_angle_error is None else math.radians(quality.max_angle_error)
-        return quality.max_error or math.inf, angle
+    if stated.quality is not None:
+        return units_of(stated.quality)
     places = held.points if held.points is not None else held.travels
     size = 1.0 if places is None else float(np.abs(places - places[0]).max())
     return size or 1.0, 1.0

@@ -56,6 +56,10 @@ class Kind(Generic[P, R]):
     nearer : callable, optional
         Designs of a statement by continuation from designs of a looser one, in a fraction of the time of a search: how
         a limit out of reach is approached. None for statements that it has none for; those are searched.
+    nearly : callable, optional
+        Measures a finished mechanism against a statement of which it meets as nearly as it can what designs must meet
+        exactly: from the statement, a design that does, and another mechanism, the design of that; None where it cannot
+        be driven.
     brief : callable, optional
         Whether the answer to a statement takes a fraction of a second, as a rule. The service computes such ones beside
         searches that take long; where it is left out none is brief.
@@ -69,6 +73,7 @@ class Kind(Generic[P, R]):
     verify: Callable[[P, Any], Any] | None = None
     nearer: Callable[[P, Sequence[Any], Progress], Sequence[Any] | None] | None = None
     brief: Callable[[P], bool] = never
+    nearly: Callable[[P, Any, Any], Any] | None = None
 
     @property
     def mechanisms(self) -> list[str]:

@@ -363,6 +363,20 @@ PEAKS = optional("Its forces; left out where the problem states no `dynamics`.")
 """The same field of every design."""
 
 
+class ExactDesign(Answer):
+    """The design that a linkage on the grid of a shop stands for, as it was found."""
+
+    mechanism: LinkageMechanism
+    rms_residual: float = Field(description="As that of the metrics.")
+    max_error: Length | None = optional("Greatest distance from a target.")
+    max_angle_error: Angle | None = optional("Greatest difference of an angle at a target, degrees.")
+    min_transmission_angle: Angle
+
+
+EXACT = optional("The design before it was rounded; left out where `manufacture` states neither `round` nor `stock`.")
+"""The same field of every design."""
+
+
 class LinkageDesign(Answer):
     """A mechanism with the proof of what it does."""
 
@@ -373,6 +387,7 @@ class LinkageDesign(Answer):
     layout: Layout | None = LAYOUT
     forces: DesignForces | None = PEAKS
     manufacture: Manufactured | None = MANUFACTURE
+    exact: ExactDesign | None = EXACT
 
 
 class Front(Answer):

@@ -174,6 +174,11 @@ class LinkageProblem(StatedProblem):
         """What is demanded at the targets of the task, for the block ``manufacture``; or why that is not built."""
         return f"is built for motion, path and function; {self.kind} does not take it"
 
+    @property
+    def guides_a_point(self) -> bool:
+        """Whether P is a dimension of its linkages."""
+        return True
+
     def held_to(self, _design: Any) -> Held:
         """What a design of this task is held to at its targets, where :attr:`made` says that there is such."""
         raise NotImplementedError(f"{self.kind} says nothing of its targets")

@@ -20,11 +20,29 @@ Real = NDArray[np.float64]
 
 MOST_SAMPLES = 1_000_000
 
+MOST_STOCK = 20
+"""Lengths of links that may be in stock."""
+
 MOST_DRIVEN = 5_000_000
 """Samples of a design times its targets: some seconds of one core."""
 
 CONFIDENCE = 0.99
 """Of the interval of a yield."""
+
+
+class Rounding(Statement):
+    """The grid of a shop: dimensions are whole multiples of these."""
+
+    length: PositiveLength = Field(description="Of every link, and of P's place on its link, along it and across.")
+    coordinates: PositiveLength = Field(description="Of fixed pivots, and of the offset of a slide.")
+
+
+class Stock(Statement):
+    """Links that there are."""
+
+    links: Annotated[list[PositiveLength], Field(min_length=1, max_length=MOST_STOCK)] = Field(
+        description="Lengths of moving links; every link of a design has one of them."
+    )
 
 
 class Tolerances(Statement):
@@ -60,6 +78,10 @@ class Quality(Statement):
 class Manufacture(Statement):
     """How a linkage is made, and what is asked of it as it is made (docs/manufacture.md)."""
 
+    round: Rounding | None = Field(
+        default=None, description="Find the best linkage on this grid beside each design; it is what is answered."
+    )
+    stock: Stock | None = Field(default=None, description="Find the best linkage of these links beside each design.")
     tolerances: Tolerances | None = None
     distribution: Literal["uniform", "normal"] = Field(
         default="uniform",
@@ -89,6 +111,11 @@ class Manufacture(Statement):
         """Whether there is a yield: something is off, and something is to be kept."""
         return self.tolerances is not None and self.quality is not None
 
+    @property
+    def gridded(self) -> bool:
+        """Whether designs are looked for on a grid, or of a stock."""
+        return self.round is not None or self.stock is not None
+
     def faults(self, task: Made) -> list[Contradiction]:
         """What no single field shows, with paths below the block."""
         listed = [*self._missing(), *self._beside(task)]
@@ -104,11 +131,13 @@ class Manufacture(Statement):
     def _missing(self) -> list[Contradiction]:
         """Blocks that say nothing, or ask what cannot be told."""
         tolerances, quality = self.tolerances, self.quality
-        if tolerances is None and quality is None:
-            return [Contradiction("", "says nothing of how it is made; state tolerances")]
-        if tolerances is None:
+        if tolerances is None and quality is None and not self.gridded:
+            return [Contradiction("", "says nothing of how it is made; state tolerances, round or stock")]
+        if tolerances is None and not self.gridded:
             return [Contradiction("/tolerances", "missing: a quality is kept or not by how exactly a linkage is made")]
-        if tolerances.length == 0.0 and tolerances.pivot == 0.0:
+        if tolerances is None and self.demanded_yield is not None:
+            return [Contradiction("/tolerances", "missing: what is made exactly has no yield")]
+        if tolerances is not None and tolerances.length == 0.0 and tolerances.pivot == 0.0:
             return [Contradiction("/tolerances", "nothing is off: state one above 0")]
         if quality is not None and quality.max_error is None and quality.max_angle_error is None:
             return [Contradiction("/quality", "says not when a linkage is good; state max_error or max_angle_error")]
@@ -117,6 +146,9 @@ class Manufacture(Statement):
     def _beside(self, task: Made) -> list[Contradiction]:
         """What the task does not have."""
         listed = []
+        if self.gridded and task.ungridded:
+            path = "/round" if self.round is not None else "/stock"
+            listed.append(Contradiction(path, task.ungridded))
         if self.input == "adjusted" and not task.free_inputs:
             listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
         quality = self.quality
@@ -127,6 +159,20 @@ class Manufacture(Statement):
             detail = "the task asks for no angles; state max_error"
             listed.append(Contradiction("/quality/max_angle_error", detail))
         return listed
+
+
+def kept_pivots(
+    fixed: tuple[tuple[float | None, float | None] | None, tuple[float | None, float | None] | None],
+) -> frozenset[str]:
+    """Names of the coordinates that are stated of the fixed pivots of input and output, of any type of mechanism."""
+    named = ("fixed_pivots.input", "fixed_pivot"), ("fixed_pivots.output",)
+    return frozenset(
+        f"{name}.{axis}"
+        for names, pivot in zip(named, fixed, strict=True)
+        for name in names
+        for axis, value in zip("xy", pivot or (None, None), strict=True)
+        if value is not None
+    )
 
 
 def needed_samples(demanded: float) -> int:
@@ -145,12 +191,15 @@ class Made(NamedTuple):
         Whether the inputs at the targets are free.
     targets : int
         Their number.
+    ungridded : str
+        Why no linkage on a grid can keep what is stated; empty where one can.
     """
 
     distances: bool
     angles: bool
     free_inputs: bool
     targets: int
+    ungridded: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +225,12 @@ class Held:
         there is none.
     around : bool
         Whether the limit in x is one of the distance, in any direction.
+    size : float
+        The length that counts as much as a radian where errors of both are added.
+    on_ground : pair of bool
+        Whether input, and output, are counted from the ground line, and turn with it on a grid.
+    kept : set of str
+        Names of the dimensions that are stated, and stay as they are on a grid.
     """
 
     inputs: Real
@@ -186,3 +241,6 @@ class Held:
     free: bool = True
     limits: Real | None = None
     around: bool = False
+    size: float = 1.0
+    on_ground: tuple[bool, bool] = (False, False)
+    kept: frozenset[str] = frozenset()

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from synthesis.model.answer import Answer, optional
-from synthesis.model.dimension import ANGLE_PER_LENGTH, Angle, Length
+from synthesis.model.dimension import ANGLE_PER_LENGTH, LENGTH, Angle, Length
 
 
 class Yield(Answer):
@@ -47,9 +47,22 @@ class Sensitivity(Answer):
     )
 
 
+class RoundingCost(Answer):
+    """What a linkage on the grid has more of than the exact design that it stands for; less is below 0."""
+
+    rms_residual: float
+    max_error: Length | None = optional("Greatest distance from a target.")
+    max_angle_error: Angle | None = optional("Greatest difference of an angle, degrees.")
+    min_transmission_angle: Angle = Field(description="Here more is better.")
+
+
 class Manufactured(Answer):
     """A design as a shop makes it."""
 
+    dimensions: Annotated[dict[str, float], LENGTH] | None = optional(
+        "What is made, on the grid or of the stock, by the field of the mechanism; P's place along A → B and across."
+    )
+    cost: RoundingCost | None = optional("What rounding cost, against `exact`.")
     seed: int | None = optional("Of the samples of the yield.")
     worst_case: WorstCase | None = optional("With every dimension at an end of its tolerance.")
     matter: list[str] = Field(

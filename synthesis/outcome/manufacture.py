@@ -6,7 +6,9 @@ import math
 from typing import Any, TypeVar
 
 from synthesis.model.answer import Check, Result, Verification
+from synthesis.model.linkage_answer import ExactDesign
 from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.manufacture_answer import Manufactured, RoundingCost
 from synthesis.model.statement import StatedProblem
 
 Design = TypeVar("Design", bound=Any)
@@ -20,6 +22,8 @@ def held_to_yield(problem: StatedProblem, design: Design) -> Design:
     if not isinstance(problem, LinkageProblem) or problem.manufacture is None:
         return design
     if problem.manufacture.demanded_yield is None or not design.verification.passed:
+        return design
+    if problem.manufacture.gridded and design.exact is None:
         return design
     return made(problem, design)
 
@@ -47,14 +51,21 @@ def made(problem: LinkageProblem, design: Design) -> Design:
     if stated is None or design.manufacture is not None:
         return design
     # Only who states the block waits for the import.
-    from synthesis.manufacture.report import reported
+    from synthesis.manufacture.linkage import linkage_of
+    from synthesis.manufacture.report import Reported, reported
 
-    used = design.metrics.used_range
-    if used is not None and problem.constraints.same_branch:
-        used = math.radians(used[0]), math.radians(used[1])
-    else:
-        used = None
-    told = reported(design.mechanism, problem.held_to(design), stated, problem.seed, used)
+    used = branch_range(problem, design)
+    told = Reported(Manufactured(), None)
+    if stated.tolerances is not None:
+        told = reported(design.mechanism, problem.held_to(design), stated, problem.seed, used)
+    if design.exact is not None:
+        linkage = linkage_of(design.mechanism)
+        assert linkage is not None
+        # P is stated by distance and angle, from which its place on the grid comes with rounding.
+        digits = [float(f"{value:.12g}") for value in linkage.row]
+        named = zip(linkage.names(guides=problem.guides_a_point), digits, strict=False)
+        rounded = {"dimensions": dict(named), "cost": _cost(problem, design)}
+        told = told._replace(manufactured=told.manufactured.model_copy(update=rounded))
     metrics = design.metrics.model_copy(update={"yield_": told.yield_})
     update: dict[str, Any] = {"manufacture": told.manufactured, "metrics": metrics}
     if stated.demanded_yield is not None:
@@ -64,3 +75,39 @@ def made(problem: LinkageProblem, design: Design) -> Design:
         update["verification"] = Verification.of([*design.verification.checks, check])
     changed: Design = design.model_copy(update=update)
     return changed
+
+
+def branch_range(problem: LinkageProblem, design: Any) -> tuple[float, float] | None:
+    """The range of the input on which a design must stay on its branch as it is made, radians; None where on none."""
+    used = design.metrics.used_range
+    if used is None or not problem.constraints.same_branch:
+        return None
+    return math.radians(used[0]), math.radians(used[1])
+
+
+def errors_of(problem: LinkageProblem, design: Any) -> tuple[float | None, float | None]:
+    """The greatest distance and angle (degrees) by which a design misses its targets; None of what it has none of."""
+    greatest = getattr(design.metrics, "max_structural_error", None)
+    if greatest is not None:
+        return (greatest, None) if problem.slides else (None, greatest)
+    angles = [target.angle_residual for target in design.targets if target.angle_residual is not None]
+    return max(target.point_residual for target in design.targets), max(angles, default=None)
+
+
+def exact_design(problem: LinkageProblem, design: Any) -> ExactDesign:
+    """A design as it is shown beside that on the grid."""
+    error, angle = errors_of(problem, design)
+    return ExactDesign(
+        mechanism=design.mechanism,
+        rms_residual=design.metrics.rms_residual,
+        max_error=error,
+        max_angle_error=angle,
+        min_transmission_angle=design.metrics.min_transmission_angle,
+    )
+
+
+def _cost(problem: LinkageProblem, design: Any) -> RoundingCost:
+    before, after = design.exact, exact_design(problem, design)
+    names = RoundingCost.model_fields
+    pairs = {name: (getattr(after, name), getattr(before, name)) for name in names}
+    return RoundingCost(**{name: None if one is None else one - other for name, (one, other) in pairs.items()})

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, TypeVar
 
@@ -26,10 +26,20 @@ LOOKED_AT: Mapping[str, int] = {"planes": 40, "yield": 40} | dict.fromkeys(FORCE
 """Designs at least that are measured, the first of the usual order, for each such order."""
 
 
+GRIDDED = 12
+"""Designs at least that are looked for where those near them on a grid are answered: some have none."""
+
+
 def searched_for(problem: Problem) -> Problem:
-    """The statement that is searched for: with the order of its kind, and :data:`LOOKED_AT` designs."""
-    if not isinstance(problem, LinkageProblem) or problem.rank_by not in LOOKED_AT:
+    """The statement that is searched for: with the order of its kind, and :data:`LOOKED_AT` designs.
+
+    The same order with :data:`GRIDDED` designs where these are put on a grid.
+    """
+    if not isinstance(problem, LinkageProblem):
         return problem
+    if problem.rank_by not in LOOKED_AT:
+        gridded = problem.manufacture is not None and problem.manufacture.gridded
+        return problem.model_copy(update={"max_designs": max(problem.max_designs, GRIDDED)}) if gridded else problem
     order = type(problem).model_fields["rank_by"].default
     most = max(problem.max_designs, LOOKED_AT[problem.rank_by])
     return problem.model_copy(update={"rank_by": order, "max_designs": most})
@@ -81,16 +91,25 @@ def least_first(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
     Of yields the greatest is first. Those with as much stay in their order. What could not be measured comes after what
     could, and designs that break a check last.
     """
-    measure = _MEASURES.get(problem.rank_by) or partial(value_of, name=problem.rank_by)
+    designs = in_order(problem, result.designs)[: problem.max_designs]
+    told = _told(problem.rank_by, result.designs, _measure_of(problem)) if result.designs else ""
+    return result.model_copy(update={"designs": designs, "summary": result.summary + told})
+
+
+def in_order(problem: LinkageProblem, designs: Sequence[Any]) -> list[Any]:
+    """Designs, measured, in the order that :func:`least_first` gives them."""
+    measure = _measure_of(problem)
     sense = -1.0 if problem.rank_by == "yield" else 1.0
 
     def place(design: Any) -> tuple[bool, float]:
         measured = measure(design)
         return not design.verification.passed, math.inf if measured is None else sense * measured
 
-    designs = sorted(result.designs, key=place)[: problem.max_designs]
-    told = _told(problem.rank_by, result.designs, measure) if result.designs else ""
-    return result.model_copy(update={"designs": designs, "summary": result.summary + told})
+    return sorted(designs, key=place)
+
+
+def _measure_of(problem: LinkageProblem) -> Callable[[Any], float | None]:
+    return _MEASURES.get(problem.rank_by) or partial(value_of, name=problem.rank_by)
 
 
 def _planes(design: Any) -> float | None:

@@ -13,9 +13,7 @@ from typing import Generic, Protocol, TypeVar
 from synthesis.model.answer import Search, Verification
 from synthesis.model.kind import Progress
 from synthesis.model.statement import StatedProblem
-from synthesis.outcome.forces import held_to_forces
-from synthesis.outcome.layout import held_to_planes
-from synthesis.outcome.manufacture import held_to_yield
+from synthesis.outcome.held import held_to_all
 from synthesis.proof.room import judged_by_room
 
 DEFECTS = {
@@ -138,11 +136,10 @@ class Sifting(Generic[Design]):
         if isinstance(verdict, str):
             return verdict
         if verdict.verification.passed:
-            judged = judged_by_room(self.stated, verdict)
+            judged = held_to_all(self.stated, verdict)
             if judged is None:
                 return self._undriven
-            verdict = held_to_planes(self.stated, held_to_forces(self.stated, judged))
-            verdict = held_to_yield(self.stated, verdict)
+            verdict = judged
         if verdict.verification.passed:
             self.passed.append(verdict)
             return ""

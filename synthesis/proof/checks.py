@@ -17,9 +17,13 @@ LIMIT_SLACK = 1e-9
 does not fail by rounding."""
 
 
+REACHES_TARGETS = "reaches_targets"
+"""The check of the targets that are met exactly."""
+
+
 def reaches_targets(residual: float) -> Check:
     """The check of the largest residual at targets that are met exactly: share of the task's size, or radians."""
-    return tolerated("reaches_targets", residual, TARGET_REACHED)
+    return tolerated(REACHES_TARGETS, residual, TARGET_REACHED)
 
 
 def tolerated(name: str, error: float, tolerance: float, dimension: Dimension | None = None) -> Check:

@@ -165,6 +165,41 @@ def good(
     return kept
 
 
+def squares(of: Stated, rows: np.ndarray, size: float, most: float = math.inf, reach: float = 0.2) -> np.ndarray:
+    """The sum over the targets of the squares of distance (in sizes) and angle, at the nearest inputs; inf above most.
+
+    Places of a slider are counted from the foot of its pivot. Branches are not looked at.
+    """
+    sign, total = branch(of), np.zeros(len(rows))
+    shift = np.zeros(len(rows))
+    if of.slides and of.outputs is not None:
+        shift = (((rows[:, 0] - of.row[0]) + 1j * (rows[:, 1] - of.row[1])) * np.exp(-1j * of.slide)).real
+    for k, nominal in enumerate(of.inputs):
+        here = np.flatnonzero(total <= most)
+
+        def miss(theta: np.ndarray, which: np.ndarray, k: int = k) -> np.ndarray:
+            if of.outputs is not None and of.slides:
+                off = (posed(of, rows[which], theta, sign)[2] - shift[which] - of.outputs[k]) / size
+                taken = off * off
+            else:
+                distance, angle = missed(of, rows[which], theta, sign, k)
+                taken = (distance / size) ** 2 + angle**2
+            return np.where(np.isfinite(taken), taken, np.inf)
+
+        at = np.full(len(here), nominal)
+        total[here] += _nearest(miss, here, float(nominal), reach)[1] if of.free else miss(at, here)
+    return np.where(total <= most, total, np.inf)
+
+
+def neighbours(of: Stated, steps: np.ndarray, reach: int = 2) -> np.ndarray:
+    """All rows on a grid within so many steps of a design, in every dimension of a step above 0."""
+    values = []
+    for at, step in zip(of.row, steps, strict=True):
+        counts = np.arange(math.ceil(at / step - reach), math.floor(at / step + reach) + 1) if step else []
+        values.append(np.array(counts) * step if step else np.array([at]))
+    return np.stack(np.meshgrid(*values, indexing="ij"), axis=-1).reshape(-1, len(of.row))
+
+
 def _nearest(share: Any, here: np.ndarray, nominal: float, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """The inputs with the least share and that share, by golden section."""
     low, high = np.full(len(here), nominal - reach), np.full(len(here), nominal + reach)

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from synthesis.model.manufacture import Manufacture
+from synthesis.registry import examples
 from tests.service.answers import finished
-from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, TOLERATED
+from tests.service.stated.linkages import BOTH_OPEN, DRIVEN, MOTION, PATH, QUICK_RETURN, TOLERATED
 from tests.service.test_space import TURNS
 from tests.statements import fields
 
@@ -43,7 +44,18 @@ def made(client, problem, block):
     return job["result"]
 
 
+GRID = {"round": {"length": 0.5, "coordinates": 0.5}}
+SLIDES = {**OPEN, "output_side": {"dyad": "PR", "slide_angle": 15.0}}
+
+LOGARITHM = {**examples("function")[2], "max_designs": 2}
+TRAVELS = {"tolerances": {"length": 0.1}, "quality": {"max_error": 20.0}, "samples": 1000, **GRID}
+
 FIELDS: dict[str, Any] = {
+    "round": {"length": 0.5, "coordinates": 0.5},
+    "round.length": 1.0,
+    "round.coordinates": 1.0,
+    "stock": {"links": [90.0, 110.0, 170.0, 190.0]},
+    "stock.links": [85.0, 90.0, 110.0, 115.0, 170.0, 190.0],
     "tolerances": {"length": 0.2},
     "tolerances.length": 0.3,
     "tolerances.pivot": 0.3,
@@ -65,7 +77,48 @@ def test_every_field_has_a_value():
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_a_field_makes_another_answer(client, name):
-    assert made(client, MOTION, changed(BLOCK, name, FIELDS[name])) != made(client, MOTION, BLOCK)
+    outer = name.partition(".")[0]
+    base, block = (LOGARITHM, TRAVELS) if outer in ("round", "stock") else (MOTION, BLOCK)
+    if name == "round":
+        block = {field: value for field, value in TRAVELS.items() if field != "round"}
+    assert made(client, base, changed(block, name, FIELDS[name])) != made(client, base, block)
+
+
+def test_designs_are_those_on_the_grid_with_the_exact_ones_beside_them(client):
+    """Beside a room, planes, a limit of the angle, a yield, and the order by it."""
+    demands = {
+        "space": {"box": [[-400.0, -400.0], [400.0, 400.0]], "link_width": 10.0},
+        "layout": {"link_width": 5.0, "pin_diameter": 4.0, "thickness": 4.0, "max_planes": 4},
+        "constraints": {"min_transmission_angle": 30.0},
+        "max_designs": 2,
+    }
+    block = {**BLOCK, **GRID, "quality": {"max_error": 0.5, "max_angle_error": 0.5, "yield": 0.5}}
+    job = finished(client, {**SLIDES, **demands, "manufacture": block})
+    assert len(job["result"]["designs"]) == 2
+    for n, design in enumerate(job["result"]["designs"]):
+        checks = {check["name"]: check for check in design["verification"]["checks"]}
+        named = {"max_error", "max_angle_error", "yield", "box", "planes", "transmission_angle"}
+        assert named <= checks.keys()
+        assert all(check["passed"] for check in checks.values())
+        dimensions = design["manufacture"]["dimensions"]
+        assert dimensions.keys() == {one["dimension"] for one in design["manufacture"]["sensitivities"]}
+        assert all(float(2.0 * value).is_integer() for value in dimensions.values())
+        links, pivot = design["mechanism"]["links"], design["mechanism"]["fixed_pivot"]
+        assert [*pivot, links["crank"], links["coupler"]] == [
+            dimensions[name] for name in ("fixed_pivot.x", "fixed_pivot.y", "links.crank", "links.coupler")
+        ]
+        exact, cost = design["exact"], design["manufacture"]["cost"]
+        assert exact["rms_residual"] < 1e-9 < design["metrics"]["rms_residual"]
+        assert cost["rms_residual"] == pytest.approx(design["metrics"]["rms_residual"], abs=1e-9)
+        assert cost["max_error"] == pytest.approx(checks["max_error"]["value"], abs=1e-9)
+        assert exact["mechanism"]["links"] != links
+        svg = client.get(f"/v1/jobs/{job['id']}/designs/{n}.svg")
+        assert svg.status_code == 200
+        motion = client.get(f"/v1/jobs/{job['id']}/designs/{n}/motion").json()
+        assert motion["joints"].keys() >= {"A", "B", "P"}
+    report = client.get(f"/v1/jobs/{job['id']}/report.html")
+    assert report.status_code == 200, report.text
+    assert "Exact: rms residual" in report.text
 
 
 def test_designs_are_told_as_they_are_made_and_still_drawn(client):
@@ -163,6 +216,18 @@ def test_a_demand_that_none_keeps_is_told_as_the_nearest_miss(client):
 
 REFUSED: dict[str, tuple[dict[str, Any], Any, str]] = {
     "an empty block": (OPEN, {}, "/manufacture"),
+    "a grid of nothing": (OPEN, {"round": {"length": 0.0, "coordinates": 1.0}}, "/manufacture/round/length"),
+    "half a grid": (OPEN, {"round": {"length": 0.5}}, "/manufacture/round/coordinates"),
+    "an empty stock": (OPEN, {"stock": {"links": []}}, "/manufacture/stock/links"),
+    "a link of no length in stock": (OPEN, {"stock": {"links": [0.0]}}, "/manufacture/stock/links/0"),
+    "pivots on the body that no grid keeps": (MOTION, GRID, "/manufacture/round"),
+    "links that no stock keeps": (MOTION, {"stock": {"links": [40.0]}}, "/manufacture/stock"),
+    "a yield of what is exact": (
+        OPEN,
+        {**GRID, "quality": {"max_error": 1.0, "yield": 0.9}},
+        "/manufacture/tolerances",
+    ),
+    "a grid for another kind": (QUICK_RETURN, GRID, "/manufacture"),
     "no tolerances": (OPEN, {"quality": {"max_error": 0.1}}, "/manufacture/tolerances"),
     "tolerances of nothing": (OPEN, {**BLOCK, "tolerances": {}}, "/manufacture/tolerances"),
     "a quality of nothing": (OPEN, {**BLOCK, "quality": {"yield": 0.9}}, "/manufacture/quality"),

@@ -22,6 +22,7 @@ PURE = {
     "DwellMetrics": {"link_ratio", "reach", "quality"},
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
+    "ExactDesign": {"rms_residual"},
     "FollowerDynamics": {"damping_ratio"},
     "ForceCourse": {"table"},  # columns of several units
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
@@ -68,6 +69,7 @@ PURE = {
     "Reachable": {"max_link_ratio", "tolerance"},
     "Rest": {"off_end"},
     "Sensitivity": {"x", "y", "travel", "share"},  # length by length
+    "RoundingCost": {"rms_residual"},
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
     "StageRatio": {"min", "max"},

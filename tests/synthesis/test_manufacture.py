@@ -19,6 +19,7 @@ from synthesis.registry import KINDS, examples, parse_problem
 from tests.kinematics.variation_twin import crank_rocker, slider
 from tests.oracles import made_linkages
 from tests.service.stated.linkages import BOTH_OPEN, FITTED, MOTION, PATH, TOLERATED
+from tests.service.test_space import TURNS
 
 Statement = dict[str, Any]
 
@@ -209,3 +210,132 @@ def test_a_kind_takes_the_block_or_refuses_it_by_its_path(kind: str) -> None:
     for fault in faults:
         assert fault.path == "/manufacture"
         assert "motion, path and function" in fault.detail
+
+
+GRID = {"round": {"length": 0.5, "coordinates": 0.5}}
+FINE_GRID = {"round": {"length": 0.05, "coordinates": 0.05}}
+ON_GRID: dict[str, tuple[Statement, Statement]] = {
+    "motion, with a slider": (SLIDES, GRID),
+    "function": (TURNS, FINE_GRID),
+    "function, of a slider": (LOGARITHM, GRID),
+}
+
+
+def exact_of(problem: Statement, design: Statement) -> made_linkages.Stated:
+    """The exact design beside one on the grid, with its own inputs at the targets."""
+    plain = json.loads(solve(parse_problem(problem)).model_dump_json())
+    return next(
+        made_linkages.stated(problem, one)
+        for one in plain["designs"]
+        if one["mechanism"] == design["exact"]["mechanism"]
+    )
+
+
+@pytest.mark.parametrize("name", ON_GRID)
+def test_no_linkage_within_two_steps_is_nearer(name: str) -> None:
+    problem, block = ON_GRID[name]
+    stated = parse_problem({**problem, "manufacture": block})
+    answer = json.loads(solve(stated).model_dump_json())
+    design = answer["designs"][0]
+    of = exact_of({**problem, "max_designs": 12}, design)
+    step = block["round"]["length"]
+    guided = of.outputs is None
+    steps = np.array([step] * (len(of.row) - 2) + [step if guided else 0.0] * 2)
+    rows = made_linkages.neighbours(of, steps)
+    assert len(rows) >= 4 ** (7 if of.slides and guided else 5)
+    size = getattr(stated, "task_size", 1.0) if guided else (50.0 if of.slides else 1.0)
+    rms = design["metrics"]["rms_residual"]
+    most = rms**2 * len(of.inputs)
+    # Some that are searched lie a little farther away.
+    squares = made_linkages.squares(of, rows, size, most * 4.0)
+    assert math.sqrt(squares.min() / len(of.inputs)) >= rms * (1.0 - 1e-4)
+    assert np.isfinite(squares.min())
+    row = of.row.copy()
+    told = list(design["manufacture"]["dimensions"].values())
+    row[: len(told)] = told
+    assert row[: len(told)] / step == pytest.approx(np.round(row[: len(told)] / step), abs=1e-9)
+    own = made_linkages.squares(of, row[None], size)[0]
+    assert math.sqrt(own / len(of.inputs)) == pytest.approx(rms, rel=1e-4)
+
+
+def test_a_fourbar_on_the_grid_is_not_rounded_one_by_one() -> None:
+    problem = {**MOTION, **BOTH_OPEN, "max_designs": 1}
+    (design,) = solve(parse_problem({**problem, "manufacture": GRID})).designs
+    told = design.manufacture
+    exact = json.loads(design.exact.model_dump_json())
+    of = exact_of({**problem, "max_designs": 12}, {"exact": exact})
+    one_by_one = made_linkages.squares(of, np.round(of.row[None] / 0.5) * 0.5, 76.0)[0]
+    assert design.metrics.rms_residual < 0.5 * math.sqrt(one_by_one / 3.0)
+    # Near the grid's best there are worse ones, as many as are looked at; within one step all are worse.
+    row = np.array(list(told.dimensions.values()))
+    near = row + 0.5 * np.random.default_rng(0).integers(-1, 2, (2000, 9))
+    size = parse_problem(problem).task_size
+    best = made_linkages.squares(of, row[None], size)[0]
+    within = (np.abs(near - of.row) <= 1.0).all(axis=1)
+    assert within.sum() > 100
+    assert made_linkages.squares(of, near[within], size).min() >= best * (1.0 - 1e-6)
+    assert math.sqrt(best / 3.0) == pytest.approx(design.metrics.rms_residual, rel=1e-4)
+    assert told.cost.rms_residual == pytest.approx(design.metrics.rms_residual, abs=1e-12)
+    assert design.exact.rms_residual < 1e-9
+    links = design.mechanism.links
+    assert [links.input, links.coupler, links.output] == [
+        told.dimensions[f"links.{n}"] for n in ("input", "coupler", "output")
+    ]
+
+
+def test_links_in_stock_meet_exact_positions_with_free_pivots() -> None:
+    """Nine dimensions, six conditions: three links may be chosen, and pivots and P still meet all positions."""
+    stock = [40.0, 60.0, 80.0, 100.0]
+    block = {"stock": {"links": stock}}
+    for design in solve(parse_problem({**MOTION, **BOTH_OPEN, "max_designs": 1, "manufacture": block})).designs:
+        links = design.mechanism.links
+        assert {links.input, links.coupler, links.output} <= set(stock)
+        assert design.metrics.rms_residual < 1e-8
+    both = {**block, **GRID}
+    for design in solve(parse_problem({**MOTION, **BOTH_OPEN, "max_designs": 1, "manufacture": both})).designs:
+        links = design.mechanism.links
+        assert {links.input, links.coupler, links.output} <= set(stock)
+        assert 1e-6 < design.metrics.rms_residual < 5e-3
+        pivots = np.array([design.mechanism.fixed_pivots.input, design.mechanism.fixed_pivots.output])
+        assert np.all(pivots * 2.0 == np.round(pivots * 2.0))
+
+
+def test_stated_pivots_stay_and_other_demands_hold_on_the_grid() -> None:
+    stated = {
+        "input_side": {"fixed_pivot": [0.3, -60.1]},
+        "output_side": {},
+        "constraints": {"min_transmission_angle": 30.0},
+    }
+    block = {**GRID, "quality": {"max_error": 0.5, "max_angle_error": 0.5}}
+    designs = solve(parse_problem({**MOTION, **stated, "max_designs": 2, "manufacture": block})).designs
+    assert designs
+    for design in designs:
+        assert design.mechanism.fixed_pivots.input == (0.3, -60.1)
+        checks = {check.name: check for check in design.verification.checks}
+        assert {"input_side", "max_error", "max_angle_error", "transmission_angle"} <= checks.keys()
+        assert "reaches_targets" not in checks
+        assert checks["max_error"].value == max(target.point_residual for target in design.targets) <= 0.5
+
+
+def test_a_quality_that_no_grid_keeps_is_the_nearest_miss() -> None:
+    block = {"round": {"length": 10.0, "coordinates": 10.0}, "quality": {"max_error": 0.001}}
+    stated = {**LOGARITHM, "max_designs": 1, "manufacture": block}
+    answer = solve(parse_problem(stated))
+    assert answer.designs == []
+    assert answer.search.rejected["max_error"] > 0
+    (gap,) = answer.nearest_miss.gaps
+    assert (gap.check, gap.limit, gap.dimension) == ("max_error", 0.001, "length")
+    assert answer.nearest_miss.design.exact is not None
+    failed = solve(parse_problem({**stated, "include_failed": True}))
+    assert [design.verification.passed for design in failed.designs] == [False]
+
+
+def test_linkages_on_the_grid_are_ordered_by_yield() -> None:
+    block = {**GRID, "tolerances": FINE, "quality": {"max_error": 0.8}, "samples": 2000}
+    stated = {**LOGARITHM, "max_designs": 3, "manufacture": block}
+    ranked = solve(parse_problem({**stated, "rank_by": "yield"})).designs
+    values = [design.metrics.yield_.value for design in ranked]
+    assert len(values) == 3
+    assert values == sorted(values, reverse=True)
+    assert all(design.exact is not None for design in ranked)
+    assert values[0] >= max(design.metrics.yield_.value for design in solve(parse_problem(stated)).designs)

@@ -1,5 +1,5 @@
 """Linkages as they are made: variants of one linkage, whose dimensions are a little off, driven to its targets."""
 
-from kinematics.linkage.variation.driven import Deviations, Task, deviations, shares
+from kinematics.linkage.variation.driven import Deviations, Task, deviations, shares, squares
 
-__all__ = ["Deviations", "Task", "deviations", "shares"]
+__all__ = ["Deviations", "Task", "deviations", "shares", "squares"]

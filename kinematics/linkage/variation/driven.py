@@ -218,7 +218,7 @@ def deviations(task: Task, variants: ArrayLike, settings: ArrayLike | None = Non
     return Deviations(np.hypot(offsets[..., 0], offsets[..., 1]), np.abs(offsets[..., 2]), offsets, inputs)
 
 
-def shares(task: Task, variants: ArrayLike) -> Real:
+def shares(task: Task, variants: ArrayLike, settings: ArrayLike | None = None) -> Real:
     """The greatest share of its limit that each variant takes at a target: at most 1 where it keeps all of them.
 
     The units of the task are the limits, and the place of the input is the one at which the greater share is least.
@@ -231,5 +231,28 @@ def shares(task: Task, variants: ArrayLike) -> Real:
     """
     rows = task.variants(variants)
     share = np.empty(len(rows))
-    kernels.shares(task.drive, rows, task.rows, task.inputs, task.towards(rows), share)
+    kernels.shares(task.drive, rows, task.rows, task.inputs, task.towards(rows, settings), share)
     return share
+
+
+def squares(task: Task, variants: ArrayLike, most: float = math.inf, settings: ArrayLike | None = None) -> Real:
+    """The sum over the targets of the squares of each variant's misses, in the units of the task.
+
+    Parameters
+    ----------
+    task : Task
+        The targets; its ``greatest`` says what an adjusted input makes least.
+    variants, settings
+        As of :func:`deviations`.
+    most : float
+        Sums above it are not followed to their end.
+
+    Returns
+    -------
+    float, shape (v,)
+        Infinite above ``most``, and where a variant cannot be assembled or leaves its branch.
+    """
+    rows = task.variants(variants)
+    square = np.empty(len(rows))
+    kernels.squares(task.drive, rows, task.rows, task.inputs, task.towards(rows, settings), most, square)
+    return square

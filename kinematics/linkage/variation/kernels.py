@@ -186,3 +186,29 @@ def shares(drive: Drive, variants: Real, targets: Real, nominal: Real, settings:
         if most <= 1.0 and not on_branch(drive, row, low, high):
             most = np.inf
         share[i] = most
+
+
+@njit(**OPTIONS)
+def squares(
+    drive: Drive, variants: Real, targets: Real, nominal: Real, settings: Real, most: float, square: Real
+) -> None:
+    """The sum of the squares of the misses of each variant, in their units, into ``square`` (V,).
+
+    Infinite where a variant cannot be assembled, leaves its branch, or has more than ``most``.
+    """
+    table = targets.copy()
+    for i in range(len(variants)):
+        row, start = variants[i], 0.0
+        if len(settings):
+            _set(drive, targets, settings[i], table)
+            start = settings[i, 0]
+        low, high, taken = np.inf, -np.inf, 0.0 if sound(drive, row) else np.inf
+        for k in range(len(targets)):
+            if not taken <= most:
+                break
+            valid, x, y, off, turned = _nearest(drive, row, table[k])
+            at = nominal[k] + start + turned
+            low, high = min(low, at), max(high, at)
+            distance, angle = math.sqrt(x * x + y * y) * drive.per_length, off * drive.per_angle
+            taken = taken + distance * distance + angle * angle if valid else np.inf
+        square[i] = taken if taken <= most and on_branch(drive, row, low, high) else np.inf

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from synthesis.kinds.function.design import FunctionResult
+from synthesis.kinds.function.design import FunctionDesign, FunctionResult
 from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.kind import Kind, Progress
+from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 
 __all__ = ["KIND"]
 
@@ -13,6 +14,14 @@ def _solve(problem: FunctionProblem, progress: Progress) -> FunctionResult:
     from synthesis.kinds.function.solver import solve_function
 
     return solve_function(problem, progress)
+
+
+def _nearly(
+    problem: FunctionProblem, design: FunctionDesign, mechanism: FourbarMechanism | SliderCrankMechanism
+) -> FunctionDesign | None:
+    from synthesis.kinds.function.verification import verify_nearly
+
+    return verify_nearly(problem, design, mechanism)
 
 
 def _warm_up() -> None:
@@ -26,4 +35,4 @@ def _brief(problem: FunctionProblem) -> bool:
     return problem.aim == "precision"
 
 
-KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief)
+KIND = Kind("function", FunctionProblem, FunctionResult, _solve, _warm_up, brief=_brief, nearly=_nearly)

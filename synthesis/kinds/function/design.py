@@ -10,8 +10,10 @@ from synthesis.model.answer import Answer, Verification
 from synthesis.model.dimension import Angle, Output
 from synthesis.model.forces_answer import DesignForces
 from synthesis.model.linkage_answer import (
+    EXACT,
     LAYOUT,
     PEAKS,
+    ExactDesign,
     FourbarMechanism,
     Layout,
     LinkageMetrics,
@@ -117,6 +119,7 @@ class FunctionDesign(Answer):
     layout: Layout | None = LAYOUT
     forces: DesignForces | None = PEAKS
     manufacture: Manufactured | None = MANUFACTURE
+    exact: ExactDesign | None = EXACT
 
 
 class FunctionResult(LinkageResult[FunctionDesign]):

@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field
 from synthesis.kinds.function.functions import FunctionStatement, Real
 from synthesis.model.dimension import ANGLE, OUTPUT
 from synthesis.model.linkage_statement import Constraints, LinkageProblem
-from synthesis.model.manufacture import Held, Made
+from synthesis.model.manufacture import Held, Made, kept_pivots
 from synthesis.model.statement import (
     ABSURD,
     Contradiction,
@@ -201,6 +201,11 @@ class FunctionProblem(LinkageProblem):
         count = len(self.precision_shares) if self.aim == "precision" else HELD_PLACES
         return Made(self.slides, not self.slides, False, count if self.pairs is None else len(self.pairs))
 
+    @property
+    def guides_a_point(self) -> bool:
+        """There is no P on the coupler of a function generator."""
+        return False
+
     def held_to(self, design: Any) -> Held:
         """Pairs and precision points, or places of the whole range, as they stand on the dials."""
         values = self._held_values()
@@ -214,9 +219,18 @@ class FunctionProblem(LinkageProblem):
             dial.place + dial.scale * (shown - dial.at)
             for dial, shown in ((dials.input, values), (dials.output, outputs))
         )
+        pivots = self.fixed_pivots
+        kept = kept_pivots((None, None) if pivots is None else (pivots.input, pivots.output))
         if self.slides:
-            return Held(np.radians(inputs), travels=places, free=False)
-        return Held(np.radians(inputs), angles=np.radians(places), free=False)
+            return Held(np.radians(inputs), travels=places, free=False, kept=kept)
+        zeros = self.stated_zeros
+        return Held(
+            np.radians(inputs),
+            angles=np.radians(places),
+            free=False,
+            on_ground=(zeros[0] is not None, zeros[1] is not None),
+            kept=kept,
+        )
 
     def _held_values(self) -> Real:
         """Values of the input at which linkages are held as they are made."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,7 @@ from synthesis.kinds.function.problem import FunctionProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.linkage_answer import FourbarMechanism, SliderCrankMechanism
 from synthesis.model.linkages import driven_fourbar, to_complex
-from synthesis.proof.checks import TARGET_REACHED, reaches_targets, tolerated
+from synthesis.proof.checks import REACHES_TARGETS, TARGET_REACHED, reaches_targets, tolerated
 from synthesis.proof.closer import least_near
 from synthesis.proof.constraints import constraint_checks
 from synthesis.proof.measures import TURNS_THROUGH, link_lengths, measured
@@ -272,6 +272,36 @@ def verify_function(
         metrics=metrics,
         structural_error=error,
     )
+
+
+def verify_nearly(
+    problem: FunctionProblem, design: FunctionDesign, mechanism: FourbarMechanism | SliderCrankMechanism
+) -> FunctionDesign | None:
+    """Drive another linkage by the dials of a design, whose targets it meets as nearly as it can: one on a grid.
+
+    Dials with a stated zero are counted from the ground line, and turn with it.
+    """
+    dials = design.dials
+    if isinstance(mechanism, FourbarMechanism) and isinstance(design.mechanism, FourbarMechanism):
+        ground = [driven_fourbar(one).linkage.ground_angle for one in (design.mechanism, mechanism)]
+        turned = math.degrees(math.remainder(float(ground[1] - ground[0]), math.tau))
+        zeros = problem.stated_zeros
+        if zeros[0] is not None:
+            dials = dials.model_copy(update={"input": _turned(dials.input, turned)})
+        if zeros[1] is not None:
+            dials = dials.model_copy(update={"output": _turned(dials.output, turned)})
+    driven = verify_function(problem, mechanism, dials)
+    if driven is None:
+        return None
+    checks = [check for check in driven.verification.checks if check.name != REACHES_TARGETS]
+    return driven.model_copy(update={"verification": Verification.of(checks)})
+
+
+Dial = TypeVar("Dial", InputDial, OutputDial)
+
+
+def _turned(dial: Dial, degrees: float) -> Dial:
+    return dial.model_copy(update={"place": dial.place + degrees})
 
 
 def _target_values(problem: FunctionProblem) -> Real:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.problem import MotionProblem
 from synthesis.model.kind import Kind, Progress
-from synthesis.model.linkage_answer import LinkageDesign
+from synthesis.model.linkage_answer import LinkageDesign, LinkageMechanism
 
 __all__ = ["KIND"]
 
@@ -24,6 +24,12 @@ def _nearer(problem: MotionProblem, designs: Sequence[LinkageDesign], progress: 
     return continued(problem, designs, progress)
 
 
+def _nearly(problem: MotionProblem, _design: LinkageDesign, mechanism: LinkageMechanism) -> LinkageDesign | None:
+    from synthesis.kinds.motion.verification import verify_nearly
+
+    return verify_nearly(problem, mechanism)
+
+
 def _warm_up() -> None:
     """Load the kernels of exact positions by the first examples: those jobs are short and waited for."""
     for example in KIND.examples[:4]:
@@ -35,4 +41,4 @@ def _brief(problem: MotionProblem) -> bool:
     return not problem.approximate and problem.driver is None and problem.slider is None
 
 
-KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief, nearer=_nearer)
+KIND = Kind("motion", MotionProblem, MotionResult, _solve, _warm_up, brief=_brief, nearer=_nearer, nearly=_nearly)

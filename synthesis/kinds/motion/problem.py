@@ -13,7 +13,7 @@ from pydantic import ConfigDict, Field
 from synthesis.kinds.motion.stated_dyads import DriverDyad, DyadChoices, GroundLine, whole_point
 from synthesis.kinds.motion.stated_positions import Position, Tolerance
 from synthesis.model.linkage_statement import LinkageProblem
-from synthesis.model.manufacture import Held, Made
+from synthesis.model.manufacture import Held, Made, kept_pivots
 from synthesis.model.statement import Contradiction, Flag, PartialPoint
 
 LEAST_LENGTH = 1e-12
@@ -192,7 +192,16 @@ class MotionProblem(LinkageProblem):
             return "is not built for linkages with a driver dyad; leave one of the two out"
         if self.slider == "RP" or self.input_side.dyad == "PR":
             return "is built for fourbars, and for slider-cranks with the slider on the output side"
-        return Made(True, True, True, len(self.positions))
+        return Made(True, True, True, len(self.positions), self._ungridded)
+
+    @property
+    def _ungridded(self) -> str:
+        """What is stated and cannot be had on a grid."""
+        for name, side in (("input_side", self.input_side), ("output_side", self.output_side)):
+            for field in ("moving_pivot", "coupler_vector", "link_angle", "rotations"):
+                if getattr(side, field) is not None:
+                    return f"no linkage on a grid keeps {name}.{field} as it is stated; leave one of them out"
+        return "" if self.ground_line is None else "no grid keeps pivots on ground_line; leave one of them out"
 
     def held_to(self, design: Any) -> Held:
         """The positions, with their tolerances."""
@@ -205,6 +214,8 @@ class MotionProblem(LinkageProblem):
             angles=np.radians([position.angle for position in self.positions]),
             body=math.radians(self.positions[0].angle if stands is None else stands),
             limits=limits,
+            size=self.task_size,
+            kept=kept_pivots((self.input_side.fixed_pivot, self.output_side.fixed_pivot)),
         )
 
     @property

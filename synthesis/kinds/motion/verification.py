@@ -6,6 +6,8 @@ other linkage by its closures, and one states what is checked, the same for both
 
 from __future__ import annotations
 
+import numpy as np
+
 from synthesis.kinds.motion.demanded import Demanded, demanded
 from synthesis.kinds.motion.first_target import at_first_target
 from synthesis.kinds.motion.problem import MotionProblem
@@ -13,7 +15,7 @@ from synthesis.kinds.motion.verify_fourbar import verify_fourbar
 from synthesis.kinds.motion.verify_mechanism import verify_mechanism
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign, LinkageMechanism
 
-__all__ = ["Demanded", "demanded", "verify"]
+__all__ = ["Demanded", "demanded", "verify", "verify_nearly"]
 
 
 def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded | None = None) -> LinkageDesign | None:
@@ -43,6 +45,12 @@ def verify(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded
     again = None if moved is None else _driven(problem, moved, target)
     # At a toggle rounding may put the first target on the other assembly.
     return design if again is None or again.verification.passed < design.verification.passed else again
+
+
+def verify_nearly(problem: MotionProblem, mechanism: LinkageMechanism) -> LinkageDesign | None:
+    """The same where what is to be met exactly is met as nearly as can be: of linkages on a grid."""
+    target = demanded(problem)
+    return verify(problem, mechanism, target._replace(limits=np.where(target.held, np.inf, target.limits)))
 
 
 def _driven(problem: MotionProblem, mechanism: LinkageMechanism, target: Demanded) -> LinkageDesign | None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from synthesis.kinds.path.design import PathResult
+from synthesis.kinds.path.design import PathDesign, PathResult
 from synthesis.kinds.path.problem import PathProblem
 from synthesis.model.kind import Kind, Progress
+from synthesis.model.linkage_answer import LinkageMechanism
 
 __all__ = ["KIND"]
 
@@ -13,6 +14,12 @@ def _solve(problem: PathProblem, progress: Progress) -> PathResult:
     from synthesis.kinds.path.solver import solve_path
 
     return solve_path(problem, progress)
+
+
+def _nearly(problem: PathProblem, _design: PathDesign, mechanism: LinkageMechanism) -> PathDesign | None:
+    from synthesis.kinds.path.verify_nearly import verify_nearly
+
+    return verify_nearly(problem, mechanism)
 
 
 def _warm_up() -> None:
@@ -26,4 +33,4 @@ def _brief(problem: PathProblem) -> bool:
     return problem.prescribed
 
 
-KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief)
+KIND = Kind("path", PathProblem, PathResult, _solve, _warm_up, brief=_brief, nearly=_nearly)

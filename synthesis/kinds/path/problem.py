@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from synthesis.model.dimension import LENGTH
 from synthesis.model.linkage_statement import Constraints, LinkageProblem, Region
-from synthesis.model.manufacture import Held, Made
+from synthesis.model.manufacture import Held, Made, kept_pivots
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -277,6 +277,9 @@ class PathProblem(LinkageProblem):
             free=not self.prescribed,
             limits=limits,
             around=True,
+            size=self.task_size,
+            on_ground=(self.crank_phase == "ground_line", False),
+            kept=kept_pivots((self.fixed_pivots.input, self.fixed_pivots.output)),
         )
 
     @property

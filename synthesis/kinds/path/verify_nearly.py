@@ -1,0 +1,25 @@
+"""Verification of linkages that pass points as nearly as they can, whatever the problem wants: those on a grid."""
+
+from __future__ import annotations
+
+from synthesis.kinds.path.design import PathDesign
+from synthesis.kinds.path.problem import PathProblem
+from synthesis.kinds.path.verification import verify_path
+from synthesis.kinds.path.verify_traced import verify_traced
+from synthesis.model.linkage_answer import FourbarMechanism, LinkageMechanism, SliderCrankMechanism
+
+
+def verify_nearly(problem: PathProblem, mechanism: LinkageMechanism) -> PathDesign | None:
+    """Drive a fourbar or slider-crank past the points, and measure it; None where it cannot be driven.
+
+    Raises
+    ------
+    TypeError
+        For a mechanism of another type.
+    """
+    nearly = problem if problem.fitted else problem.model_copy(update={"method": "least_squares"})
+    if isinstance(mechanism, FourbarMechanism):
+        return verify_path(nearly, mechanism)
+    if isinstance(mechanism, SliderCrankMechanism):
+        return verify_traced(nearly, mechanism)
+    raise TypeError(f"a {mechanism.type} is on no grid")
