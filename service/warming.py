@@ -24,6 +24,6 @@ def warm() -> None:
     dispatch.warm_up()
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
         tasks = [processes.submit(dispatch.compile_kind, name) for name in KINDS]
-        tasks.append(processes.submit(analyst.warm_up))
+        tasks += [processes.submit(dispatch.compile_demands), processes.submit(analyst.warm_up)]
         for task in tasks:
             task.result()

@@ -19,7 +19,7 @@ from synthesis.outcome.usable import usable_first
 from synthesis.registry import KINDS
 from synthesis.relaxation import Relaxation, relaxation
 
-__all__ = ["Progress", "compile_kind", "solve", "warm_up", "warm_up_rest"]
+__all__ = ["Progress", "compile_demands", "compile_kind", "solve", "warm_up", "warm_up_rest"]
 
 SEARCH_SHARE = 0.9
 """Share of the progress that the search counts for; the rest is that for the nearest miss where nothing passed."""
@@ -129,6 +129,22 @@ def compile_kind(name: str) -> None:
     if kind.warm_up is not None:
         for statement in kind.examples:
             solve(kind.problem.model_validate(statement))
+
+
+def compile_demands() -> None:
+    """Compile what no example calls: what linkages weigh, and how they are made."""
+    statement = KINDS["motion"].examples[0] | {
+        "max_designs": 1,
+        "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
+        "constraints": {"max_drive_torque": 1e6},
+        "manufacture": {
+            "round": {"length": 0.5, "coordinates": 0.5},
+            "tolerances": {"length": 0.1},
+            "quality": {"max_error": 1e3},
+            "samples": 100,
+        },
+    }
+    solve(KINDS["motion"].problem.model_validate(statement))
 
 
 def _load(name: str) -> None:
