@@ -153,7 +153,7 @@ def good(
         at = np.full(len(here), nominal)
         best = share(at, here)
         if not fixed and of.free:
-            at, best = _nearest(share, here, float(nominal), reach)
+            at, best = _nearest(share, here, float(nominal), reach, 1.0)
         kept[here] = best <= 1.0
         least[here], most[here] = np.minimum(least[here], at), np.maximum(most[here], at)
     if of.used is not None:
@@ -200,18 +200,22 @@ def neighbours(of: Stated, steps: np.ndarray, reach: int = 2) -> np.ndarray:
     return np.stack(np.meshgrid(*values, indexing="ij"), axis=-1).reshape(-1, len(of.row))
 
 
-def _nearest(share: Any, here: np.ndarray, nominal: float, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """The inputs with the least share and that share, by golden section."""
+def _nearest(
+    share: Any, here: np.ndarray, nominal: float, reach: float, enough: float = -math.inf
+) -> tuple[np.ndarray, np.ndarray]:
+    """The inputs with the least share and that share, by golden section, or the first with no more than enough."""
     low, high = np.full(len(here), nominal - reach), np.full(len(here), nominal + reach)
     one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     f, g = share(one, here), share(two, here)
     for _ in range(STEPS):
-        left = f <= g
-        high, low = np.where(left, two, high), np.where(left, low, one)
-        fresh = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
-        value = share(fresh, here)
-        one, two = np.where(left, fresh, two), np.where(left, one, fresh)
-        f, g = np.where(left, value, g), np.where(left, f, value)
+        on = np.flatnonzero(np.minimum(f, g) > enough)
+        left = f[on] <= g[on]
+        high[on], low[on] = np.where(left, two[on], high[on]), np.where(left, low[on], one[on])
+        width = GOLDEN * (high[on] - low[on])
+        fresh = np.where(left, high[on] - width, low[on] + width)
+        value = share(fresh, here[on])
+        one[on], two[on] = np.where(left, fresh, two[on]), np.where(left, one[on], fresh)
+        f[on], g[on] = np.where(left, value, g[on]), np.where(left, f[on], value)
     return np.where(f <= g, one, two), np.minimum(f, g)
 
 
