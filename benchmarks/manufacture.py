@@ -6,8 +6,8 @@ Fourbars are drawn by chance and driven through five positions, which they are t
 
 * rounded: on how many of (100) fourbars the linkage on the grid is no farther from the task than the best of all
   within two steps, which are driven by Freudenstein's equation in plain numpy;
-* yields: for how many of (50) designs the 99 % interval from 10⁵ samples holds the share of 10⁶ other ones that are good
-  by that formulation;
+* yields: for how many of (50) designs the 99 % interval from 10⁵ samples holds the share of 10⁶ other ones that are
+  good by that formulation;
 * speed: processor time for 10⁵ samples of a fourbar through five positions.
 """
 

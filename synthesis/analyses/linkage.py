@@ -22,6 +22,7 @@ from synthesis.analyses.fourbar import FourbarAnalysis, Points, Topic, fourbar_a
 from synthesis.analyses.layout import layout_of
 from synthesis.analyses.motions import StatedMotion, Sweep
 from synthesis.analyses.quantities import analysis
+from synthesis.analyses.targets import at_targets, target_faults
 from synthesis.mechanisms import GivenMechanism, MechanismError
 from synthesis.mechanisms.link_bodies import token
 from synthesis.mechanisms.machine import dynamics_faults
@@ -31,7 +32,10 @@ from synthesis.model.dynamics import DynamicsBlock, LengthUnit
 from synthesis.model.dynamics_answer import DynamicsAnswer
 from synthesis.model.layout import LayoutSizes
 from synthesis.model.linkage_answer import Layout, Skeleton
+from synthesis.model.manufacture import Exactness
+from synthesis.model.manufacture_answer import Manufactured, Yield
 from synthesis.model.stated_linkage import StatedCouplerPoint
+from synthesis.model.stated_targets import MOST_TARGETS, MetTarget, StatedTarget
 
 _GIVEN: TypeAdapter[GivenMechanism] = TypeAdapter(GivenMechanism)
 
@@ -86,6 +90,14 @@ class LinkageAnalysisRequest(AnalysisRequest):
         default=None,
         description="Lay the mechanism out in the fewest planes in which it can be built; over the motion, as used.",
     )
+    targets: list[StatedTarget] = Field(
+        default=[],
+        max_length=MOST_TARGETS,
+        description="What the mechanism is to do: how far it misses each of them, and what `manufacture` holds it to.",
+    )
+    manufacture: Exactness | None = Field(
+        default=None, description="How exactly the mechanism is made: what becomes of it at its targets."
+    )
     length_unit: LengthUnit = Field(default="mm", description="Of all lengths; `dynamics` converts them.")
     dynamics: DynamicsBlock | None = Field(
         default=None, description="Masses and loads: the forces in all joints, the drive, and what shakes the frame."
@@ -93,7 +105,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
 
     def faults(self) -> list[tuple[str, str]]:
         """What no single field shows: (path, detail)."""
-        faults = self.motion.faults()
+        faults = [*self.motion.faults(), *target_faults(self.mechanism, self.targets, self.manufacture)]
         if not self.points and self.dynamics is None:
             return faults
         try:
@@ -131,6 +143,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
             ends = float(at.min()), float(at.max())
             used = ends if slide else (math.radians(ends[0]), math.radians(ends[1]))
             planes["layout"] = layout_of(mechanism, self.layout, used).model_dump()
+        met = at_targets(self.mechanism, self.targets, self.manufacture) if self.targets else {}
         forces = {}
         if self.dynamics is not None:
             forces = {
@@ -142,6 +155,7 @@ class LinkageAnalysisRequest(AnalysisRequest):
             **analysis(mechanism, at, speed, motion.acceleration, tracked="branches" in self.include, points=points),
             "fourbar": more,
             **planes,
+            **met,
             **forces,
         }
 
@@ -250,6 +264,9 @@ class LinkageAnalysis(Answer):
     )
     notes: list[str] = Field(description="What is left out, by the name of the field, and why.")
     fourbar: FourbarAnalysis | None = Field(description="What `include` has asked for.")
+    targets: list[MetTarget] | None = optional("How far it misses each of the `targets` that the request states.")
+    manufacture: Manufactured | None = optional("What becomes of it as it is made, if the request states that.")
+    yield_: Yield | None = optional("Of `manufacture`, where it has tolerances and a quality.", alias="yield")
     layout: Layout | None = optional("The planes in which it can be built, if the request states a `layout`.")
     skeleton: Skeleton | None = optional("The reference configuration to which the places of `dynamics` belong.")
     dynamics: DynamicsAnswer | None = optional("Forces, if the request states `dynamics`.")

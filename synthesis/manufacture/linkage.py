@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from kinematics.linkage.variation import Task, deviations
 from kinematics.linkage.variation.driven import Sort
-from synthesis.model.manufacture import Held, Manufacture, Quality
+from synthesis.model.manufacture import Exactness, Held, Quality
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -156,15 +156,12 @@ class Product:
         return np.asarray((off <= self.limits * (1.0 + LIMIT_SLACK)).all(axis=(1, 2)))
 
 
-def demanded(
-    linkage: Linkage, held: Held, units: tuple[float, float], used: tuple[float, float] | None
-) -> tuple[Task, Real] | str:
-    """The task of what a linkage is held to, its inputs as drawn, and its errors there (t, 3); or why there is none."""
-    count = len(held.inputs)
+def task_of(linkage: Linkage, held: Held, units: tuple[float, float]) -> Task | str:
+    """The task of what a linkage is held to, with the inputs as drawn; in words why there is none."""
     sort: Sort = "outputs" if held.points is None else "points" if held.angles is None else "poses"
     task = Task(
         sort,
-        np.full(count, linkage.sign, np.int64),
+        np.full(len(held.inputs), linkage.sign, np.int64),
         held.inputs,
         slide_angle=linkage.slide_angle,
         points=held.points,
@@ -174,12 +171,22 @@ def demanded(
         adjusted=False,
         units=units,
     )
-    row = linkage.row[: task.dimensions]
     if sort == "poses":
         angles = _coupler_angles(linkage, task, held)
         if angles is None:
             return "the linkage cannot be assembled in its reference"
         task = dataclasses.replace(task, angles=angles)
+    return task
+
+
+def demanded(
+    linkage: Linkage, held: Held, units: tuple[float, float], used: tuple[float, float] | None
+) -> tuple[Task, Real] | str:
+    """The same where the linkage can be assembled at every target, and its errors there (t, 3); or why it cannot."""
+    task = task_of(linkage, held, units)
+    if isinstance(task, str):
+        return task
+    row = linkage.row[: task.dimensions]
     if used is None:
         task = dataclasses.replace(task, assemblies=_assemblies(task, row))
     offsets = deviations(task, row[None]).offsets[0]
@@ -188,7 +195,7 @@ def demanded(
     return dataclasses.replace(task, used=used), offsets
 
 
-def product(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float, float] | None) -> Product | str:
+def product(linkage: Linkage, held: Held, stated: Exactness, used: tuple[float, float] | None) -> Product | str:
     """A linkage with what it is held to; in words why there is none.
 
     Parameters
@@ -197,7 +204,7 @@ def product(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float
         As drawn.
     held : Held
         What it is held to.
-    stated : Manufacture
+    stated : Exactness
         The block of the statement.
     used : pair of float or None
         The range of the input on which it must stay on its branch, radians.
@@ -225,7 +232,7 @@ def units_of(quality: Quality) -> tuple[float, float]:
     return quality.max_error or math.inf, angle
 
 
-def _units(stated: Manufacture, held: Held) -> tuple[float, float]:
+def _units(stated: Exactness, held: Held) -> tuple[float, float]:
     """What errors are measured in: the quality; where none is stated, the size of the task and a radian."""
     if stated.quality is not None:
         return units_of(stated.quality)

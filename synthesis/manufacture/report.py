@@ -13,7 +13,7 @@ from kinematics.linkage.variation import deviations
 from kinematics.linkage.variation.sensitivities import Sensitivities, sensitivities
 from synthesis.manufacture.linkage import Product, linkage_of, product
 from synthesis.manufacture.sampled import offs, sampled_yield
-from synthesis.model.manufacture import Held, Manufacture
+from synthesis.model.manufacture import Exactness, Held
 from synthesis.model.manufacture_answer import Manufactured, Sensitivity, WorstCase, Yield
 
 Real = NDArray[np.float64]
@@ -29,7 +29,7 @@ class Reported(NamedTuple):
     yield_: Yield | None
 
 
-def reported(mechanism: Any, held: Held, stated: Manufacture, seed: int, used: tuple[float, float] | None) -> Reported:
+def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tuple[float, float] | None) -> Reported:
     """All that is said of a design as it is made.
 
     Parameters
@@ -38,7 +38,7 @@ def reported(mechanism: Any, held: Held, stated: Manufacture, seed: int, used: t
         As drawn.
     held : Held
         What it is held to.
-    stated : Manufacture
+    stated : Exactness
         The block.
     seed : int
         That of the problem; the block may have its own.

@@ -18,7 +18,7 @@ from scipy.special import betaincinv
 
 from kinematics.linkage.variation import deviations, shares
 from synthesis.manufacture.linkage import LIMIT_SLACK, Product
-from synthesis.model.manufacture import CONFIDENCE, Manufacture
+from synthesis.model.manufacture import CONFIDENCE, Exactness
 from synthesis.model.manufacture_answer import Yield
 
 Real = NDArray[np.float64]
@@ -27,7 +27,7 @@ BATCH = 8192
 """Samples that are driven at once where their deviations are looked at."""
 
 
-def offs(stated: Manufacture, pivots: NDArray[np.bool_]) -> Real:
+def offs(stated: Exactness, pivots: NDArray[np.bool_]) -> Real:
     """How far each dimension may be off, by whether it is a place of a fixed pivot; shape (n,)."""
     tolerances = stated.tolerances
     assert tolerances is not None
@@ -57,7 +57,7 @@ def good(product: Product, variants: Real) -> int:
     return count
 
 
-def sampled_yield(product: Product, stated: Manufacture, seed: int) -> Yield:
+def sampled_yield(product: Product, stated: Exactness, seed: int) -> Yield:
     """The yield of a linkage with a stated quality."""
     off = offs(stated, product.linkage.pivots(guides=product.task.guides))
     share = drawn(stated.distribution, seed, stated.samples, len(off))

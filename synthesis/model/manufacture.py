@@ -75,13 +75,9 @@ class Quality(Statement):
     )
 
 
-class Manufacture(Statement):
-    """How a linkage is made, and what is asked of it as it is made (docs/manufacture.md)."""
+class Exactness(Statement):
+    """How exactly a linkage is made, and what it must then still do (docs/manufacture.md)."""
 
-    round: Rounding | None = Field(
-        default=None, description="Find the best linkage on this grid beside each design; it is what is answered."
-    )
-    stock: Stock | None = Field(default=None, description="Find the best linkage of these links beside each design.")
     tolerances: Tolerances | None = None
     distribution: Literal["uniform", "normal"] = Field(
         default="uniform",
@@ -102,14 +98,46 @@ class Manufacture(Statement):
     )
 
     @property
-    def demanded_yield(self) -> float | None:
-        """The yield that designs are held to."""
-        return None if self.quality is None else self.quality.yield_
-
-    @property
     def sampled(self) -> bool:
         """Whether there is a yield: something is off, and something is to be kept."""
         return self.tolerances is not None and self.quality is not None
+
+    def faults_beside(self, task: Made) -> list[Contradiction]:
+        """What is stated and the task does not have, or too much of it, with paths below the block."""
+        listed = []
+        if self.tolerances is not None and self.tolerances.length == 0.0 and self.tolerances.pivot == 0.0:
+            listed.append(Contradiction("/tolerances", "nothing is off: state one above 0"))
+        if self.input == "adjusted" and not task.free_inputs:
+            listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
+        quality = self.quality
+        if quality is not None and quality.max_error is None and quality.max_angle_error is None:
+            detail = "says not when a linkage is good; state max_error or max_angle_error"
+            listed.append(Contradiction("/quality", detail))
+        if quality is not None and quality.max_error is not None and not task.distances:
+            detail = "the task asks for angles alone; state max_angle_error"
+            listed.append(Contradiction("/quality/max_error", detail))
+        if quality is not None and quality.max_angle_error is not None and not task.angles:
+            detail = "the task asks for no angles; state max_error"
+            listed.append(Contradiction("/quality/max_angle_error", detail))
+        if self.sampled and self.samples * task.targets > MOST_DRIVEN:
+            most = MOST_DRIVEN // task.targets
+            detail = f"for {task.targets} targets are too many; state {most} at most"
+            listed.append(Contradiction("/samples", detail))
+        return listed
+
+
+class Manufacture(Exactness):
+    """How a linkage is made, and what is asked of it as it is made (docs/manufacture.md)."""
+
+    round: Rounding | None = Field(
+        default=None, description="Find the best linkage on this grid beside each design; it is what is answered."
+    )
+    stock: Stock | None = Field(default=None, description="Find the best linkage of these links beside each design.")
+
+    @property
+    def demanded_yield(self) -> float | None:
+        """The yield that designs are held to."""
+        return None if self.quality is None else self.quality.yield_
 
     @property
     def gridded(self) -> bool:
@@ -118,47 +146,23 @@ class Manufacture(Statement):
 
     def faults(self, task: Made) -> list[Contradiction]:
         """What no single field shows, with paths below the block."""
-        listed = [*self._missing(), *self._beside(task)]
+        listed = [*self._missing(), *self.faults_beside(task)]
+        if self.gridded and task.ungridded:
+            listed.append(Contradiction("/round" if self.round is not None else "/stock", task.ungridded))
         wanted = self.demanded_yield
         if wanted is not None and self.samples < (needed := needed_samples(wanted)):
             listed.append(Contradiction("/samples", f"cannot show a yield of {wanted:g}; {needed} or more can"))
-        if self.sampled and self.samples * task.targets > MOST_DRIVEN:
-            most = MOST_DRIVEN // task.targets
-            detail = f"for {task.targets} targets are too many; state {most} at most"
-            listed.append(Contradiction("/samples", detail))
         return listed
 
     def _missing(self) -> list[Contradiction]:
         """Blocks that say nothing, or ask what cannot be told."""
-        tolerances, quality = self.tolerances, self.quality
-        if tolerances is None and quality is None and not self.gridded:
-            return [Contradiction("", "says nothing of how it is made; state tolerances, round or stock")]
-        if tolerances is None and not self.gridded:
-            return [Contradiction("/tolerances", "missing: a quality is kept or not by how exactly a linkage is made")]
-        if tolerances is None and self.demanded_yield is not None:
+        if self.tolerances is not None or (self.gridded and self.demanded_yield is None):
+            return []
+        if self.gridded:
             return [Contradiction("/tolerances", "missing: what is made exactly has no yield")]
-        if tolerances is not None and tolerances.length == 0.0 and tolerances.pivot == 0.0:
-            return [Contradiction("/tolerances", "nothing is off: state one above 0")]
-        if quality is not None and quality.max_error is None and quality.max_angle_error is None:
-            return [Contradiction("/quality", "says not when a linkage is good; state max_error or max_angle_error")]
-        return []
-
-    def _beside(self, task: Made) -> list[Contradiction]:
-        """What the task does not have."""
-        listed = []
-        if self.gridded and task.ungridded:
-            path = "/round" if self.round is not None else "/stock"
-            listed.append(Contradiction(path, task.ungridded))
-        if self.input == "adjusted" and not task.free_inputs:
-            listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
-        quality = self.quality
-        if quality is not None and quality.max_error is not None and not task.distances:
-            detail = "the task asks for angles alone; state max_angle_error"
-            listed.append(Contradiction("/quality/max_error", detail))
-        if quality is not None and quality.max_angle_error is not None and not task.angles:
-            detail = "the task asks for no angles; state max_error"
-            listed.append(Contradiction("/quality/max_angle_error", detail))
-        return listed
+        if self.quality is None:
+            return [Contradiction("", "says nothing of how it is made; state tolerances, round or stock")]
+        return [Contradiction("/tolerances", "missing: a quality is kept or not by how exactly a linkage is made")]
 
 
 def kept_pivots(

@@ -274,3 +274,123 @@ def test_what_cannot_be_is_refused_by_its_field(client, name):
     answer = client.post("/v1/jobs", json={"problem": {**problem, "manufacture": block}})
     assert answer.status_code == 422, answer.text
     assert f"/problem{path}" in [error["path"] for error in answer.json()["errors"]]
+
+
+EXACTNESS = {name: BLOCK[name] for name in ("tolerances", "quality", "samples")}
+
+
+@pytest.fixture(scope="module")
+def design(server):
+    job = finished(server.client, {**MOTION, "manufacture": BLOCK})
+    return job["result"]["designs"][0]
+
+
+def analysed(client, mechanism, targets, **more):
+    return client.post("/v1/analyses", json={"mechanism": mechanism, "targets": targets, **more})
+
+
+def test_an_analysis_tells_of_a_design_what_its_job_does(client, design):
+    answer = analysed(client, design["mechanism"], MOTION["positions"], manufacture=EXACTNESS)
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    assert told["yield"] == design["metrics"]["yield"]
+    assert told["manufacture"]["matter"] == design["manufacture"]["matter"]
+    assert told["manufacture"]["worst_case"] == pytest.approx(design["manufacture"]["worst_case"])
+    for target, met in zip(design["targets"], told["targets"], strict=True):
+        assert met["input_angle"] == pytest.approx(target["input_angle"], abs=1e-6)
+        assert max(met["point_residual"], met["angle_residual"]) < 1e-7
+
+
+def test_a_client_checks_its_own_rounding(client, design):
+    """Of a mechanism with lengths in whole numbers it is told what it misses, and how many will be good."""
+    exact = design["mechanism"]
+    pivots = {side: [round(z, 1) for z in place] for side, place in exact["fixed_pivots"].items()}
+    links = {name: round(length, 1) for name, length in exact["links"].items() if name != "ground"}
+    own = {
+        "type": "fourbar",
+        "fixed_pivots": pivots,
+        "links": links,
+        "coupler_point": exact["coupler_point"],
+        "assembly": exact["assembly"],
+        "reference_input_angle": exact["reference_input_angle"],
+    }
+    at = [
+        {**place, "input_angle": target["input_angle"]}
+        for place, target in zip(MOTION["positions"], design["targets"], strict=True)
+    ]
+    free, fixed = (
+        analysed(client, own, targets, manufacture=EXACTNESS).json() for targets in (MOTION["positions"], at)
+    )
+    for near, there in zip(free["targets"], fixed["targets"], strict=True):
+        assert 1e-4 < near["point_residual"] < 1.0
+        assert near["input_angle"] == pytest.approx(there["input_angle"], abs=2.0)
+        assert near["input_angle"] != there["input_angle"]
+    assert free["yield"]["value"] < 1.0
+    bare = analysed(client, own, MOTION["positions"]).json()
+    assert bare["targets"] == free["targets"]
+    assert "manufacture" not in bare
+    assert "yield" not in bare
+
+
+def test_points_and_outputs_are_targets_too(client):
+    path = finished(client, {**PATH, "max_designs": 1})["result"]["designs"][0]
+    points = [{"x": point["x"], "y": point["y"]} for point in PATH["points"]]
+    told = analysed(client, path["mechanism"], points, manufacture=POINTS).json()
+    assert max(met["point_residual"] for met in told["targets"]) < 1e-6
+    assert 0.0 < told["yield"]["value"] < 1.0
+    turns = finished(client, {**TURNS, "max_designs": 1})["result"]["designs"][0]
+    outputs = [{"output": met["output_place"], "input_angle": met["input_angle"]} for met in turns["targets"]]
+    told = analysed(client, turns["mechanism"], outputs, manufacture=ANGLES).json()
+    assert max(abs(met["error"]) for met in told["targets"]) < 1e-9
+    whole = finished(client, {**TURNS, "max_designs": 1, "manufacture": ANGLES})["result"]["designs"][0]
+    assert told["yield"] == whole["metrics"]["yield"]
+    one = [{**outputs[0], "output": outputs[0]["output"] + 1.0}, *outputs[1:]]
+    assert analysed(client, turns["mechanism"], one).json()["targets"][0]["error"] == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize("name", [name for name in FIELDS if name.partition(".")[0] not in ("round", "stock")])
+def test_a_field_makes_another_analysis(client, design, name):
+    answers = [
+        analysed(client, design["mechanism"], MOTION["positions"], manufacture=block).json()
+        for block in (EXACTNESS, changed(EXACTNESS, name, FIELDS[name]))
+    ]
+    assert answers[0] != answers[1]
+
+
+FIVEBAR = {
+    "type": "geared_fivebar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 1.0, "coupler_1": 7.0, "coupler_2": 7.0, "output": 1.2},
+    "gear_ratio": -2.0,
+    "phase": 30.0,
+}
+BARE = {
+    "type": "fourbar",
+    "fixed_pivots": {"input": [0.0, 0.0], "output": [6.0, 0.0]},
+    "links": {"input": 2.0, "coupler": 7.0, "output": 9.0},
+}
+POINT, POSE, OUTPUT = {"x": 1.0, "y": 2.0}, {"x": 1.0, "y": 2.0, "angle": 3.0}, {"output": 90.0, "input_angle": 10.0}
+REFUSED_ANALYSES: dict[str, tuple[Any, Any, Any, str]] = {
+    "a block without targets": (BARE, [], EXACTNESS, "/targets"),
+    "no point": (BARE, [{"x": 1.0}], None, "/targets/0"),
+    "an output without its input": (BARE, [{"output": 1.0}], None, "/targets/0"),
+    "an output and a point": (BARE, [{**POINT, **OUTPUT}], None, "/targets/0"),
+    "targets of two sorts": (BARE, [POINT, OUTPUT], None, "/targets/1"),
+    "a body without a reference": (BARE, [POSE], None, "/mechanism/reference_input_angle"),
+    "another mechanism": (FIVEBAR, [POINT], None, "/targets"),
+    "no tolerances": (BARE, [POINT], {"quality": {"max_error": 1.0}}, "/manufacture/tolerances"),
+    "an angle of a point": (BARE, [POINT], {**EXACTNESS}, "/manufacture/quality/max_angle_error"),
+    "a demand": (BARE, [POINT], changed(POINTS, "quality.yield", 0.9), "/manufacture/quality/yield"),
+    "a grid": (BARE, [POINT], {**POINTS, **GRID}, "/manufacture/round"),
+    "inputs that are stated": (BARE, [OUTPUT], {**ANGLES, "input": "adjusted"}, "/manufacture/input"),
+    "too many targets": (BARE, [POINT] * 201, None, "/targets"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED_ANALYSES)
+def test_an_analysis_refuses_what_cannot_be_by_its_field(client, name):
+    mechanism, targets, block, path = REFUSED_ANALYSES[name]
+    more = {} if block is None else {"manufacture": block}
+    answer = analysed(client, mechanism, targets, **more)
+    assert answer.status_code == 422, answer.text
+    assert path in [error["path"] for error in answer.json()["errors"]]
