@@ -1,13 +1,14 @@
 """What there is of a task that no design was found for: the design that breaks its demands least, and what is in reach.
 
-The room that is stated is left out first, as what does not fit into it is most easily looked at. Then one constraint
-after another is left out and the task is solved again: what the designs then have of it is what can be
-reached beside all other demands. Where that gives none, all constraints are left out together. A limit that alone is
-out of reach is then approached: designs are looked for with limits between what was reached and what is demanded, by
-bisection; by continuation from those at hand where the kind can, and by a whole search otherwise. A design that
-satisfies all demands although it was found without one is an answer: no demand hides what the task without it shows. Of
-gears it is the tolerance that is left out, and a dwell is made shorter. Everything else has its nearest miss among the
-designs that were driven and failed.
+The room that is stated is left out first, as what does not fit into it is most easily looked at: the clearance before
+box and obstacles, and these before the zones of pivots, so that what comes nearest to fitting passes by what it can,
+and has its pivots where they may lie. Then one constraint after another is left out and the task is solved again: what
+the designs then have of it is what can be reached beside all other demands. Where that gives none, all constraints are
+left out together. A limit that alone is out of reach is then approached: designs are looked for with limits between
+what was reached and what is demanded, by bisection; by continuation from those at hand where the kind can, and by a
+whole search otherwise. A design that satisfies all demands although it was found without one is an answer: no demand
+hides what the task without it shows. Of gears it is the tolerance that is left out, and a dwell is made shorter.
+Everything else has its nearest miss among the designs that were driven and failed.
 
 All of this may take no longer than :mod:`synthesis.outcome.allowance` says; what was found by then is told.
 """
@@ -28,6 +29,7 @@ from synthesis.outcome.forces import with_force_checks, with_forces
 from synthesis.proof.constraints import constraint_checks, within_zone
 from synthesis.proof.measures import Measures, link_lengths
 from synthesis.proof.room import judged_by_room
+from synthesis.proof.space import ROOM
 
 Solve = Callable[[Any, Progress], Result[Any]]
 Verify = Callable[[Any, Any], Any]
@@ -174,16 +176,38 @@ def _nothing(_problem: Any, _designs: Sequence[Any], _progress: Progress) -> Non
 
 
 def _without_room(problem: Any, solve: Metered, progress: Progress) -> tuple[list[Any], list[_Miss]]:
-    """Designs of the task without the room that is stated: those that fit into it all the same, and the others."""
-    if getattr(problem, "space", None) is None:
+    """Designs of the task without the room that is stated: those that fit into it all the same, and the others.
+
+    More is left out only where there are none without less.
+    """
+    space = getattr(problem, "space", None)
+    if space is None:
         return [], []
-    asked = problem.model_copy(update={"space": None, "include_failed": False, "max_designs": _most(problem)})
-    judged = [judged_by_room(problem, design) for design in solve(asked, progress).designs]
-    verdicts = [design for design in judged if design is not None]
-    broken = [[check for check in design.verification.checks if not check.passed] for design in verdicts]
-    sound = [design for design, lacks in zip(verdicts, broken, strict=True) if not lacks]
-    size = _size_of(problem)
-    return sound, [_Miss(design, lacks, size) for design, lacks in zip(verdicts, broken, strict=True) if lacks]
+    touching = space.model_copy(update={"clearance": 0.0})
+    zoned = space.model_copy(update={"box": None, "obstacles": []})
+    looser = [touching] if space.obstacles and space.clearance > 0.0 else []
+    looser += [zoned] if space.swept and zoned.demanding else []
+    sound: list[Any] = []
+    misses: list[_Miss] = []
+    for n, less in enumerate([*looser, None]):
+        update = {"space": less, "include_failed": False, "max_designs": _most(problem)}
+        span = part_of(progress, n / (len(looser) + 1), (n + 1) / (len(looser) + 1))
+        found = solve(problem.model_copy(update=update), span).designs
+        judged = [judged_by_room(problem, design) for design in map(_without_room_checks, found)]
+        verdicts = [design for design in judged if design is not None]
+        broken = [[check for check in design.verification.checks if not check.passed] for design in verdicts]
+        sound = [design for design, lacks in zip(verdicts, broken, strict=True) if not lacks]
+        size = _size_of(problem)
+        misses = [_Miss(design, lacks, size) for design, lacks in zip(verdicts, broken, strict=True) if lacks]
+        if sound or misses:
+            break
+    return sound, misses
+
+
+def _without_room_checks(design: Any) -> Any:
+    """A design to be judged by another room than the one that it was found in."""
+    checks = [check for check in design.verification.checks if check.name not in ROOM]
+    return design.model_copy(update={"verification": Verification.of(checks)})
 
 
 def _without_constraints(

@@ -71,6 +71,10 @@ def violations(statement: dict[str, Any], design: Any) -> list[str]:
             apart = float(np.min(shapely.distance(shape, shapes))) - radius - wide
             if apart < space.get("clearance", 0.0) - slack:
                 broken.append(f"{name} {apart:.4g} from obstacle {n}")
+            # What overlaps is at no distance, and neither is what only touches.
+            met = shapely.intersection(shape, shapes) if wide == 0.0 and radius == 0.0 and apart == 0.0 else None
+            if met is not None and np.max(shapely.area(met)) > slack * drive.size:
+                broken.append(f"{name} overlaps obstacle {n}")
     if frame is not None:
         broken += frame.missed(statement["positions"], design, slack)
     elif statement["kind"] == "path":

@@ -56,14 +56,14 @@ MOST_GROUPS = 24
 
 (
     COUNT, HALF, WANTED, LEFT, RIGHT, LOW, HIGH, BOXED, FIRST_X, FIRST_Y,
-    CYCLE, PARTS, BODY, GROUPS, PIECES, ZONED, ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT,
-) = range(20)  # fmt: skip
+    CYCLE, PARTS, BODY, GROUPS, PIECES, ZONED, ZONES_AT, PARTS_AT, BODY_AT, PIECES_AT, EASED,
+) = range(21)  # fmt: skip
 """Places of a room's numbers: how many margins it has; half of a link's width; the distance to be kept; the box, and
 whether there is one; P of the body as it is drawn; whether the whole cycle counts; how many parts, groups of the body's
-pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; and where each of these tables
-begins."""
+pieces, groups of the obstacles' pieces, these pieces, and pivots with zones there are; where each of these tables
+begins; and by how much less narrowly than other parts the body is aimed at in the first window and the last."""
 
-HEADER = 20
+HEADER = 21
 
 NONE = np.zeros(0)
 """No room."""
@@ -78,6 +78,7 @@ def packed(
     first: complex | None = None,
     pivots: Sequence[int] = (O2, O4, A, B),
     aim: float = AIM,
+    spare: float = np.inf,
 ) -> Real:
     """A room in task coordinates, with ``origin`` at 0 and ``size`` at 1; empty where nothing is demanded.
 
@@ -96,6 +97,9 @@ def packed(
         The fixed pivots of the input and the output and the moving ones, −1 for one that the linkage does not have.
     aim : float
         Share of the task's size by which everything is kept more narrowly than it is checked.
+    spare : float
+        By how much more than is checked the body keeps clear where it has to be at the ends of the motion: it cannot be
+        aimed at more narrowly there.
     """
     if space is None:
         return NONE
@@ -128,7 +132,7 @@ def packed(
     if first is not None:
         header[FIRST_X], header[FIRST_Y] = (first.real - origin.real) / size, (first.imag - origin.imag) / size
     header[PARTS], header[BODY], header[GROUPS] = len(links), bodies, groups
-    header[PIECES], header[ZONED] = len(pieces), len(zones)
+    header[PIECES], header[ZONED], header[EASED] = len(pieces), len(zones), aim - min(aim, max(spare / size, 0.0))
     tables: list[list[list[float]]] = [
         [one for listed in zones for one in listed],
         [[float(len(link)), *map(float, link), *[-1.0] * (3 - len(link))] for link in links],

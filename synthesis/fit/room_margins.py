@@ -24,6 +24,7 @@ from synthesis.fit.room import (
     BODY_AT,
     BOXED,
     COUNT,
+    EASED,
     FIRST_X,
     FIRST_Y,
     GROUPS,
@@ -212,7 +213,13 @@ def _span(room: Real, window: int, ring: bool, n: int) -> tuple[int, int]:
 
 
 @njit(**OPTIONS)
-def _side_of(room: Real, here: Complex, side: int) -> tuple[float, int, complex]:
+def _eased(room: Real, window: int) -> float:
+    """By how much less narrowly than other parts the body is aimed at in a window."""
+    return float(room[EASED]) if window == 0 or window == WINDOWS - 1 else 0.0
+
+
+@njit(**OPTIONS)
+def _side_of(room: Real, here: Complex, side: int, eased: float) -> tuple[float, int, complex]:
     """How far the parts lie within a side of the box, the joint that is nearest to it, and of a corner of the body its
     place on that, else 0."""
     axis, toward = side // 2, 1.0 if side % 2 == 0 else -1.0
@@ -234,8 +241,8 @@ def _side_of(room: Real, here: Complex, side: int) -> tuple[float, int, complex]
             own = complex(room[at + 6 + 2 * k], room[at + 7 + 2 * k]) - drawn
             z = here[P] + here[TURN] * own
             place = z.real if axis == 0 else z.imag
-            if toward * (place - limit) < least:
-                least, joint, corner = toward * (place - limit), P, own
+            if toward * (place - limit) + eased < least:
+                least, joint, corner = toward * (place - limit) + eased, P, own
         at += 6 + 2 * count
     return least, joint, corner
 
@@ -247,7 +254,7 @@ def _of_box(room: Real, places: Complex, ring: bool, values: Real, rows: Real, f
     depths = np.empty((4, n))
     for step in range(n):
         for side in range(4):
-            depths[side, step], _, _ = _side_of(room, places[step], side)
+            depths[side, step], _, _ = _side_of(room, places[step], side, _eased(room, min(step // STEPS, WINDOWS - 1)))
     here = np.empty(PLACES, np.complex128)
     for window in range(WINDOWS):
         begin, end = _span(room, window, ring, n)
@@ -257,7 +264,7 @@ def _of_box(room: Real, places: Complex, ring: bool, values: Real, rows: Real, f
             if ring or 0 < step < n - 1:
                 share = _nearer(depths[side, (step - 1) % n], depths[side, step], depths[side, (step + 1) % n])
             _between(places, step, share, ring, here)
-            values[first], joint, corner = _side_of(room, here, side)
+            values[first], joint, corner = _side_of(room, here, side, _eased(room, window))
             row = rows[first]
             row[STEP], row[SHARE] = float(step), share
             weight = (1.0 if side % 2 == 0 else -1.0) * (1.0 + 0j if side < 2 else 1j)
@@ -359,9 +366,9 @@ def _of_part(
     more than the part moves.
     """
     n, groups = len(places), len(nearest)
-    radius = room[HALF] if part >= 0 else 0.0
     moves, at_middle = np.empty(STEPS + 1), np.empty(len(pieces))
     for window in range(WINDOWS):
+        radius = room[HALF] if part >= 0 else -_eased(room, window)
         begin, end = _span(room, window, ring, n)
         middle = (begin + end) // 2
         nearest[:, 0], nearest[:, 1] = FAR, -1.0

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, Field
 
 from synthesis.model.dimension import LENGTH
 from synthesis.model.statement import Contradiction, NonNegative, Point, Statement
 from synthesis.model.zones import MovingZone, Outline, Zone
+
+Complex = NDArray[np.complex128]
 
 MOST_OBSTACLES = 50
 MOST_ZONES = 20
@@ -108,6 +112,29 @@ class Space(Statement):
             update["moving_pivots"] = self.moving_pivots.model_copy(update=zones)
         return self.model_copy(update=update)
 
+    def spared_at(self, points: Mapping[int, complex], turns: Mapping[int, complex]) -> float:
+        """By how much more than is demanded the body keeps clear of obstacles and sides, in length units.
+
+        Parameters are those of :meth:`without_room_at`.
+        """
+        spare = math.inf
+        for k, point in points.items():
+            corners, width = self._body_at(point, turns[k], points[0])
+            if self.box is not None:
+                (left, low), (right, high) = self.box
+                x, y = corners.real, corners.imag
+                spare = min(spare, min(x.min() - left, right - x.max(), y.min() - low, high - y.max()) - width)
+            for zone in self.obstacles:
+                spare = min(spare, zone.distance_from(corners) - self.clearance - width)
+        return spare
+
+    def _body_at(self, point: complex, turn: complex, first: complex) -> tuple[Complex, float]:
+        """Corners of what is carried, P alone where no outline is given, and by how much they are widened."""
+        if self.body is None:
+            return np.array([point]), 0.5 * self.link_width
+        outline = np.array([complex(*corner) for corner in self.body.outline])
+        return point + turn * (outline - first), 0.0
+
     def without_room_at(self, points: Mapping[int, complex], turns: Mapping[int, complex]) -> list[Contradiction]:
         """What the body meets where it has to be, whatever linkage carries it.
 
@@ -122,10 +149,7 @@ class Space(Statement):
             return []
         found = []
         for k, point in points.items():
-            corners, width = np.array([point]), 0.5 * self.link_width
-            if self.body is not None:
-                outline = np.array([complex(*corner) for corner in self.body.outline])
-                corners, width = point + turns[k] * (outline - points[0]), 0.0
+            corners, width = self._body_at(point, turns[k], points[0])
             if self.box is not None:
                 (left, low), (right, high) = self.box
                 x, y = corners.real, corners.imag

@@ -16,8 +16,9 @@ from kinematics.linkage.clearance.outlines import Indices, Part, Real
 from kinematics.linkage.clearance.scene import Pairs, Scene
 from kinematics.linkage.planar.mechanism import Mechanism
 
-FINEST = 1e-9
-"""Half of a part at the limit of refinement, as :data:`scene.FIRST`: what moves so little decides about no machine."""
+FINEST = 1e-10
+"""Half of a part at the limit of refinement, as :data:`scene.FIRST`: parts move by less in it than :data:`SURE` allows,
+so that what begins or ends at just the wanted distance is decided."""
 
 MOST = 400_000
 """Distances of pairs that are looked at in a sweep at most; what is undecided then stays so."""

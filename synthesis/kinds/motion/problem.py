@@ -381,8 +381,18 @@ class MotionProblem(LinkageProblem):
         held = [k for k, limits in enumerate(self.limits) if limits == (0.0, 0.0, 0.0)]
         if 0 not in held:
             return []
-        points = {k: self.positions[k].point for k in held}
-        return self.space.without_room_at(points, {k: cmath.rect(1.0, self.turns[k]) for k in held})
+        return self.space.without_room_at(*self._places_of(held))
+
+    @property
+    def held_at_ends(self) -> tuple[dict[int, complex], dict[int, complex]]:
+        """P and the body's rotation e^{iα} in the first position and the last, by their numbers, if these are held; of
+        the last only where the first is."""
+        ends = [k for k in (0, len(self.positions) - 1) if self.limits[k] == (0.0, 0.0, 0.0)]
+        return self._places_of(ends if 0 in ends else [])
+
+    def _places_of(self, listed: list[int]) -> tuple[dict[int, complex], dict[int, complex]]:
+        turns = self.turns
+        return {k: self.positions[k].point for k in listed}, {k: cmath.rect(1.0, turns[k]) for k in listed}
 
     def _misplaced_tolerances(self) -> list[Contradiction]:
         return [

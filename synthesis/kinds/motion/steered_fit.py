@@ -57,7 +57,7 @@ STAYING = 0.3
 WEIGHT, WEIGHT_IN_ROOM = 10.0, 1e4
 """Weight of limits in the first descent, and where the margins of a room are among them, which have kinks."""
 
-ROUNDS_IN_ROOM, STEPS_IN_ROOM = 16, 12
+ROUNDS_IN_ROOM, STEPS_IN_ROOM = 20, 12
 """Descents in a room, and steps of each, at most."""
 
 SAME_LINKAGE = 0.02
@@ -101,7 +101,10 @@ def let_go(linkage: Steered) -> Steered:
 def room_of(problem: MotionProblem, task: MotionTask, aim: float = AIM) -> Real:
     """What is demanded of the room (:mod:`synthesis.fit.room`), kept more narrowly by a share of the task's size; empty
     where that is nothing."""
-    return packed(problem.space, task.origin, task.size, first=task.origin, aim=aim)
+    if problem.space is None:
+        return NONE
+    spare = problem.space.spared_at(*problem.held_at_ends)
+    return packed(problem.space, task.origin, task.size, first=task.origin, aim=aim, spare=spare)
 
 
 def in_rooms(linkages: Sequence[Steered], rows: Real, room: Real) -> list[Steered]:

@@ -19,6 +19,7 @@ from synthesis.fit.chart import LENGTHS, OPTIONS, POINT
 from synthesis.fit.coupler_curve import two_bars, unit
 from synthesis.fit.fourbar_room import LINKAGE, fourbar_margins, room_rows
 from synthesis.fit.room_margins import ROW, margins_of
+from synthesis.numerics.levenberg import MATRIX, VECTOR
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -232,7 +233,7 @@ def steered_room_rows(
     return m + count
 
 
-@njit(**OPTIONS)
+@njit(VECTOR(MATRIX, MATRIX, VECTOR, MATRIX, VECTOR), **OPTIONS)
 def least_margins(x: Real, points: Real, assemblies: Real, steps: Real, room: Real) -> Real:
     """The least margin of each of many linkages, −∞ of one whose motion does not close.
 
