@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.variation import deviations
 from kinematics.linkage.variation.sensitivities import Sensitivities, sensitivities
 from synthesis.manufacture.linkage import Product, linkage_of, product
+from synthesis.manufacture.play import plays
 from synthesis.manufacture.sampled import offs, sampled_yield
 from synthesis.model.manufacture import Exactness, Held
 from synthesis.model.manufacture_answer import Manufactured, Sensitivity, WorstCase, Yield
@@ -54,13 +55,19 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
     off = offs(stated, linkage.pivots(guides=made.task.guides))
     share, rates = _shares(made, off)
     listed = [_sensitivity(made, rates, k, float(off[k]), float(share[k])) for k in np.argsort(-share, kind="stable")]
+    remark = None if np.isfinite(rates.rates).all() else "the linkage stands at a toggle at a target"
+    clearance = 0.0 if stated.tolerances is None else stated.tolerances.pin_clearance
+    play = plays(made, clearance) if clearance > 0.0 else []
+    if play is None:
+        remark = "with the clearances of its pins the linkage reaches a toggle at a target"
     seeded = seed if stated.seed is None else stated.seed
     told = Manufactured(
         seed=seeded if stated.sampled else None,
         worst_case=_worst(made, off),
         matter=_matter(listed),
         sensitivities=[one for one in listed if one is not None],
-        remark=None if np.isfinite(rates.rates).all() else "the linkage stands at a toggle at a target",
+        play=play or [],
+        remark=remark,
     )
     return Reported(told, sampled_yield(made, stated, seeded) if stated.sampled else None)
 

@@ -54,6 +54,16 @@ class Tolerances(Statement):
     pivot: Annotated[NonNegative, LENGTH] = Field(
         default=0.0, description="Of each coordinate of a fixed pivot, and of the offset of a slide."
     )
+    pin_clearance: Annotated[NonNegative, LENGTH] = Field(
+        default=0.0,
+        description="How far the centre of each pin may lie from that of its hole: half of their diameters' "
+        "difference.",
+    )
+
+    @property
+    def off(self) -> bool:
+        """Whether any dimension is off."""
+        return self.length > 0.0 or self.pivot > 0.0
 
 
 class Quality(Statement):
@@ -99,14 +109,24 @@ class Exactness(Statement):
 
     @property
     def sampled(self) -> bool:
-        """Whether there is a yield: something is off, and something is to be kept."""
-        return self.tolerances is not None and self.quality is not None
+        """Whether there is a yield: some dimension is off, and something is to be kept."""
+        return self.tolerances is not None and self.tolerances.off and self.quality is not None
+
+    @property
+    def gridded(self) -> bool:
+        """Whether linkages are looked for on a grid, or of a stock."""
+        return False
 
     def faults_beside(self, task: Made) -> list[Contradiction]:
         """What is stated and the task does not have, or too much of it, with paths below the block."""
         listed = []
-        if self.tolerances is not None and self.tolerances.length == 0.0 and self.tolerances.pivot == 0.0:
+        tolerances = self.tolerances
+        if tolerances is not None and not tolerances.off and tolerances.pin_clearance == 0.0:
             listed.append(Contradiction("/tolerances", "nothing is off: state one above 0"))
+        judged = self.quality is not None and (not self.gridded or self.quality.yield_ is not None)
+        if tolerances is not None and tolerances.pin_clearance > 0.0 and not tolerances.off and judged:
+            detail = "a quality is kept or not by how far dimensions are off: state length or pivot"
+            listed.append(Contradiction("/tolerances", detail))
         if self.input == "adjusted" and not task.free_inputs:
             listed.append(Contradiction("/input", "the task states the inputs at its targets; leave it out, or fixed"))
         quality = self.quality

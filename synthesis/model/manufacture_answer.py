@@ -6,8 +6,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, optional
+from synthesis.model.answer import Answer, Point, optional
 from synthesis.model.dimension import ANGLE_PER_LENGTH, LENGTH, Angle, Length
+
+
+def _none(listed: object) -> bool:
+    return listed == []
 
 
 class Yield(Answer):
@@ -47,6 +51,15 @@ class Sensitivity(Answer):
     )
 
 
+class Play(Answer):
+    """What the clearances of the pins let the linkage do at a target, with its input held: no more than this."""
+
+    index: int
+    max_error: Length | None = optional("Greatest distance of P, or of the slider, from where it stands as drawn.")
+    max_angle_error: Angle | None = optional("What the body, or the output, may turn either way, degrees.")
+    outline: list[Point] | None = optional("Corners of a convex area that holds every place that P can take.")
+
+
 class RoundingCost(Answer):
     """What a linkage on the grid has more of than the exact design that it stands for; less is below 0."""
 
@@ -64,6 +77,7 @@ class Manufactured(Answer):
     )
     cost: RoundingCost | None = optional("What rounding cost, against `exact`.")
     seed: int | None = optional("Of the samples of the yield.")
+    play: list[Play] = Field(default=[], exclude_if=_none, description="Of the pins, at each target.")
     worst_case: WorstCase | None = optional("With every dimension at an end of its tolerance.")
     matter: list[str] = Field(
         default=[], description="The dimensions whose tolerances matter, the first most: four fifths of the errors."

@@ -219,6 +219,37 @@ def _nearest(
     return np.where(f <= g, one, two), np.minimum(f, g)
 
 
+def with_clearances(of: Stated, links: np.ndarray, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """P, the angle of A → B and the output at target k with clearance links at O2, A, B and O4, shape (4, n).
+
+    The vectors go from the centre of the hole in the link before to that of the pin in the link after it. The loop is
+    closed by Newton's method in the angles of coupler and output, from the linkage without clearances.
+    """
+    row, theta = of.row, float(of.inputs[k])
+    sign = branch(of)
+    _, phi, output = (part[0] for part in posed(of, row[None], np.array([theta]), sign))
+    count = links.shape[1]
+    angle, second = np.full(count, phi), np.full(count, output)
+    o2 = complex(row[0], row[1])
+    crank, b = (row[3], row[4]) if of.slides else (row[4], row[5])
+    pin = o2 + links[0] + crank * np.exp(1j * theta) + links[1]
+    for _ in range(12):
+        end = pin + b * np.exp(1j * angle) + links[2]
+        if of.slides:
+            # The pin lies on the slide, whose place along its line is the second unknown.
+            there, slope = of.foot + second * np.exp(1j * of.slide), np.full(count, np.exp(1j * of.slide))
+        else:
+            o4 = complex(row[2], row[3])
+            there = o4 + links[3] + row[6] * np.exp(1j * second)
+            slope = 1j * row[6] * np.exp(1j * second)
+        gap, turn = end - there, 1j * b * np.exp(1j * angle)
+        determinant = -(np.conj(turn) * slope).imag
+        angle = angle - (-(np.conj(gap) * slope).imag) / determinant
+        second = second + (np.conj(turn) * gap).imag / (np.conj(turn) * slope).imag
+    assert np.abs(gap).max() < 1e-9
+    return pin + (row[-2] + 1j * row[-1]) * np.exp(1j * angle), angle, second
+
+
 def dimensions_off(of: Stated, tolerances: dict[str, float]) -> np.ndarray:
     """The tolerance of each dimension of a row."""
     length, pivot = tolerances.get("length", 0.0), tolerances.get("pivot", 0.0)

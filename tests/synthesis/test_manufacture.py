@@ -339,3 +339,46 @@ def test_linkages_on_the_grid_are_ordered_by_yield() -> None:
     assert values == sorted(values, reverse=True)
     assert all(design.exact is not None for design in ranked)
     assert values[0] >= max(design.metrics.yield_.value for design in solve(parse_problem(stated)).designs)
+
+
+CLEARANCE = 0.05
+PLAYS = {
+    "motion": ({**MOTION, **BOTH_OPEN, "max_designs": 2}, CLEARANCE),
+    "motion, with a slider": ({**SLIDES, "max_designs": 2}, CLEARANCE),
+    "path": ({**PATH, "max_designs": 2}, CLEARANCE),
+    "function": ({**TURNS, "max_designs": 2}, CLEARANCE),
+    "function, of a slider": ({**LOGARITHM, "max_designs": 2}, CLEARANCE),
+}
+
+
+@pytest.mark.parametrize("name", PLAYS)
+def test_play_holds_all_places_that_clearance_links_lead_to(name: str) -> None:
+    """Every pin's clearance link is turned by chance, and the loop closed by roots: all within, and near the bound."""
+    problem, clearance = PLAYS[name]
+    stated = {**problem, "manufacture": {"tolerances": {"pin_clearance": clearance}}}
+    answer = json.loads(solve(parse_problem(stated)).model_dump_json())
+    rng = np.random.default_rng(4)
+    for design in answer["designs"]:
+        of = made_linkages.stated(problem, design)
+        assert len(design["manufacture"]["play"]) == len(of.inputs)
+        for k, told in enumerate(design["manufacture"]["play"]):
+            links = clearance * np.exp(2j * np.pi * rng.random((4, 4000)))
+            links[:, :1000] *= rng.random((4, 1000))
+            place, phi, output = made_linkages.with_clearances(of, links, k)
+            stands = made_linkages.with_clearances(of, np.zeros((4, 1), complex), k)
+            if of.outputs is None:
+                away = np.abs(place - stands[0])
+                assert 0.8 * told["max_error"] < away.max() <= told["max_error"]
+                corners = np.array([complex(*corner) for corner in told["outline"]])
+                sides = np.roll(corners, -1) - corners
+                inside = ((place - corners[:, None]) * np.conj(sides)[:, None]).imag >= 0.0
+                assert inside.all()
+                if of.turns is not None:
+                    turned = np.degrees(np.abs(np.angle(np.exp(1j * (phi - stands[1])))))
+                    assert 0.8 * told["max_angle_error"] < turned.max() <= told["max_angle_error"]
+            elif of.slides:
+                away = np.abs(output - stands[2])
+                assert 0.8 * told["max_error"] < away.max() <= told["max_error"]
+            else:
+                turned = np.degrees(np.abs(np.angle(np.exp(1j * (output - stands[2])))))
+                assert 0.8 * told["max_angle_error"] < turned.max() <= told["max_angle_error"]
