@@ -10,9 +10,10 @@ from typing import Any, get_args
 
 from pydantic import BaseModel
 
-SKIPPED = ("mechanism", "placement", "verification", "layout")
-"""Fields of a design that are its dimensions, from which all is measured; the checks, which are listed by name; and the
-planes that it is laid out in, which :mod:`benchmarks.layout` compares with solids in motion."""
+SKIPPED = ("mechanism", "placement", "verification", "layout", "forces", "manufacture", "exact", "yield_")
+"""Fields of a design that are its dimensions, from which all is measured; the checks, which are listed by name; and what
+has a measure of its own: planes (:mod:`benchmarks.layout`), forces (:mod:`benchmarks.dynamics`), and linkages as they
+are made (:mod:`benchmarks.manufacture`)."""
 
 NOT_MEASURED = {
     "targets.index": "a number in a list",
@@ -221,7 +222,7 @@ def fields_of(model: type[BaseModel]) -> set[str]:
 
 def _fields(model: type[BaseModel], before: str) -> Iterator[tuple[str, str]]:
     for name, field in model.model_fields.items():
-        if name == "mechanism" or (not before and name in SKIPPED):
+        if name in ("mechanism", "yield_") or (not before and name in SKIPPED):
             continue
         path = f"{before}.{name}".lstrip(".")
         inner = list(models_of(field.annotation))
