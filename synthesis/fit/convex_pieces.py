@@ -19,11 +19,17 @@ COARSE = 1e-3
 FEW = 12
 """Corners of an outline that is taken as it is."""
 
+COARSER = 3.0
+"""Factor by which it is simplified further, where it has too many pieces."""
+
+HULL = 0.3
+"""Beyond this share of its extent nothing is left of an outline that its convex hull does not say better."""
+
 STRAIGHT = 1e-12
 """Sine of a corner that bends in by rounding alone."""
 
 
-def convex_pieces(corners: Complex, size: float) -> tuple[list[Complex], float]:
+def convex_pieces(corners: Complex, size: float, most: int | None = None) -> tuple[list[Complex], float]:
     """Convex polygons, each anticlockwise, that cover an outline, and how far the outline may reach beyond them.
 
     Parameters
@@ -32,18 +38,32 @@ def convex_pieces(corners: Complex, size: float) -> tuple[list[Complex], float]:
         Of a simple polygon; a point, or two points, is a piece by itself.
     size : float
         Of the task, in the unit of the corners.
+    most : int, optional
+        So many pieces at most: an outline of more is simplified further, in the end to its convex hull.
     """
     if len(corners) < 3:
         return [np.asarray(corners)], 0.0
     from shapely import Polygon, get_coordinates
 
-    polygon, beyond = Polygon(np.stack([corners.real, corners.imag], axis=1)), 0.0
+    drawn, beyond = Polygon(np.stack([corners.real, corners.imag], axis=1)), 0.0
+    polygon = drawn
     if len(corners) > FEW:
-        polygon, beyond = polygon.simplify(COARSE * size), COARSE * size
-    outline = get_coordinates(polygon.exterior.normalize()).view(np.complex128).ravel()[:-1][::-1]
-    if _is_convex(outline):
-        return [outline], beyond
-    return _joined([_anticlockwise(corners) for corners in triangles_of(outline)]), beyond
+        polygon, beyond = drawn.simplify(COARSE * size), COARSE * size
+    coarse = COARSE * max(float(np.ptp(corners.real)), float(np.ptp(corners.imag)))
+    while True:
+        outline = get_coordinates(polygon.exterior.normalize()).view(np.complex128).ravel()[:-1][::-1]
+        if _is_convex(outline):
+            return [outline], beyond
+        # A cut takes away two corners that bend in at most, so there are more pieces than half of these.
+        if most is None or np.count_nonzero(_bends(outline) < 0.0) < 2 * most:
+            pieces = _joined([_anticlockwise(triangle) for triangle in triangles_of(outline)])
+            if most is None or len(pieces) <= most:
+                return pieces, beyond
+        coarse *= COARSER
+        if coarse > HULL * np.abs(corners - corners[0]).max():
+            polygon, beyond = drawn.convex_hull, 0.0
+        else:
+            polygon, beyond = drawn.simplify(coarse), coarse
 
 
 def _anticlockwise(corners: Complex) -> Complex:
@@ -51,11 +71,16 @@ def _anticlockwise(corners: Complex) -> Complex:
     return corners if area > 0.0 else corners[::-1]
 
 
-def _is_convex(corners: Complex) -> bool:
-    """Whether an anticlockwise outline bends to the left at every corner."""
+def _bends(corners: Complex) -> NDArray[np.float64]:
+    """At every corner of an anticlockwise outline a number that is negative where it bends in; shape (k,)."""
     ahead = np.roll(corners, -1) - corners
     behind = np.roll(ahead, 1)
-    return bool(((behind.conj() * ahead).imag >= -STRAIGHT * np.abs(behind * ahead)).all())
+    return np.asarray((behind.conj() * ahead).imag + STRAIGHT * np.abs(behind * ahead))
+
+
+def _is_convex(corners: Complex) -> bool:
+    """Whether an anticlockwise outline bends to the left at every corner."""
+    return bool((_bends(corners) >= 0.0).all())
 
 
 def _joined(pieces: list[Complex]) -> list[Complex]:

@@ -51,6 +51,10 @@ PLACES = 6
 FOURBAR_PARTS = ((O2, A), (O4, B), (A, B, P))
 """Parts of a fourbar with a coupler point; with an outline of the body the coupler is A, B alone."""
 
+MOST_PIECES = 120
+"""Of all obstacles, and of the body: a step of a fit looks at each. Outlines of more are simplified for it, but are as
+they are where a design is verified."""
+
 MOST_GROUPS = 24
 """Pieces of obstacles, and of the body, that have margins of their own; of more, those of an outline share them."""
 
@@ -164,10 +168,15 @@ def _outlines(space: Space) -> list[tuple[Complex, float]]:
 
 def _pieces(outlines: Sequence[tuple[Complex, float]]) -> list[list[float]]:
     """Records of convex pieces: group, radius, middle, reach about it, number of corners, corners."""
-    listed: list[tuple[int, Complex, float]] = []
-    for number, (corners, radius) in enumerate(outlines):
-        pieces, beyond = convex_pieces(corners, 1.0)
-        listed += [(number, piece, radius + beyond) for piece in pieces]
+    found = [convex_pieces(corners, 1.0, MOST_PIECES) for corners, _ in outlines]
+    if sum(len(pieces) for pieces, _ in found) > MOST_PIECES:
+        share = max(MOST_PIECES // len(outlines), 1)
+        found = [convex_pieces(corners, 1.0, share) for corners, _ in outlines]
+    listed = [
+        (number, piece, outlines[number][1] + beyond)
+        for number, (pieces, beyond) in enumerate(found)
+        for piece in pieces
+    ]
     alone = len(listed) <= MOST_GROUPS
     records = []
     for n, (number, piece, radius) in enumerate(listed):

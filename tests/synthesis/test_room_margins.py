@@ -149,6 +149,18 @@ def test_an_outline_that_geos_gives_up_on_is_triangulated() -> None:
     assert union_all([shaped(piece) for piece in pieces]).area == pytest.approx(shape.area, rel=1e-9)
 
 
+@pytest.mark.parametrize("most", [1, 4, 30])
+def test_an_outline_of_no_more_pieces_than_it_may_have_is_still_covered(most: int) -> None:
+    turns = np.arange(400) * 2.0 * np.pi / 400
+    star = np.where(np.arange(400) % 2, 0.7, 1.0) * np.exp(1j * turns)
+    teeth = np.concatenate([[5 * k, 5 * k + 40j, 5 * k + 4 + 40j, 5 * k + 4] for k in range(60)] + [[299 - 9j, -9j]])
+    for outline in (star, teeth):
+        pieces, beyond = convex_pieces(outline, 1.0, most)
+        assert 1 <= len(pieces) <= most
+        assert union_all([shaped(piece) for piece in pieces]).buffer(beyond * 1.01 + 1e-9).covers(shaped(outline))
+        assert beyond <= 0.5 * np.abs(outline - outline.mean()).max()
+
+
 def test_an_outline_of_many_corners_reaches_no_farther_than_is_told() -> None:
     turns = np.linspace(0.0, 2.0 * np.pi, 500, endpoint=False)
     outline = (1.0 + 0.2 * np.cos(5.0 * turns)) * np.exp(1j * turns)

@@ -19,7 +19,7 @@ from synthesis.kinds.motion.demanded import Demanded
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.forces import bearable, looked_at
 from synthesis.kinds.motion.problem import MotionProblem
-from synthesis.kinds.motion.room import fits
+from synthesis.kinds.motion.room import affordable, fits
 from synthesis.kinds.motion.screening import SHORTEST_LINK, Screening, demands, screen
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.stated_dyads import DyadChoices
@@ -157,7 +157,7 @@ class Pairs:
         # The best ones lie close together: of the rest, too, some are looked at.
         rest = best[SWEPT_POOL :: -(-len(best) // SWEPT_POOL) or 1]
         fitting, portions = np.zeros_like(score), SWEPT_POOL // SWEPT_AT_ONCE
-        for k in range(portions):
+        for k in range(affordable(self.problem.space, portions)):
             looked = np.concatenate([best[:SWEPT_POOL][k * SWEPT_AT_ONCE :][:SWEPT_AT_ONCE], rest[k::portions]])
             i, j = np.unravel_index(looked, screening.score.shape)
             joints = [self.inputs.fixed[i], self.inputs.moving[i], self.outputs.moving[j], self.outputs.fixed[j]]

@@ -23,8 +23,17 @@ from synthesis.model.space import Space
 LOOKED_AT = 60
 """Positions on the way from the first target to the last, or round the cycle."""
 
+CORNERS = 60
+"""Corners of obstacles with which as many fourbars are looked at as there are to be; with more of them, fewer."""
+
 SURE = 1e-6
 """Share of the task's size by which a distance may fall short: these numbers are for choosing only."""
+
+
+def affordable(space: Space, portions: int) -> int:
+    """How many portions of fourbars are looked at, of as many as would be in a room of few corners; one at least."""
+    corners = sum(len(points) for points, _ in (zone.outline for zone in space.obstacles))
+    return max(int(portions * min(CORNERS / max(corners, 1), 1.0)), 1)
 
 
 def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[np.bool_]:
