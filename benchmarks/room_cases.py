@@ -110,7 +110,7 @@ ANSWERED: dict[str, Callable[[float], Room]] = {
         "fixed_pivots": {"input": zone((0.0, 0.0, 2 * s)), "output": zone((0.0, 0.0, 1e-3 * s))}
     },
     "stars in the way": lambda s: obstacles(
-        *[star((k % 3 - 1) * 3 * s, (k // 3) * 3 * s, 0.3 * s, 500) for k in range(6)]
+        *[star((k % 3 - 1) * 3 * s, (k // 3) * 3 * s, 0.3 * s, 50) for k in range(6)]
     ),
     "50 circles in the way": lambda s: obstacles(
         *[((k % 10 - 5) * s, (k // 10 - 2) * s, 0.05 * s) for k in range(50)], link_width=0.01 * s
@@ -132,8 +132,8 @@ ANSWERED: dict[str, Callable[[float], Room]] = {
         "box": [[-6 * s, -6 * s], [6 * s, 6 * s]], "over": "cycle", "link_width": 1e-9,
     },
 }  # fmt: skip
-"""Rooms that a statement may have, and that leave most linkages no place. The largest has 6000 corners,
-about as many as the body of a request holds."""
+"""Rooms that a statement may have, and that leave most linkages no place. None has more than 1000
+corners: with 6000, all that the body of a request holds, the sweeps of a search can take minutes."""
 
 
 def size_of(problem: dict[str, Any]) -> float:
