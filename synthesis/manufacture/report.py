@@ -14,8 +14,9 @@ from kinematics.linkage.variation.sensitivities import Sensitivities, sensitivit
 from synthesis.manufacture.linkage import Product, linkage_of, product
 from synthesis.manufacture.play import plays
 from synthesis.manufacture.sampled import offs, sampled_yield
-from synthesis.model.manufacture import Exactness, Held
-from synthesis.model.manufacture_answer import Manufactured, Sensitivity, WorstCase, Yield
+from synthesis.manufacture.widest import widest
+from synthesis.model.manufacture import Exactness, Held, Manufacture
+from synthesis.model.manufacture_answer import Allocation, Manufactured, Sensitivity, WorstCase, Yield
 
 Real = NDArray[np.float64]
 
@@ -60,6 +61,9 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
     play = plays(made, clearance) if clearance > 0.0 else []
     if play is None:
         remark = "with the clearances of its pins the linkage reaches a toggle at a target"
+    allocated: list[Allocation] = []
+    if isinstance(stated, Manufacture) and stated.widest:
+        allocated = widest(made, stated, seed if stated.seed is None else stated.seed, _squares(made, rates), off)
     seeded = seed if stated.seed is None else stated.seed
     told = Manufactured(
         seed=seeded if stated.sampled else None,
@@ -67,6 +71,7 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
         matter=_matter(listed),
         sensitivities=[one for one in listed if one is not None],
         play=play or [],
+        widest=allocated,
         remark=remark,
     )
     return Reported(told, sampled_yield(made, stated, seeded) if stated.sampled else None)
@@ -75,10 +80,15 @@ def reported(mechanism: Any, held: Held, stated: Exactness, seed: int, used: tup
 def _shares(made: Product, off: Real) -> tuple[Real, Sensitivities]:
     """What each tolerance adds to the squares of all errors, shape (n,); zeros where derivatives are not finite."""
     rates = sensitivities(made.task, made.nominal)
-    units = np.array([made.task.units[0]] * 2 + [made.task.units[1]])
-    added = np.square(rates.rates * off / units[:, None]).sum(axis=(0, 1))
+    added = _squares(made, rates) * off * off
     whole = float(added.sum())
     return (added / whole if 0.0 < whole < math.inf else np.zeros(len(off))), rates
+
+
+def _squares(made: Product, rates: Sensitivities) -> Real:
+    """What each dimension adds to the squares of all errors, by the square of its tolerance, shape (n,)."""
+    units = np.array([made.task.units[0]] * 2 + [made.task.units[1]])
+    return np.asarray(np.square(rates.rates / units[:, None]).sum(axis=(0, 1)))
 
 
 def _sensitivity(made: Product, rates: Sensitivities, k: int, off: float, share: float) -> Sensitivity | None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, Field
 
 from synthesis.model.dimension import ANGLE, LENGTH
-from synthesis.model.statement import Contradiction, Count, NonNegative, PositiveLength, Sizable, Statement
+from synthesis.model.statement import Contradiction, Count, Flag, NonNegative, PositiveLength, Sizable, Statement
 
 Real = NDArray[np.float64]
 
@@ -153,6 +153,10 @@ class Manufacture(Exactness):
         default=None, description="Find the best linkage on this grid beside each design; it is what is answered."
     )
     stock: Stock | None = Field(default=None, description="Find the best linkage of these links beside each design.")
+    widest: Flag = Field(
+        default=False,
+        description="Find the widest tolerances that still give the demanded yield to each design, the cheapest first.",
+    )
 
     @property
     def demanded_yield(self) -> float | None:
@@ -170,6 +174,9 @@ class Manufacture(Exactness):
         if self.gridded and task.ungridded:
             listed.append(Contradiction("/round" if self.round is not None else "/stock", task.ungridded))
         wanted = self.demanded_yield
+        if self.widest and (wanted is None or not self.sampled):
+            detail = "asks for what still gives a yield; state tolerances of dimensions, and quality.yield"
+            listed.append(Contradiction("/widest", detail))
         if wanted is not None and self.samples < (needed := needed_samples(wanted)):
             listed.append(Contradiction("/samples", f"cannot show a yield of {wanted:g}; {needed} or more can"))
         return listed

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from synthesis.model.answer import Answer, Point, optional
 from synthesis.model.dimension import ANGLE_PER_LENGTH, LENGTH, Angle, Length
@@ -51,6 +51,23 @@ class Sensitivity(Answer):
     )
 
 
+class Allocation(Answer):
+    """Tolerances with which a linkage has the yield that is demanded, as wide as they can be in their proportion."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, serialize_by_alias=True)
+
+    by: Literal["dimension", "sort", "scale"] = Field(
+        description="dimension: each dimension has its own; sort: one for all lengths and one for all pivots; scale: "
+        "as they are stated, all widened or narrowed alike."
+    )
+    tolerances: Annotated[dict[str, float], LENGTH] = Field(description="By dimension, as of `sensitivities`.")
+    cost: float = Field(
+        description="The mean of stated over allocated tolerance: what it costs against what is stated, where the cost "
+        "of a tolerance is as its inverse."
+    )
+    yield_: Yield = Field(alias="yield", description="With these tolerances, by the same samples.")
+
+
 class Play(Answer):
     """What the clearances of the pins let the linkage do at a target, with its input held: no more than this."""
 
@@ -81,6 +98,9 @@ class Manufactured(Answer):
     worst_case: WorstCase | None = optional("With every dimension at an end of its tolerance.")
     matter: list[str] = Field(
         default=[], description="The dimensions whose tolerances matter, the first most: four fifths of the errors."
+    )
+    widest: list[Allocation] = Field(
+        default=[], exclude_if=_none, description="The cheapest first, where the block asks for it."
     )
     sensitivities: list[Sensitivity] = Field(default=[], description="Of each dimension, in the order of the shares.")
     remark: str | None = optional("Why there is less.")

@@ -25,7 +25,7 @@ def held_to_yield(problem: StatedProblem, design: Design) -> Design:
         return design
     if problem.manufacture.gridded and design.exact is None:
         return design
-    return made(problem, design)
+    return made(problem, design, allocate=False)
 
 
 def all_made(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
@@ -37,7 +37,7 @@ def all_made(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
     return result.model_copy(update={"designs": designs, "nearest_miss": miss})
 
 
-def made(problem: LinkageProblem, design: Design) -> Design:
+def made(problem: LinkageProblem, design: Design, *, allocate: bool = True) -> Design:
     """A design of linkages as it is made, with the check of its yield where one is demanded.
 
     Parameters
@@ -46,9 +46,15 @@ def made(problem: LinkageProblem, design: Design) -> Design:
         Whose block ``manufacture`` is stated.
     design : a design of linkages
         As verified; one that has been looked at stays as it is.
+    allocate : bool
+        Whether the widest tolerances are looked for, where these are asked for: that takes many times as long.
     """
     stated = problem.manufacture
-    if stated is None or design.manufacture is not None:
+    if stated is None:
+        return design
+    if not allocate:
+        stated = stated.model_copy(update={"widest": False})
+    if design.manufacture is not None and (design.manufacture.widest or not stated.widest):
         return design
     # Only who states the block waits for the import.
     from synthesis.manufacture.linkage import linkage_of
@@ -71,8 +77,9 @@ def made(problem: LinkageProblem, design: Design) -> Design:
     if stated.demanded_yield is not None:
         low = None if told.yield_ is None else told.yield_.low
         kept = low is not None and low >= stated.demanded_yield
+        others = [check for check in design.verification.checks if check.name != YIELD]
         check = Check(name=YIELD, passed=kept, value=low, limit=stated.demanded_yield)
-        update["verification"] = Verification.of([*design.verification.checks, check])
+        update["verification"] = Verification.of([*others, check])
     changed: Design = design.model_copy(update=update)
     return changed
 

@@ -56,6 +56,7 @@ FIELDS: dict[str, Any] = {
     "round.coordinates": 1.0,
     "stock": {"links": [85.0, 115.0]},
     "stock.links": [85.0, 110.0, 115.0],
+    "widest": True,
     "tolerances": {"length": 0.2},
     "tolerances.length": 0.3,
     "tolerances.pivot": 0.3,
@@ -80,6 +81,8 @@ def test_every_field_has_a_value():
 def test_a_field_makes_another_answer(client, name):
     outer = name.partition(".")[0]
     base, block = (LOGARITHM, TRAVELS) if outer in ("round", "stock") else (MOTION, BLOCK)
+    if name == "widest":
+        block = changed(BLOCK, "quality.yield", 0.5)
     if name == "round":
         block = {field: value for field, value in TRAVELS.items() if field != "round"}
     assert made(client, base, changed(block, name, FIELDS[name])) != made(client, base, block)
@@ -246,6 +249,7 @@ REFUSED: dict[str, tuple[dict[str, Any], Any, str]] = {
     "no tolerances": (OPEN, {"quality": {"max_error": 0.1}}, "/manufacture/tolerances"),
     "tolerances of nothing": (OPEN, {**BLOCK, "tolerances": {}}, "/manufacture/tolerances"),
     "a quality of nothing": (OPEN, {**BLOCK, "quality": {"yield": 0.9}}, "/manufacture/quality"),
+    "the widest for no yield": (OPEN, {**BLOCK, "widest": True}, "/manufacture/widest"),
     "a quality of play": (OPEN, {**BLOCK, "tolerances": {"pin_clearance": 0.1}}, "/manufacture/tolerances"),
     "a negative tolerance": (OPEN, changed(BLOCK, "tolerances.length", -0.1), "/manufacture/tolerances/length"),
     "a yield of all": (OPEN, changed(BLOCK, "quality.yield", 1.0), "/manufacture/quality/yield"),
@@ -364,7 +368,9 @@ def test_points_and_outputs_are_targets_too(client):
     assert analysed(client, turns["mechanism"], one).json()["targets"][0]["error"] == pytest.approx(-1.0)
 
 
-@pytest.mark.parametrize("name", [name for name in FIELDS if name.partition(".")[0] not in ("round", "stock")])
+@pytest.mark.parametrize(
+    "name", [name for name in FIELDS if name.partition(".")[0] not in ("round", "stock", "widest")]
+)
 def test_a_field_makes_another_analysis(client, design, name):
     answers = [
         analysed(client, design["mechanism"], MOTION["positions"], manufacture=block).json()

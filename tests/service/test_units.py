@@ -10,6 +10,7 @@ from synthesis.registry import KINDS, example, examples, parse_problem
 CARRIED = {"body_travel_ratio", "body_turn_ratio"}
 PURE = {
     "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
+    "Allocation": {"cost"},
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
     "CamLimits": {"curvature_ratio"},

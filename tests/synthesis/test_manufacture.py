@@ -382,3 +382,41 @@ def test_play_holds_all_places_that_clearance_links_lead_to(name: str) -> None:
             else:
                 turned = np.degrees(np.abs(np.angle(np.exp(1j * (output - stands[2])))))
                 assert 0.8 * told["max_angle_error"] < turned.max() <= told["max_angle_error"]
+
+
+def test_the_widest_tolerances_still_give_the_yield_and_no_wider_ones_do() -> None:
+    demanded = 0.9
+    quality = {"max_error": 0.4, "max_angle_error": 0.4, "yield": demanded}
+    block = {"tolerances": FINE, "quality": quality, "samples": 8001}
+    stated = {**MOTION, **BOTH_OPEN, "max_designs": 1}
+    (plain,) = solve(parse_problem({**stated, "manufacture": block})).designs
+    answer = solve(parse_problem({**stated, "manufacture": {**block, "widest": True}}))
+    design = json.loads(answer.model_dump_json())["designs"][0]
+    assert "widest" not in json.loads(plain.model_dump_json())["manufacture"]
+    told = design["manufacture"]["widest"]
+    assert {one["by"] for one in told} == {"dimension", "sort", "scale"}
+    costs = [one["cost"] for one in told]
+    assert costs == sorted(costs)
+    assert costs[0] < 1.0
+    assert told[-1]["by"] == "scale"
+    of = made_linkages.stated(stated, design)
+    share = made_linkages.samples(of, {"length": 1.0, "pivot": 1.0}, "uniform", 6000, 2) - of.row
+    for one in told:
+        tolerances = np.array(list(one["tolerances"].values()))
+        assert one["yield"]["low"] >= demanded
+        assert one["yield"]["value"] < demanded + 0.02
+        values = [made_linkages.good(of, of.row + share * width * tolerances, 0.4, 0.4).mean() for width in (1.0, 1.15)]
+        assert values[0] > demanded - 0.01
+        assert values[1] < demanded
+        assert one["cost"] == pytest.approx(np.mean(made_linkages.dimensions_off(of, FINE) / tolerances))
+    by_sort = next(one["tolerances"] for one in told if one["by"] == "sort")
+    assert len(set(by_sort.values())) == 2
+
+
+def test_of_a_design_without_the_yield_it_is_told_which_tolerances_would_give_it() -> None:
+    block = {"tolerances": FINE, "quality": {"max_error": 0.02, "yield": 0.99}, "samples": 4000, "widest": True}
+    design = solve(parse_problem({**MOTION, "manufacture": block})).nearest_miss.design
+    for one in design.manufacture.widest:
+        assert one.cost > 1.0
+        assert one.yield_.low >= 0.99
+    assert len(design.manufacture.widest) == 3

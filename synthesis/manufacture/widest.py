@@ -1,0 +1,133 @@
+"""The widest tolerances with which a linkage still has the yield that is demanded, cheapest first.
+
+To make a dimension within a tolerance t costs in proportion to 1/t (Chase and Greenwood, Design issues in mechanical
+tolerance analysis, Manufacturing Review 1 (1988) 50). To the first order the squares of all errors add up to Σ s t²,
+with s from the exact derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension by
+itself, and t ∝ (n/s)^(1/3) for n dimensions that share one. That is the shape; how wide it may be is found with samples,
+driven as those of the yield are, by bisection: what is answered has been sampled in full, and keeps what is demanded.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.manufacture.linkage import Product
+from synthesis.manufacture.sampled import drawn, good, interval
+from synthesis.model.manufacture import Exactness
+from synthesis.model.manufacture_answer import Allocation, Yield
+
+Real = NDArray[np.float64]
+
+WIDEST = 10.0
+"""Times a stated tolerance beyond which none is widened: more is no tolerance of that shop."""
+
+ROUGH = 10_000
+"""Samples, at most, by which the width is looked for."""
+
+STEPS = 9
+"""Bisections of a factor of two: to a seventh of a per cent."""
+
+DOUBLED = 8
+"""Doublings, or halvings, in which the width is looked for."""
+
+NARROWED, TRIES = 0.98, 25
+"""What a width is lessened by where all samples show less than the rough ones did, and how often."""
+
+
+def widest(made: Product, stated: Exactness, seed: int, squares: Real, off: Real) -> list[Allocation]:
+    """Tolerances as wide as the demanded yield lets them be, the cheapest first; empty where there are none.
+
+    Parameters
+    ----------
+    made : Product
+        The linkage with its task.
+    stated : Exactness
+        With a quality and a yield in it.
+    seed : int
+        Of the samples.
+    squares : float, shape (n,)
+        What each dimension adds to the squares of all errors, by the square of its tolerance.
+    off : float, shape (n,)
+        Stated tolerances; those of 0 stay so.
+    """
+    assert stated.quality is not None
+    demanded = stated.quality.yield_
+    open_ones = off > 0.0
+    if demanded is None or not open_ones.any():
+        return []
+    pivots = made.linkage.pivots(guides=made.task.guides)
+    found = []
+    for by, shape in (
+        ("dimension", _by_dimension(squares, open_ones)),
+        ("sort", _by_sort(squares, open_ones, pivots)),
+        ("scale", off),
+    ):
+        told = _scaled(made, stated, seed, demanded, shape, off)
+        if told is None:
+            continue
+        tolerances, share = told
+        cost = float(np.mean(off[open_ones] / tolerances[open_ones]))
+        named = {name: float(t) for name, t in zip(made.names, tolerances, strict=True)}
+        found.append(Allocation(by=by, tolerances=named, cost=cost, yield_=share))
+    return sorted(found, key=lambda one: one.cost)
+
+
+def _by_dimension(squares: Real, open_ones: NDArray[np.bool_]) -> Real:
+    known = np.where(squares > 0.0, squares, np.nan)
+    least = float(np.nanmin(known)) if np.isfinite(known).any() else 1.0
+    return np.where(open_ones, np.where(squares > 0.0, squares, least) ** (-1.0 / 3.0), 0.0)
+
+
+def _by_sort(squares: Real, open_ones: NDArray[np.bool_], pivots: NDArray[np.bool_]) -> Real:
+    shape = np.zeros(len(squares))
+    for sort in (open_ones & pivots, open_ones & ~pivots):
+        if sort.any():
+            shape[sort] = (np.count_nonzero(sort) / max(float(squares[sort].sum()), 1e-300)) ** (1.0 / 3.0)
+    return shape
+
+
+def _scaled(
+    made: Product, stated: Exactness, seed: int, demanded: float, shape: Real, off: Real
+) -> tuple[Real, Yield] | None:
+    """The widest tolerances of a shape, and the yield with them; None where none is small enough."""
+    rough = min(stated.samples, ROUGH)
+    unit = shape * float(np.median(off[off > 0.0] / shape[off > 0.0]))
+
+    def tolerances(width: float) -> Real:
+        return np.minimum(width * unit, WIDEST * off)
+
+    def count(width: float, samples: int) -> int:
+        share = drawn(stated.distribution, seed, samples, len(off))
+        return good(made, made.nominal + share * tolerances(width))
+
+    def enough(width: float) -> bool:
+        return count(width, rough) >= demanded * rough
+
+    low = high = 1.0
+    if enough(low):
+        for _ in range(DOUBLED):
+            high *= 2.0
+            if not enough(high):
+                break
+            low = high
+    else:
+        for _ in range(DOUBLED):
+            high, low = low, 0.5 * low
+            if enough(low):
+                break
+        else:
+            return None
+    for _ in range(STEPS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if enough(middle) else (low, middle)
+    for _ in range(TRIES):
+        kept = count(low, stated.samples)
+        ends = interval(kept, stated.samples)
+        if ends[0] >= demanded:
+            value = kept / stated.samples
+            return tolerances(low), Yield(value=value, low=ends[0], high=ends[1], samples=stated.samples)
+        low *= NARROWED
+    return None
