@@ -24,7 +24,7 @@ from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, SliderCrank, fourbar, slider_crank
 from kinematics.linkage.variation import Task, deviations, shares, squares
 from kinematics.linkage.variation.sensitivities import sensitivities
-from synthesis.manufacture.linkage import LIMIT_SLACK, Linkage, demanded, units_of
+from synthesis.manufacture.linkage import LIMIT_SLACK, Linkage, demanded
 from synthesis.model.linkage_answer import (
     CouplerPoint,
     FixedPivots,
@@ -42,6 +42,9 @@ from synthesis.model.linkages import (
 from synthesis.model.manufacture import Held, Manufacture
 
 Real = NDArray[np.float64]
+
+Limits = tuple[float, float]
+"""Of distance, and of angle in radians."""
 
 REACH = 2
 """Steps of the grid to either side of a design that are searched, in every dimension at once."""
@@ -87,7 +90,13 @@ class Near(NamedTuple):
         return None if self.body is None else math.degrees(coupler + self.body)
 
 
-def nearest_on_grid(linkage: Linkage, held: Held, stated: Manufacture, used: tuple[float, float] | None) -> Near | str:
+def nearest_on_grid(
+    linkage: Linkage,
+    held: Held,
+    stated: Manufacture,
+    used: tuple[float, float] | None,
+    limits: Limits = (math.inf, math.inf),
+) -> Near | str:
     """The linkages on the grid, or of the stock, that come nearest to what a design is held to.
 
     Parameters
@@ -100,11 +109,15 @@ def nearest_on_grid(linkage: Linkage, held: Held, stated: Manufacture, used: tup
         With ``round`` or ``stock``.
     used : pair of float or None
         The range of the input on which linkages must stay on their branch, radians.
+    limits : pair of float, optional
+        Errors up to which linkages are looked for: distance, and angle in radians. They hold for the targets that have
+        no tolerance of their own, and are not looked at here where some have one.
 
     Returns
     -------
     Near or str
-        :data:`KEPT` linkages at most; in words why none can be looked for.
+        :data:`KEPT` linkages at most; the nearest alone where none keeps the limits. In words why none can be looked
+        for.
     """
     found = demanded(linkage, held, (held.size, 1.0), used)
     if isinstance(found, str):
@@ -120,15 +133,13 @@ def nearest_on_grid(linkage: Linkage, held: Held, stated: Manufacture, used: tup
     )
     row = linkage.row[: task.dimensions]
     names = linkage.names(guides=task.guides)
-    limits = None
-    if stated.quality is not None and not _has_own(held):
-        limits = units_of(stated.quality)
+    kept = None if _has_own(held) or limits == (math.inf, math.inf) else limits
     body = None
     if task.sort == "poses" and held.angles is not None and task.angles is not None:
         body = float(held.angles[0] - task.angles[0])
     if stated.stock is None:
         values = _candidates(row, names, stated, held.kept)
-        rows, taken = _searched(linkage, task, values, limits)
+        rows, taken = _searched(linkage, task, values, kept, screened=stated.quality is not None)
         if not len(rows):
             # None keeps them; the one that comes nearest tells by how much.
             rows, taken = (part[:1] for part in _searched(linkage, task, values, None))
@@ -145,10 +156,6 @@ def nearest_on_grid(linkage: Linkage, held: Held, stated: Manufacture, used: tup
         rows, taken = np.concatenate([of for of, _ in parts]), np.concatenate([of for _, of in parts])
     order = np.argsort(taken, kind="stable")[:KEPT]
     return Near(task, rows[order], taken[order], body)
-
-
-_Limits = tuple[float, float]
-"""Of distance, and of angle in radians."""
 
 
 def _has_own(held: Held) -> bool:
@@ -183,21 +190,26 @@ def _settings(linkage: Linkage, task: Task, rows: Real) -> Real | None:
     return np.stack([np.zeros(len(rows)), (moved * np.conj(task.along)).real], axis=1)
 
 
-def _searched(linkage: Linkage, task: Task, values: list[Real], limits: _Limits | None) -> tuple[Real, Real]:
+def _searched(
+    linkage: Linkage, task: Task, values: list[Real], limits: Limits | None, *, screened: bool = False
+) -> tuple[Real, Real]:
     """The best of all combinations of values, driven: rows (v, n) and sums of squares (v,), the least first.
 
-    Only those that keep the limits, where there are such.
+    Only those that keep the limits, where there are such; ``screened``: these are tight, and looked at first.
     """
     split = max(len(values) - INNER, 0)
     inner = np.stack(np.meshgrid(*values[split:], indexing="ij"), axis=-1).reshape(-1, len(values) - split)
     batch = np.empty((len(inner), len(values)))
     batch[:, split:] = inner
     rows, taken, most = np.empty((0, len(values))), np.empty(0), math.inf
+    if limits is not None:
+        # Nothing that keeps them has more.
+        most = len(task.inputs) * ((limits[0] / task.units[0]) ** 2 + (limits[1] / task.units[1]) ** 2)
     for outer in combined(*values[:split]):
         batch[:, :split] = outer
         settings = _settings(linkage, task, batch)
         some: slice | NDArray[np.intp] = slice(None)
-        if limits is not None:
+        if limits is not None and screened:
             near = shares(dataclasses.replace(task, greatest=True, units=limits), batch, settings)
             some = np.flatnonzero(near <= 1.0 + LIMIT_SLACK)
             settings = None if settings is None else settings[some]

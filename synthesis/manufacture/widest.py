@@ -3,8 +3,9 @@
 To make a dimension within a tolerance t costs in proportion to 1/t (Chase and Greenwood, Design issues in mechanical
 tolerance analysis, Manufacturing Review 1 (1988) 50). To the first order the squares of all errors add up to Σ s t²,
 with s from the exact derivatives; the cheapest tolerances of a given sum have t ∝ s^(−1/3) for each dimension by
-itself, and t ∝ (n/s)^(1/3) for n dimensions that share one. That is the shape; how wide it may be is found with samples,
-driven as those of the yield are, by bisection: what is answered has been sampled in full, and keeps what is demanded.
+itself, and t ∝ (n/s)^(1/3) for n dimensions that share one. That is the shape; how wide it may be is found with
+samples, driven as those of the yield are, by bisection: what is answered has been sampled in full, and keeps what is
+demanded.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ quality where one is stated.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -16,7 +17,9 @@ from numpy.typing import NDArray
 
 from synthesis.model.answer import Check, Gap, NearestMiss, Reachable, Result, Verification
 from synthesis.model.dimension import ANGLE, LENGTH
+from synthesis.model.linkage_answer import ExactDesign
 from synthesis.model.linkage_statement import LinkageProblem
+from synthesis.model.manufacture import Held
 from synthesis.outcome.held import held_to_all
 from synthesis.outcome.manufacture import branch_range, errors_of, exact_design
 from synthesis.proof.checks import at_most
@@ -28,6 +31,12 @@ ON_GRID = "on_grid"
 
 DRIVEN, JUDGED = 100, 40
 """Linkages near a design, at most, that are verified, and that are held to the demands that come after that."""
+
+FAR = 0.05
+"""Share of the task's size, and radians, by which a target may be missed where no quality is stated."""
+
+WORSE = 2.0
+"""What an exact design misses may be missed so many times; of a fit that misses by more than :data:`FAR`."""
 
 
 class _Rounded(NamedTuple):
@@ -96,16 +105,18 @@ def _rounded(problem: LinkageProblem, design: Any, nearly: Nearly) -> _Rounded:
     linkage = linkage_of(design.mechanism)
     if linkage is None or problem.manufacture is None:
         return _Rounded(None, ON_GRID)
-    near = nearest_on_grid(linkage, problem.held_to(design), problem.manufacture, branch_range(problem, design))
+    exact, held = exact_design(problem, design), problem.held_to(design)
+    limits = _limits(problem, held, exact)
+    near = nearest_on_grid(linkage, held, problem.manufacture, branch_range(problem, design), limits)
     if isinstance(near, str):
         return _Rounded(None, ON_GRID)
-    exact, first, judged = exact_design(problem, design), _Rounded(None, ON_GRID), 0
+    first, judged = _Rounded(None, ON_GRID), 0
     for n in range(min(len(near.rows), DRIVEN)):
         mechanism = mechanism_of(linkage, near, n)
         driven = None if mechanism is None else nearly(problem, design, mechanism)
         if driven is None:
             continue
-        checks = [*_quality_checks(problem, driven), *driven.verification.checks]
+        checks = [*_quality_checks(problem, driven, exact), *driven.verification.checks]
         rounded = driven.model_copy(
             update={
                 "mechanism": with_dimensions(driven.mechanism, near.rows[n]),
@@ -128,31 +139,39 @@ def _rounded(problem: LinkageProblem, design: Any, nearly: Nearly) -> _Rounded:
     return first
 
 
-def _quality_checks(problem: LinkageProblem, design: Any) -> list[Check]:
-    """How far targets without a tolerance of their own are missed: against the quality, or as a value alone."""
-    assert problem.manufacture is not None
-    quality = problem.manufacture.quality
+def _quality_checks(problem: LinkageProblem, design: Any, exact: ExactDesign) -> list[Check]:
+    """How far targets without a tolerance of their own are missed: against the quality, or what is still an answer."""
     error, angle = errors_of(problem, design)
-    own = _own_limits(problem, design)
+    held = problem.held_to(design)
+    own = _own_limits(held)
     if own is not None:
         free = [target for target, has in zip(design.targets, own, strict=True) if not has]
         error = max((target.point_residual for target in free), default=None)
         angle = max((target.angle_residual for target in free if target.angle_residual is not None), default=None)
+    distance, turn = _limits(problem, held, exact)
     checks = []
-    for name, value, limit, dimension in (
-        ("max_error", error, None if quality is None else quality.max_error, LENGTH),
-        ("max_angle_error", angle, None if quality is None else quality.max_angle_error, ANGLE),
-    ):
-        if value is not None and limit is not None:
-            checks.append(at_most(name, value, limit, dimension))
-        elif value is not None:
-            checks.append(Check(name=name, passed=True, value=value, dimension=dimension))
+    if error is not None:
+        checks.append(at_most("max_error", error, distance, LENGTH))
+    if angle is not None:
+        checks.append(at_most("max_angle_error", angle, math.degrees(turn), ANGLE))
     return checks
 
 
-def _own_limits(problem: LinkageProblem, design: Any) -> NDArray[np.bool_] | None:
+def _limits(problem: LinkageProblem, held: Held, exact: ExactDesign) -> tuple[float, float]:
+    """Distance and angle (radians) by which targets may be missed: the quality, or what is still an answer."""
+    quality = None if problem.manufacture is None else problem.manufacture.quality
+    distance = max(FAR * held.size, WORSE * (exact.max_error or 0.0))
+    angle = max(FAR, WORSE * math.radians(exact.max_angle_error or 0.0))
+    if quality is not None and quality.max_error is not None:
+        distance = quality.max_error
+    if quality is not None and quality.max_angle_error is not None:
+        angle = math.radians(quality.max_angle_error)
+    return distance, angle
+
+
+def _own_limits(held: Held) -> NDArray[np.bool_] | None:
     """Which targets have a tolerance of their own; None where none has."""
-    limits = problem.held_to(design).limits
+    limits = held.limits
     if limits is None:
         return None
     own = np.asarray(((limits > 0.0) & np.isfinite(limits)).any(axis=1))

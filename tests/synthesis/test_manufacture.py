@@ -330,6 +330,13 @@ def test_a_quality_that_no_grid_keeps_is_the_nearest_miss() -> None:
     assert [design.verification.passed for design in failed.designs] == [False]
 
 
+def test_a_grid_too_coarse_for_the_task_has_no_answer() -> None:
+    block = {"round": {"length": 1e6, "coordinates": 1e6}}
+    answer = solve(parse_problem({**SLIDES, "max_designs": 1, "manufacture": block}))
+    assert answer.designs == []
+    assert "max_error" in {gap.check for gap in answer.nearest_miss.gaps}
+
+
 def test_linkages_on_the_grid_are_ordered_by_yield() -> None:
     block = {**GRID, "tolerances": FINE, "quality": {"max_error": 0.8}, "samples": 2000}
     stated = {**LOGARITHM, "max_designs": 3, "manufacture": block}

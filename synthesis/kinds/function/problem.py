@@ -222,7 +222,7 @@ class FunctionProblem(LinkageProblem):
         pivots = self.fixed_pivots
         kept = kept_pivots((None, None) if pivots is None else (pivots.input, pivots.output))
         if self.slides:
-            return Held(np.radians(inputs), travels=places, free=False, kept=kept)
+            return Held(np.radians(inputs), travels=places, free=False, size=float(np.ptp(places)) or 1.0, kept=kept)
         zeros = self.stated_zeros
         return Held(
             np.radians(inputs),
