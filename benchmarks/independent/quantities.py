@@ -11,9 +11,9 @@ from typing import Any, get_args
 from pydantic import BaseModel
 
 SKIPPED = ("mechanism", "placement", "verification", "layout", "forces", "manufacture", "exact", "yield_")
-"""Fields of a design that are its dimensions, from which all is measured; the checks, which are listed by name; and what
-has a measure of its own: planes (:mod:`benchmarks.layout`), forces (:mod:`benchmarks.dynamics`), and linkages as they
-are made (:mod:`benchmarks.manufacture`)."""
+"""Fields of a design that are its dimensions, from which all is measured; the checks, which are listed by name; and
+what has a measure of its own: planes (:mod:`benchmarks.layout`), forces (:mod:`benchmarks.dynamics`), and linkages as
+they are made (:mod:`benchmarks.manufacture`)."""
 
 NOT_MEASURED = {
     "targets.index": "a number in a list",

@@ -10,7 +10,7 @@ import { el, words } from "./dom.js";
 import { downloads } from "./downloads.js";
 import { Explorer } from "./explorer.js";
 import { Gears } from "./gears.js";
-import { checks, dimensions, figures, table } from "./figures.js";
+import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
 
 /** Samples of a cycle. */
@@ -72,7 +72,7 @@ export class Shown {
   tabulated() {
     const { design, job } = this;
     return [downloads(job, this.n, this.drawing),
-      el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design)), dimensions(design)), this.drawing];
+      el("div", { class: "columns" }, checks(design, job.problem), table("Quantities", figures(design)), ...made(design), dimensions(design)), this.drawing];
   }
 
   /** @param {AbortSignal} gone */

@@ -41,6 +41,21 @@ export function table(title, rows) {
     ...rows.map(([name, value]) => el("tr", {}, el("th", { scope: "row" }, words(name)), el("td", {}, text(value)))))));
 }
 
+/** What becomes of a design as a shop makes it: nothing where the problem does not ask. @param {any} design @returns {HTMLElement[]} */
+export function made(design) {
+  const told = design.manufacture;
+  if (!told) return [];
+  const share = design.metrics?.yield;
+  const { worst_case: worst, cost } = told;
+  /** @type {[string, any][]} */
+  const rows = [["yield", share?.value], ["yield, at least", share?.low], ["yield, at most", share?.high],
+    ["worst error", worst?.max_error], ["worst angle error, °", worst?.max_angle_error],
+    ["tolerances that matter", told.matter?.join(", ") || undefined],
+    ["rounding cost, rms residual", cost?.rms_residual], ["rounding cost, error", cost?.max_error], ["remark", told.remark],
+    ...Object.entries(told.dimensions ?? {}).map(([name, value]) => /** @type {[string, any]} */ ([`made: ${name.replaceAll(".", " ")}`, value]))];
+  return [table("As it is made", rows.filter(([, value]) => value !== undefined && value !== null))];
+}
+
 /** The dimensions of a mechanism, as deep as they go; curves and skeletons are in the JSON. @param {any} design */
 export function dimensions(design) {
   /** @type {[string, any][]} */
