@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from service.outlines.curves import Curve, backwards
+from service.outlines.curves import Complex, Curve, backwards
 
 FREE, BRANCH = -1, -2
 """Instead of the end that an end meets: it meets none, or more than one."""
@@ -47,16 +47,30 @@ def _partners(curves: Sequence[Curve], reach: float) -> NDArray[np.int64]:
     if not curves:
         return np.empty(0, np.int64)
     places = np.array([place for one in curves for place in (one.start, one.end)])
-    pairs = np.stack([places.real, places.imag], axis=1)
     # Of the nearest three one is the end itself; where all three are near, it is a branch.
+    looked = _thrice_at_most(places)
+    pairs = np.stack([places[looked].real, places[looked].imag], axis=1)
     away, near = cKDTree(pairs).query(pairs, k=3, distance_upper_bound=reach * (1.0 + 1e-9))
     count = np.isfinite(away).sum(axis=1)
-    own = np.arange(len(places))
-    other = np.where(near[:, 0] == own, near[:, 1], near[:, 0])
-    partner = np.where(count == 1, FREE, np.where(count == 2, other, BRANCH))
+    other = np.where(near[:, 0] == np.arange(len(looked)), near[:, 1], near[:, 0])
+    partner = np.full(len(places), BRANCH)
+    partner[looked] = np.where(count == 1, FREE, np.where(count == 2, looked[np.where(count == 2, other, 0)], BRANCH))
     # An end with one neighbour whose neighbour has two is at the edge of a branch.
-    mutual = (partner >= 0) & (partner[np.maximum(partner, 0)] == own)
+    mutual = (partner >= 0) & (partner[np.maximum(partner, 0)] == np.arange(len(places)))
     return np.asarray(np.where((partner >= 0) & ~mutual, BRANCH, partner))
+
+
+def _thrice_at_most(places: Complex) -> NDArray[np.int64]:
+    """The numbers of the places without the fourth and further ones at one and the same: those branch in any case.
+
+    A tree that holds thousands of equal points looks at all of them for each.
+    """
+    _, place = np.unique(places, return_inverse=True)
+    order = np.argsort(place, kind="stable")
+    ranked = place[order]
+    fourth = np.zeros(len(places), np.bool_)
+    fourth[3:] = ranked[3:] == ranked[:-3]
+    return np.asarray(np.sort(order[~fourth]))
 
 
 def _reason(members: Sequence[Curve], branching: bool) -> str:

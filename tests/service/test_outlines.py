@@ -513,6 +513,7 @@ HOSTILE = {
     "a block within itself": (lambda: blocks(itself), 422),
     "a block many times": (lambda: blocks(tiled), 422),
     "a star of lines": (lambda: blocks(star), 422),
+    "lines on one another": (lambda: page(f'<path d="{"M0 0H1" * 45_000}"/>'), 422),
     "many outlines": (lambda: blocks(many), 422),
     "nan in a DXF": (lambda: PLAIN.replace("5.0", "nan").encode(), 422),
     "inf in a DXF": (lambda: PLAIN.replace("3.0", "1e400").encode(), 422),
