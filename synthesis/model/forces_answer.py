@@ -4,24 +4,27 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
-
 from synthesis.model.answer import Answer, optional
-from synthesis.model.dimension import FORCE, OUTPUT, POWER, TORQUE
+from synthesis.model.dimension import FORCE, POWER, TORQUE, Angle, Length
 
 
-class TorquePeak(Answer):
+class AtInput(Answer):
+    """The input at which a peak stands."""
+
+    at: Angle | None = optional("Input angle; left out where the input slides.")
+    at_place: Length | None = optional("Place of an input that slides, along its line; left out where it turns.")
+
+
+class TorquePeak(AtInput):
     """The greatest magnitude of a torque, and the input at which it stands."""
 
     max: Annotated[float, TORQUE]
-    at: Annotated[float, OUTPUT] = Field(description="Input angle, degrees, or place of an input that slides.")
 
 
-class ForcePeak(Answer):
+class ForcePeak(AtInput):
     """The greatest magnitude of a force, and the input at which it stands."""
 
     max: Annotated[float, FORCE]
-    at: Annotated[float, OUTPUT] = Field(description="Input angle, degrees, or place of an input that slides.")
 
 
 class JointForcePeak(ForcePeak):
@@ -30,11 +33,10 @@ class JointForcePeak(ForcePeak):
     joint: str
 
 
-class PowerPeak(Answer):
+class PowerPeak(AtInput):
     """The greatest power of the drive, either way, and the input at which it stands."""
 
     max: Annotated[float, POWER]
-    at: Annotated[float, OUTPUT] = Field(description="Input angle, degrees, or place of an input that slides.")
 
 
 class DesignForces(Answer):

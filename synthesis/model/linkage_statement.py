@@ -170,6 +170,11 @@ class LinkageProblem(StatedProblem):
         return None if self.dynamics is None else self.dynamics.units
 
     @property
+    def input_slides(self) -> bool:
+        """Whether the input of every linkage for the task slides, so that a force drives it and no torque."""
+        return False
+
+    @property
     def made(self) -> Made | str:
         """What is demanded at the targets of the task, for the block ``manufacture``; or why that is not built."""
         return f"is built for motion, path and function; {self.kind} does not take it"
@@ -217,10 +222,12 @@ class LinkageProblem(StatedProblem):
         if self.dynamics is None:
             detail = "forces are known where `dynamics` states masses, loads and a speed; state it"
             return [Contradiction(path, detail) for path in demanded]
+        missing: dict[str, str] = {}
         if not self.dynamics.loads:
-            detail = "the joint force index is that of the first of the loads; state one"
-            return [Contradiction(path, detail) for path, name in demanded.items() if name == "joint_force_index"]
-        return []
+            missing["joint_force_index"] = "the joint force index is that of the first of the loads; state one"
+        if self.input_slides:
+            missing["drive_torque"] = "the input slides, and a force drives it; demand joint_force or power"
+        return [Contradiction(path, missing[name]) for path, name in demanded.items() if name in missing]
 
     def _faults_of_manufacture(self) -> list[Contradiction]:
         if self.manufacture is None:

@@ -154,17 +154,20 @@ def _forces(problem: LinkageProblem, stated: DesignDynamics, design: Any) -> Des
     except (NoForces, Undetermined) as error:
         return DesignForces(units=stated.units, remark=str(error))
     joint = max((name for name in peaks if name.startswith("joint ")), key=lambda name: peaks[name].value)
-    drive: dict[str, Any] = {"drive_torque": TorquePeak(max=peaks["drive"].value, at=peaks["drive"].at)}
-    if run.mechanism.driven_by_slide:
-        drive = {"drive_force": ForcePeak(max=peaks["drive"].value, at=peaks["drive"].at)}
+    slides = run.mechanism.driven_by_slide
+
+    def told(name: str) -> dict[str, float]:
+        return {"max": peaks[name].value, "at_place" if slides else "at": peaks[name].at}
+
+    drive = {"drive_force": ForcePeak(**told("drive"))} if slides else {"drive_torque": TorquePeak(**told("drive"))}
     return DesignForces(
         units=stated.units,
         over="cycle" if closed else "used",
         **drive,
-        joint_force=JointForcePeak(joint=joint.removeprefix("joint "), max=peaks[joint].value, at=peaks[joint].at),
-        shaking_force=ForcePeak(max=peaks["shaking force"].value, at=peaks["shaking force"].at),
-        shaking_moment=TorquePeak(max=peaks["shaking moment"].value, at=peaks["shaking moment"].at),
-        power=PowerPeak(max=peaks["power"].value, at=peaks["power"].at),
+        joint_force=JointForcePeak(joint=joint.removeprefix("joint "), **told(joint)),
+        shaking_force=ForcePeak(**told("shaking force")),
+        shaking_moment=TorquePeak(**told("shaking moment")),
+        power=PowerPeak(**told("power")),
         joint_force_index=peaks["index"].value if "index" in peaks else None,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -108,6 +109,40 @@ def test_what_a_slide_drives_has_a_force(client):
     limited = {**STEERING, "dynamics": block, "constraints": {"max_drive_torque": 1.0}}
     refused = client.post("/v1/jobs", json={"problem": limited})
     assert [error["path"] for error in refused.json()["errors"]] == ["/problem/constraints/max_drive_torque"]
+
+
+QUICK_RETURN_SLIDER = {"kind": "quick_return", "time_ratio": 1.25, "stroke": 45.0, "max_designs": 1}
+
+
+def test_peaks_stand_at_an_angle_or_at_a_place_of_an_input_that_slides(client):
+    both = {**BLOCK, "speed": 50.0}
+    for sliding, stated, unit in (
+        (False, {**QUICK_RETURN_SLIDER}, "°"),
+        (True, {**MOTION, "input_side": {"dyad": "PR"}, "output_side": {}, "max_designs": 1}, "mm"),
+    ):
+        job, found = designs(client, {**stated, "dynamics": {**both, "loads": []}})
+        assert found
+        for design in found:
+            drive = design["forces"]["drive_force" if sliding else "drive_torque"]
+            assert drive.keys() == {"max", "at_place" if sliding else "at"}
+            low, high = sorted(design["metrics"]["used_stroke" if sliding else "used_range"])
+            if design["forces"]["over"] == "used":
+                assert low - 1e-9 <= drive["at_place" if sliding else "at"] <= high + 1e-9
+        report = client.get(f"/v1/jobs/{job['id']}/report.html").text
+        rows = re.findall(r"power: at(?: place)?<.*?</tr>", report, re.DOTALL)
+        assert rows
+        assert all(re.search(rf"\d\s*{unit}", re.sub("<[^>]*>", " ", row)) for row in rows), rows
+
+
+def test_a_torque_of_an_input_that_slides_is_refused(client):
+    stated = {**MOTION, "input_side": {"dyad": "PR"}, "dynamics": {**BLOCK, "speed": 50.0}}
+    for demand, path in (
+        ({"constraints": {"max_drive_torque": 1.0}}, "/problem/constraints/max_drive_torque"),
+        ({"rank_by": "drive_torque"}, "/problem/rank_by"),
+    ):
+        refused = client.post("/v1/jobs", json={"problem": {**stated, **demand}})
+        assert refused.status_code == 422, refused.text
+        assert path in [error["path"] for error in refused.json()["errors"]]
 
 
 @pytest.mark.parametrize("name", sorted(FORCES))

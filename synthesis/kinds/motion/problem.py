@@ -224,6 +224,11 @@ class MotionProblem(LinkageProblem):
         return self.positions[0].point, self.positions[0].angle
 
     @property
+    def input_slides(self) -> bool:
+        """Whether the input is a slider."""
+        return self.input_side.dyad == "PR"
+
+    @property
     def slider(self) -> Literal["PR", "RP"] | None:
         """The slider that is asked for on one side, if one is."""
         for side in (self.output_side, self.input_side):

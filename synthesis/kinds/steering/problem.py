@@ -76,6 +76,11 @@ class SteeringProblem(LinkageProblem):
         """Where the tie rod may be."""
         return ("behind", "ahead") if self.tie_rod == "any" else (self.tie_rod,)
 
+    @property
+    def input_slides(self) -> bool:
+        """A bar that slides drives Davis's gear."""
+        return self.mechanism == "davis"
+
     def contradictions(self) -> list[Contradiction]:
         """Wheels between their kingpins, and arms that would meet."""
         found = []
@@ -92,9 +97,6 @@ class SteeringProblem(LinkageProblem):
             found.append(Contradiction("/constraints/same_branch", detail))
         if self.mechanism == "davis":
             found += self.constraints.of_another_class((), "Davis's gear has slides and no class of fourbars")
-            if self.constraints.max_drive_torque is not None:
-                detail = "a bar that slides drives Davis's gear, with a force; limit max_joint_force or max_power"
-                found.append(Contradiction("/constraints/max_drive_torque", detail))
         else:
             # The arms are equal and the tie rod differs from the ground: S + L > P + Q always.
             reason = "Ackermann's linkage, with two equal arms, is never Grashof"
