@@ -28,6 +28,7 @@ from synthesis.kinds.motion.steered_fit import (
     in_rooms,
     room_left,
     room_of,
+    with_angle,
 )
 from synthesis.kinds.motion.task import motion_task
 from synthesis.model.kind import Progress
@@ -58,6 +59,9 @@ HOPELESS = 0.4
 NARROWER = 10.0 * AIM
 """Share of the task's size by which a room is kept more narrowly where the sweep finds what the fit passes over between
 its steps."""
+
+BEYOND = 1.8
+"""By how many times what it lacks a transmission angle is asked for that was measured to be too small."""
 
 
 def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: Progress) -> MotionResult:
@@ -95,6 +99,29 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
     def verified(linkage: Steered) -> LinkageDesign | str | None:
         return driven(problem, task, rows, linkage.x, target)
 
+    def offer(linkages: list[Steered]) -> None:
+        """Drive and sweep linkages until there are enough; what misses the room or a transmission angle by what the fit
+        does not see is held once more, as much more narrowly."""
+        again: list[Steered] = []
+        for n, one in enumerate(linkages):
+            if len(sifting.passed) >= enough:
+                sifting.reject(OUTRANKED, len(linkages) - n)
+                break
+            design = verified(one)
+            reason = sifting.keep(design)
+            if reason in ROOM:
+                again += in_rooms([one], rows, narrower)
+            elif reason == "transmission_angle" and isinstance(design, LinkageDesign):
+                # The motion ends beyond the poses of the fit, where these use a tolerance that it need not.
+                angle = problem.constraints.min_transmission_angle or 0.0
+                short = angle - design.metrics.min_transmission_angle
+                again += in_rooms([with_angle(one, angle + BEYOND * short)], rows, room)
+            else:
+                sifting.count(reason)
+        held = all_steered(rows, again)
+        sifting.reject("not_steered", len(again) - len(held))
+        sifting.sift(held, verified)
+
     unlike: list[Steered] = []
     away: list[tuple[float, Steered]] = []
     for n in range(0, len(first), AT_ONCE):
@@ -111,7 +138,7 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
         left = room_left(fresh, rows, room)
         fitting = [one for one, margin in zip(fresh, left, strict=True) if margin >= -NEARLY]
         away += [(-float(margin), one) for one, margin in zip(fresh, left, strict=True) if margin < -NEARLY]
-        sifting.reject(OUTRANKED, len(fitting) - sifting.sift(fitting, verified, enough))
+        offer(fitting)
     away.sort(key=lambda one: one[0])
     near = [one for lacks, one in away[:MOVED] if lacks <= HOPELESS]
     sifting.reject("outside_room", len(away) - len(near))
@@ -123,16 +150,7 @@ def solve_in_room(problem: MotionProblem, exact: MotionResult | None, progress: 
         some = near[n : n + MOVED_AT_ONCE]
         moved = all_steered(rows, in_rooms(some, rows, room))
         sifting.reject("not_steered", len(some) - len(moved))
-        touching: list[Steered] = []
-        for one in moved:
-            reason = sifting.keep(verified(one))
-            if reason in ROOM:
-                touching.append(one)
-            else:
-                sifting.count(reason)
-        farther = all_steered(rows, in_rooms(touching, rows, narrower))
-        sifting.reject("not_steered", len(touching) - len(farther))
-        sifting.sift(farther, verified)
+        offer(moved)
     progress(1.0, "verified")
     return MotionResult(
         designs=sifting.designs(partial(ranked, rank_by=problem.rank_by)),

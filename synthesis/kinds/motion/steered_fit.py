@@ -98,6 +98,13 @@ def let_go(linkage: Steered) -> Steered:
     return linkage._replace(setting=setting)
 
 
+def with_angle(linkage: Steered, degrees: float) -> Steered:
+    """The same with another least transmission angle."""
+    setting = linkage.setting.copy()
+    setting[COSINE] = math.cos(math.radians(min(degrees, 89.0)))
+    return linkage._replace(setting=setting)
+
+
 def room_of(problem: MotionProblem, task: MotionTask, aim: float = AIM) -> Real:
     """What is demanded of the room (:mod:`synthesis.fit.room`), kept more narrowly by a share of the task's size; empty
     where that is nothing."""
