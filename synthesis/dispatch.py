@@ -132,7 +132,7 @@ def compile_kind(name: str) -> None:
 
 
 def compile_demands() -> None:
-    """Compile what no example calls: what linkages weigh, and how they are made."""
+    """Compile what no example calls: what linkages weigh, how they are made, and how they are steered into a room."""
     statement = KINDS["motion"].examples[0] | {
         "max_designs": 1,
         "dynamics": {"links": {"density": 1.0, "thickness": 1.0, "width": 1.0}, "speed_rpm": 1.0},
@@ -145,6 +145,10 @@ def compile_demands() -> None:
         },
     }
     solve(KINDS["motion"].problem.model_validate(statement))
+    positions = [{**position, "tolerance": 1.0} for position in KINDS["motion"].examples[0]["positions"]]
+    room = {"box": [[-1e3, -1e3], [1e3, 1e3]], "obstacles": [{"circle": {"center": [900.0, 900.0], "radius": 1.0}}]}
+    roomy = {"kind": "motion", "positions": positions, "space": room, "max_designs": 1}
+    solve(KINDS["motion"].problem.model_validate(roomy))
 
 
 def _load(name: str) -> None:
