@@ -74,8 +74,21 @@ class LinkBodies:
             path = f"/dynamics/bodies/{token(link)}/shape"
             if not plate.area > 0.0 or not math.isfinite(plate.polar):
                 raise BlockError(path, "nothing is left of the plate; is the polygon flat, or are the holes too wide?")
+            for joint, diameter in shape.holes.items():
+                wider = 0.0 if shape.width is None else diameter - shape.width
+                if wider > 0.0 and self._at_edge(link, joint, wider):
+                    raise BlockError(f"{path}/holes/{token(joint)}", "the hole is wider than the plate around it")
             bodies.append(plate.body(shape.density, self.scale * shape.thickness))
         return joined(bodies)
+
+    def _at_edge(self, link: str, joint: str, wider: float) -> bool:
+        """Whether a hole that is ``wider`` than the plate (length units) reaches beyond its edge at a joint."""
+        import shapely  # holes are seldom that wide
+
+        places = {name: complex(self.joints[name]) for name in self.links[link]}
+        hull = shapely.MultiPoint([(place.real, place.imag) for place in places.values()]).convex_hull
+        edge = hull.exterior if hull.geom_type == "Polygon" else hull
+        return bool(2.0 * edge.distance(shapely.Point(places[joint].real, places[joint].imag)) < wider)
 
     def _part(self, link: str, part: Part, density: float) -> Body:
         centre, density = self.place(link, part.at), density if part.density is None else part.density

@@ -132,7 +132,7 @@ def run_of(stated: DesignDynamics, design: Any, steps: int = STEPS) -> Run:
         raise NoForces("", "no mechanism can be built from the dimensions")
     block = shaped(stated, mechanism.links)
     for path, detail in weight_faults(block, mechanism):
-        raise NoForces(path, detail)
+        raise NoForces(_as_written(stated, path), detail)
     slides = mechanism.driven_by_slide
     speed = stated.speed if slides else stated.speed_rpm
     if speed is None:
@@ -205,8 +205,17 @@ def forces_over_motion(stated: DesignDynamics, design: Any, unit: LengthUnit, st
         }
     )
     for path, detail in request.faults():
-        raise NoForces(path, detail)
+        raise NoForces(_as_written(stated, path), detail)
     return request.answer()
+
+
+def _as_written(stated: DesignDynamics, path: str) -> str:
+    """The path of a fault, where it is one of the shape of all links: a link's own body was not written then."""
+    parts = path.split("/")
+    if parts[1:3] != ["dynamics", "bodies"] or stated.links is None or "shape" not in parts[4:5]:
+        return path
+    unescaped = parts[3].replace("~1", "/").replace("~0", "~")
+    return path if unescaped in stated.bodies else "/".join(["/dynamics/links", *parts[5:]])
 
 
 def shaped(stated: DesignDynamics, links: Mapping[str, Sequence[str]]) -> DesignDynamics:

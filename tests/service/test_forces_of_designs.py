@@ -205,6 +205,11 @@ def test_a_body_that_a_design_does_not_have_is_named(client):
         ({**PAYLOAD, "point_masses": [{"joint": "Q", "mass": 1.0}]}, "/dynamics/point_masses/0/joint"),
         ({**PAYLOAD, "links": {"density": -1.0, "thickness": 1.0, "width": 1.0}}, "/dynamics/links/density"),
         ({**PAYLOAD, "drive": {"slide": 0}}, "/dynamics/drive/slide"),
+        ({**PAYLOAD, "links": {**PLATE, "holes": {"A": 2.5}}}, "/dynamics/links/holes/A"),
+        (
+            {**PAYLOAD, "bodies": {"coupler": {"shape": {**PLATE, "holes": {"A": 2.5}}}}},
+            "/dynamics/bodies/coupler/shape/holes/A",
+        ),
     ]:
         refused = client.post(path, json={"dynamics": block})
         assert refused.status_code == 422, refused.text
