@@ -74,7 +74,8 @@ def _vertex(at: Real, values: Real) -> Peak:
     if not np.isfinite(values).any():
         return Peak(np.nan, np.nan)
     k = int(np.nanargmax(values))
-    if not 0 < k < len(at) - 1:
+    # At an end of a motion that does not close the places are one and the same: nothing lies beyond.
+    if not 0 < k < len(at) - 1 or at[k] in (at[k - 1], at[k + 1]):
         return Peak(float(values[k]), float(at[k]))
     before, top, after = (float(values[n]) for n in (k - 1, k, k + 1))
     bend = after - 2.0 * top + before
