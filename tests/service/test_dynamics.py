@@ -90,7 +90,10 @@ def agrees(found: Statement) -> None:
 def test_without_dynamics_the_answer_is_the_same_as_before(client: httpx.Client) -> None:
     body = {"mechanism": CRANK, "motion": TURN, "points": {"G": {"link": "coupler", "distance": 3.0, "angle": 1.0}}}
     plain = client.post("/v1/analyses", json=body).json()
-    assert plain.keys() == LinkageAnalysis.model_fields.keys() - {"layout", "skeleton", "dynamics"}
+    assert plain.keys() == LinkageAnalysis.model_fields.keys() - {
+        *("layout", "skeleton", "dynamics"),
+        *("targets", "yield_", "manufacture"),
+    }
     with_forces = client.post("/v1/analyses", json=body | {"dynamics": BLOCK}).json()
     assert {name: value for name, value in with_forces.items() if name not in ("skeleton", "dynamics")} == plain
 
