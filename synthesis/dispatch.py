@@ -9,7 +9,7 @@ from synthesis.model.answer import Result
 from synthesis.model.kind import Kind, Progress, part_of
 from synthesis.model.linkage_statement import FORCES, LinkageProblem
 from synthesis.model.statement import StatedProblem
-from synthesis.outcome.forces import all_with_forces
+from synthesis.outcome.forces import all_with_forces, unknown_told
 from synthesis.outcome.front import front_of
 from synthesis.outcome.layout import all_laid_out
 from synthesis.outcome.manufacture import all_made
@@ -64,7 +64,7 @@ def solve(problem: StatedProblem, progress: Progress | None = None) -> Result[An
             result = least_first(problem, result.model_copy(update={"designs": designs}))
         else:
             result = result.model_copy(update={"designs": designs, "summary": result.summary + remark})
-        result = _measured(problem, result, "planes", "yield", *FORCES)
+        result = unknown_told(problem, _measured(problem, result, "planes", "yield", *FORCES))
         result = result.model_copy(update={"front": front_of(result.designs)})
     told(1.0, "verified")
     return result

@@ -79,6 +79,15 @@ def all_with_forces(problem: LinkageProblem, result: Result[Any]) -> Result[Any]
     return result.model_copy(update={"designs": designs, "nearest_miss": miss})
 
 
+def unknown_told(problem: LinkageProblem, result: Result[Any]) -> Result[Any]:
+    """An answer whose summary says why the nearest miss has no forces, where they are limited."""
+    miss = result.nearest_miss
+    forces = None if miss is None else miss.design.forces
+    if not problem.constraints.of_forces or forces is None or forces.remark is None:
+        return result
+    return result.model_copy(update={"summary": f"{result.summary} Its forces are not known: {forces.remark}."})
+
+
 def with_forces(problem: LinkageProblem, design: Design) -> Design:
     """A design with its forces; one that has them stays as it is."""
     if problem.dynamics is None or design.forces is not None:

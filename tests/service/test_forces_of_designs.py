@@ -191,7 +191,11 @@ def test_without_the_block_there_are_no_forces(client):
 
 def test_a_body_that_a_design_does_not_have_is_named(client):
     body = {"mass": 1.0, "cg": [0.0, 0.0]}
-    job, found = designs(client, {**MOTION, "dynamics": {**PAYLOAD, "bodies": {"coupller": body}}})
+    misnamed = {**MOTION, "dynamics": {**PAYLOAD, "bodies": {"coupller": body}}}
+    job, found = designs(client, {**misnamed, "constraints": {"max_power": 1.0}})
+    assert found == []
+    assert "forces are not known: /dynamics/bodies/coupller: no link in motion" in job["result"]["summary"]
+    job, found = designs(client, misnamed)
     assert found
     for design in found:
         assert design["forces"]["remark"].startswith("/dynamics/bodies/coupller: no link in motion")
