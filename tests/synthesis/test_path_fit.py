@@ -219,8 +219,11 @@ def test_fits_move_with_the_points(scale):
     angles = np.linspace(0.0, 330.0, 12)
     points = positions(CRANK_ROCKER, np.radians(angles), OPEN).p + 0.1 * rng.normal(size=(12, 2)) @ [1.0, 1.0j]
     turn, shift = np.exp(0.7j), 30.0 - 20.0j
-    one = fit(points, angles).designs[0].metrics
-    other = fit(scale * (turn * points + shift), angles).designs[0].metrics
+    # The nearest of all: whether a usable one stands before it hangs on the few starts that lead there.
+    one, other = (
+        min((design.metrics for design in fit(placed, angles).designs), key=lambda metrics: metrics.sum_of_squares)
+        for placed in (points, scale * (turn * points + shift))
+    )
     assert math.isclose(other.sum_of_squares, scale**2 * one.sum_of_squares, rel_tol=1e-6)
     assert math.isclose(other.rms_distance, scale * one.rms_distance, rel_tol=1e-6)
 
