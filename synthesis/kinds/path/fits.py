@@ -30,6 +30,9 @@ STRAYS = 1.5
 FIRST_PART = 0.6
 """Share of the progress that fits of the points alone count for."""
 
+SAME_FIT = 1e-3
+"""Fits whose joints agree to this share of the task's size are one: a flat minimum is known to no more digits."""
+
 
 def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
     """Fit fourbars to the points of a problem."""
@@ -39,7 +42,7 @@ def fit_points(problem: PathProblem, progress: Progress) -> PathResult:
         mechanism = mechanism_of(candidate, task)
         return None if mechanism is None else verify_path(problem, mechanism)
 
-    fits = _Fits(problem)
+    fits = _Fits(problem, apart=SAME_FIT)
     first, second = part_of(progress, 0.0, FIRST_PART), part_of(progress, FIRST_PART, 1.0)
     minima = fitted(problem, task, np.random.default_rng(problem.seed), first)
     fits.sift(
