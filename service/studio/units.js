@@ -8,7 +8,7 @@ function symbols(problem) {
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
   // Masses and loads of a linkage come with units of their own.
-  const own = problem.kind !== "cam" && problem.dynamics ? problem.dynamics.units ?? "si" : null;
+  const own = problem.kind === "cam" ? null : problem.dynamics?.units ?? "si";
   const force = inches && own === null ? "lbf" : "N";
   const forces = own === "consistent" ? {} : {
     force, stiffness: own === null ? `${force}/${length}` : "N/m", mass: inches && own === null ? "lbf·s²/in" : "kg",

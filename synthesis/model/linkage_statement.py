@@ -165,9 +165,9 @@ class LinkageProblem(StatedProblem):
     rank_by: RankBy = "quality"
 
     @property
-    def force_units(self) -> Literal["si", "consistent"] | None:
-        """Those of the block `dynamics`."""
-        return None if self.dynamics is None else self.dynamics.units
+    def force_units(self) -> Literal["si", "consistent"]:
+        """Those of the block `dynamics`, by default SI."""
+        return "si" if self.dynamics is None else self.dynamics.units
 
     @property
     def input_slides(self) -> bool:

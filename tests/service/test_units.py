@@ -154,8 +154,10 @@ def test_every_dimension_has_a_symbol(kind):
 
 
 def test_the_units_are_those_of_the_problem():
-    inches = symbols(parse_problem({**example("motion"), "length_unit": "in"}))
+    inches = symbols(parse_problem({**example("cam"), "length_unit": "in"}))
     assert (inches["length"], inches["area"], inches["force"]) == ("in", "in²", "lbf")
+    linkage = symbols(parse_problem({**example("motion"), "length_unit": "in"}))
+    assert (linkage["length"], linkage["force"], linkage["torque"]) == ("in", "N", "N·m"), "SI unless stated otherwise"
     flat = next(one for one in examples("cam") if one["follower"]["type"] == "translating_flat")
     assert symbols(parse_problem(flat))["displacement"] == "mm"
     arm = {"type": "oscillating_roller", "roller_radius": 5.0, "arm": 40.0, "pivot_distance": 60.0}
