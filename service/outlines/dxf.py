@@ -12,6 +12,7 @@ import numpy as np
 from ezdxf import path, recover, units
 from ezdxf.audit import AuditError, Auditor
 from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.spline import Spline
 from ezdxf.enums import InsertUnits
 from ezdxf.lldxf.const import DXFError
 from ezdxf.path import Curve3To, Curve4To
@@ -65,8 +66,8 @@ class DxfReader:
         try:
             if type_ == "INSERT":
                 self.insert(entity, replace(source, name=str(_attribute(entity, "name") or "")), depth)
-            elif type_ == "SPLINE":
-                self.add(Curve(source, _spline(entity), bool(entity.closed)))  # type: ignore[attr-defined]
+            elif isinstance(entity, Spline):
+                self.add(Curve(source, _spline(entity), bool(entity.closed)))
             elif type_ in PATHS:
                 self.add(_curve(entity, source))
             else:
