@@ -94,8 +94,10 @@ def test_a_failed_or_cancelled_job_is_told_as_such(ours):
     assert failed.value.job.status == "failed"
     assert "defect" in str(failed.value)
     job = ours.submit(stated(NATIVE))
-    threading.Timer(0.3, ours.delete, args=(job.id,)).start()
+    cancelling = threading.Timer(0.3, ours.delete, args=(job.id,))
+    cancelling.start()
     assert ours.wait(job.id).status == "cancelled"
+    cancelling.join()  # the wait may end before the answer to the request does
 
 
 def test_lists_are_read_page_by_page(ours):
