@@ -44,7 +44,9 @@ class Region(Statement):
 
     def contains(self, point: complex) -> bool:
         """Whether a point lies in the region, its edges (to rounding) included."""
-        return bool(self.contains_each(np.asarray(point)))
+        (left, right), (low, high) = self.x, self.y
+        slack = ON_EDGE * max(abs(left), abs(right), abs(low), abs(high))
+        return bool(left - slack <= point.real <= right + slack and low - slack <= point.imag <= high + slack)
 
     def contains_each(self, points: NDArray[np.complex128]) -> NDArray[np.bool_]:
         """The same of points of any shape."""
@@ -76,7 +78,11 @@ class Region(Statement):
 
     def distance(self, point: complex) -> float:
         """How far a point lies outside the region; 0 within."""
-        return float(self.distance_each(np.asarray(point)))
+        if self.contains(point):
+            return 0.0
+        (left, right), (low, high) = self.x, self.y
+        across = max(left - point.real, point.real - right, 0.0)
+        return float(np.hypot(across, max(low - point.imag, point.imag - high, 0.0)))
 
 
 class LengthLimits(Statement):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from itertools import combinations
 from typing import Any, NamedTuple, Protocol
 
@@ -104,7 +105,12 @@ class Measures(NamedTuple):
 
     def within(self, metrics: type[BaseModel]) -> dict[str, Any]:
         """Of the measures those that a model of metrics has a field for."""
-        return {name: value for name, value in self._asdict().items() if name in metrics.model_fields}
+        return {name: getattr(self, name) for name in _in_common(metrics)}
+
+
+@cache
+def _in_common(metrics: type[BaseModel]) -> tuple[str, ...]:
+    return tuple(name for name in Measures._fields if name in metrics.model_fields)
 
 
 def measured(

@@ -99,9 +99,10 @@ def at_points(fourbar: DrivenFourbar, points: Complex) -> Passages | None:
     inputs, assembly = angles[best], np.array(signs[best])
     if misses[best].max() > ROUNDED * np.abs(points - points[0]).max():
         inputs = _closer(fourbar, points, inputs, assembly)
-    at = positions(linkage, inputs[:, None], assembly)
-    p = at.p[:, 0]
-    passed = Passages(inputs, assembly, at.a[:, 0], at.b[:, 0], p, np.abs(p - points))
+        at = positions(linkage, inputs[:, None], assembly)
+        best = np.arange(len(points)), np.zeros(len(points), np.int64)
+    p = at.p[best]
+    passed = Passages(inputs, assembly, at.a[best], at.b[best], p, np.abs(p - points))
     own = (fourbar.reference, fourbar.assembly, reference.a, reference.b, reference.p, first)
     for part, value in zip(passed[:6], own, strict=True):
         part[0] = value

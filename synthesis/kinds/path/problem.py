@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
@@ -229,8 +230,7 @@ class PathProblem(LinkageProblem):
     @property
     def task_size(self) -> float:
         """The greatest distance between two points, by which tolerances are measured, in length units."""
-        points = np.array([point.point for point in self.points])
-        return float(np.abs(points[:, None] - points).max()) or 1.0
+        return _greatest_distance(tuple(point.point for point in self.points)) or 1.0
 
     @property
     def prescribed(self) -> bool:
@@ -466,6 +466,13 @@ class PathProblem(LinkageProblem):
             detail = f"the input of a {self.constraints.grashof} linkage does not turn through, as a closed curve asks"
             return [Contradiction("/constraints/grashof", detail)]
         return []
+
+
+@lru_cache(maxsize=64)
+def _greatest_distance(points: tuple[complex, ...]) -> float:
+    """Asked for with every linkage that is measured, of the same points."""
+    places = np.array(points)
+    return float(np.abs(places[:, None] - places).max())
 
 
 def _turn(degrees: float) -> float:
