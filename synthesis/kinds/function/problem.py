@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -86,6 +87,19 @@ class FunctionConstraints(Constraints):
     max_link_ratio: Annotated[float, Field(strict=True, ge=1.0, le=ABSURD)] | None = Field(
         default=100.0, description="Longest link over shortest link, at most; null for no limit."
     )
+
+
+@lru_cache(maxsize=64)
+def _onward(pairs: tuple[tuple[float, float], ...], slides: bool) -> Real:
+    """Asked for several times with every linkage that is measured, of the same pairs; read-only."""
+    values = np.array(pairs)
+    onward = np.unwrap(values[:, 0], period=FULL_TURN)
+    if not _one_way(values[:, 0]) and _one_way(onward):
+        values[:, 0] = onward
+    if not slides:
+        values[:, 1] = np.unwrap(values[:, 1], period=FULL_TURN)
+    values.flags.writeable = False
+    return values
 
 
 def _one_way(values: Real) -> bool:
@@ -299,13 +313,7 @@ class FunctionProblem(LinkageProblem):
         Inputs go the shorter way from pair to pair if that is one way round, and angles of the output in any case.
         """
         assert self.pairs is not None
-        values = np.array([[pair.input, pair.output] for pair in self.pairs])
-        onward = np.unwrap(values[:, 0], period=FULL_TURN)
-        if not _one_way(values[:, 0]) and _one_way(onward):
-            values[:, 0] = onward
-        if not self.slides:
-            values[:, 1] = np.unwrap(values[:, 1], period=FULL_TURN)
-        return values
+        return _onward(tuple((pair.input, pair.output) for pair in self.pairs), self.slides)
 
     def open_scale(self, side: int) -> tuple[float, float]:
         """Limits of an open scale of the input (0) or the output (1) of pairs, with which no link turns through."""

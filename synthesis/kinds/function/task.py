@@ -83,7 +83,7 @@ def function_task(problem: FunctionProblem) -> FunctionTask:
         given = problem.values
         unit = float(np.ptp(given[:, 1])) if problem.slides else 1.0
         # Of an open zero only differences count, and small numbers are kept exact.
-        given -= np.where([zero is None for zero in zeros], given[0], 0.0)
+        given = given - np.where([zero is None for zero in zeros], given[0], 0.0)
         inputs, outputs = given[:, 0] * radians, given[:, 1] * (1.0 / unit if problem.slides else radians)
         choices = tuple(
             [problem.open_scale(side)] if scale is None else [(scale, scale)]

@@ -137,8 +137,10 @@ class Pairs:
         """
         screening = self._bearable(self._with_room(screening))
         score = screening.score.ravel()
-        shortlist = np.argpartition(-score, min(SHORTLIST, score.size - 1))[:SHORTLIST]
-        shortlist = shortlist[score[shortlist] > 0.0]
+        # Most pairs are unsound: to look for the best among the sound ones takes a tenth of the time.
+        shortlist = np.flatnonzero(score > 0.0)
+        if len(shortlist) > SHORTLIST:
+            shortlist = shortlist[np.argpartition(-score[shortlist], SHORTLIST)[:SHORTLIST]]
         best = self._apart(screening, shortlist, max(ATTEMPTS * self.problem.max_designs, LEAST_ATTEMPTS), APART)
         if self.problem.rank_by != "quality" or not best:
             return best

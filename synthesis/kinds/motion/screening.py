@@ -46,6 +46,9 @@ REASONS = (
 )
 """What becomes of a pair; the kernel returns the index."""
 
+LIMITS = frozenset({"link_length", "link_ratio", "grashof", "full_rotation", "transmission_angle"})
+"""Of these the reasons of pairs that move as is demanded, or might, and break a limit."""
+
 (
     SOUND,
     DEGENERATE,
@@ -108,7 +111,8 @@ class Screening(NamedTuple):
 
     def rejected(self) -> dict[str, int]:
         """How many pairs were rejected for each reason that occurred."""
-        counts = np.bincount(self.verdict.ravel(), minlength=len(REASONS))
+        counts = np.zeros(len(REASONS), np.int64)
+        _count(self.verdict, counts)
         return {name: int(n) for name, n in zip(REASONS, counts, strict=True) if n and name != "sound"}
 
 
@@ -181,6 +185,14 @@ def _screen(
         _judge(
             i, a_images, o2, inputs[i], b_images, o4s, outputs, turned, around, in_order, points, wanted, verdict, score
         )
+
+
+@njit(cache=True, nogil=True)
+def _count(verdict: NDArray[np.int8], counts: NDArray[np.int64]) -> None:
+    """How often each verdict is among millions: NumPy's count would first make wide integers of them."""
+    for row in verdict:
+        for reason in row:
+            counts[reason] += 1
 
 
 @njit(cache=True, nogil=True)

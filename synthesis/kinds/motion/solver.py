@@ -27,6 +27,7 @@ from synthesis.kinds.motion.in_room import solve_in_room
 from synthesis.kinds.motion.least_squares import solve_least_squares
 from synthesis.kinds.motion.pairs import Pairs, pairs_of_dyads
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.screening import LIMITS
 from synthesis.kinds.motion.slider_search import beside_sliders, solve_sliders, with_sliders
 from synthesis.kinds.motion.steered import solve_steered, steered_on
 from synthesis.kinds.motion.task import MotionTask
@@ -163,7 +164,9 @@ def _searched(pairs: Pairs, progress: Progress) -> MotionResult:
         stated = problem.constraints
         motion_alone = Constraints(same_branch=stated.same_branch, in_order=stated.in_order)
         passed = list(sifting.passed)
-        for pair in pairs.best(pairs.screened(motion_alone, 0.0))[: problem.max_designs]:
+        if LIMITS & screening.rejected().keys():
+            screening = pairs.screened(motion_alone, 0.0)
+        for pair in pairs.best(screening)[: problem.max_designs]:
             sifting.keep(pairs.verified(target, pair))
         sifting.passed = passed
     progress(1.0, "verified")
