@@ -58,19 +58,28 @@ def bars(mechanism):
     ]
 
 
+POST = Part("ground", np.array([0.1234 + 5.678j]), 0.0)
+"""On no joint."""
+
+
+def nearer(scene, middle, half):
+    """By how much each pair of a scene may come nearer within a half of an input; where one is the post, its move."""
+    count = len(scene.pairs)
+    return scene.distances(np.arange(count), np.full(count, middle), np.full(count, half))[1]
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_nothing_moves_farther_than_its_bound(name):
     rng, mechanism = one(name, 1)
     corner = np.array([1.0 + 1.0j])
     parts = [part._replace(points=np.concatenate([part.points, part.points[:1] + corner])) for part in bars(mechanism)]
-    scene = Scene(mechanism, parts, [(0, 0)])
+    scene = Scene(mechanism, [*parts, POST], [(n, len(parts)) for n in range(len(parts))])
     start = float(mechanism.reference_input)
     seen = 0
     for half in scene.unit * 10.0 ** rng.uniform(-6.0, -0.3, 40):
         middle = start + scene.unit * rng.uniform(-1.0, 1.0)
         inputs = np.concatenate([[middle, middle - half, middle + half], middle + half * rng.uniform(-1.0, 1.0, 40)])
-        moves = scene.moves(np.array([middle]), np.array([half]))[:, 0]
-        for part, bound in zip(parts, moves, strict=True):
+        for part, bound in zip(parts, nearer(scene, middle, half), strict=True):
             places = carried(mechanism, part, inputs)
             if not np.isfinite(places[0]).all():
                 continue
@@ -85,15 +94,59 @@ def test_bounds_are_of_the_order_of_the_motion(name):
     """With a millionth of a radian they are a few times what a part moves: else nothing would ever be decided."""
     _, mechanism = one(name, 2)
     parts = bars(mechanism)
-    scene = Scene(mechanism, parts, [(0, 0)])
+    scene = Scene(mechanism, [*parts, POST], [(n, len(parts)) for n in range(len(parts))])
     start, half = float(mechanism.reference_input), 1e-6 * scene.unit
-    moves = scene.moves(np.array([start]), np.array([half]))[:, 0]
     motion = drive(mechanism, np.array([start]), order=1)
-    for part, bound in zip(parts, moves, strict=True):
+    for part, bound in zip(parts, nearer(scene, start, half), strict=True):
         joints = mechanism.links[part.link]
         speeds = [abs(motion.joints[joint][1, 0]) for joint in joints]
         turning = abs(motion.angles[part.link][1, 0]) * abs(np.ptp(part.points))
         assert bound <= 50.0 * half * (max(speeds) + turning)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_no_pair_comes_nearer_than_its_bound(name):
+    """Bars of links that share a joint or do not, and discs about every joint, by whichever link they are given."""
+    rng, mechanism = one(name, 3)
+    parts = bars(mechanism)
+    parts += [
+        Part(link, np.array([complex(mechanism.joints[joint])]), 0.0)
+        for link, joints in mechanism.links.items()
+        for joint in joints
+    ]
+    pairs = [(n, m) for n in range(len(parts)) for m in range(n)]
+    scene = Scene(mechanism, parts, pairs)
+    start = float(mechanism.reference_input)
+    every = np.arange(len(pairs))
+    seen = 0
+    for half in scene.unit * 10.0 ** rng.uniform(-5.0, -0.3, 12):
+        middle = start + scene.unit * rng.uniform(-0.5, 0.5)
+        inputs = middle + half * np.array([0.0, -1.0, 1.0, *rng.uniform(-1.0, 1.0, 9)])
+        of, at = np.repeat(every, len(inputs)), np.tile(inputs, len(pairs))
+        apart = scene.distances(of, at, np.zeros(len(at)))[0].reshape(len(pairs), -1)
+        known = np.isfinite(apart[:, 0])
+        most = np.nanmax(apart[known, :1] - apart[known], axis=1)
+        assert (most <= nearer(scene, middle, half)[known] + ROUNDING * scene.size).all()
+        seen += int(known.sum())
+    assert seen >= len(pairs)
+
+
+def test_parts_of_one_link_keep_their_distance_as_it_is():
+    """The pins at both ends of the coupler stand on it, though the crank and the rocker carry them too."""
+    a, b = (complex(CRANK_ROCKER.joints[name]) for name in "AB")
+    pins = [Part("input", np.array([a]), 0.1), Part("output", np.array([b]), 0.1)]
+    scene = Scene(CRANK_ROCKER, [*pins, Part("input", np.array([a + 1e-9]), 0.1)], [(0, 1), (2, 1)])
+    held, free = nearer(scene, 0.5, 0.2)
+    assert held == 0.0
+    assert free > 0.0
+
+
+def test_a_point_that_lies_at_a_joint_of_other_links_only_is_not_carried_by_them():
+    """A tracing point over the fixed pivot of the crank, as the mechanism is drawn, moves away from it."""
+    over = Part("coupler", np.array([complex(CRANK_ROCKER.joints["O2"])]), 0.0)
+    post = Part("ground", over.points + 5.0, 0.0)
+    scene = Scene(CRANK_ROCKER, [over, post], [(0, 1)])
+    assert nearer(scene, 0.5, 0.1)[0] > 0.0
 
 
 def shape(points):

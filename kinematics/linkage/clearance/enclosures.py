@@ -15,6 +15,10 @@ by at most δ. A closure Re(e^{−iφ} k) = r has the solutions φ = arg k ∓ a
 A change of a vector of length d by e turns it by arcsin(e/d) at most. A joint on a link lies within
 ε + 2 ρ sin(δ/2) of its place, ε that of another joint of the link and ρ their distance.
 
+The distance of two parts changes by no more than both of them move; by no more than they move beside a joint of both of
+their links, since moving them together does not change it; and of one link by nothing. A disc about a joint is a part
+of every link that has that joint.
+
 Links of a class III group follow by the theorem in :mod:`planar.triads`: with η ω ≤ 1/2 the only solution lies within
 2 η of the known one in a norm that weighs each link's rotation.
 """
@@ -42,7 +46,7 @@ from kinematics.linkage.planar.drive_kernels import (
     RRR,
     SLIDE,
 )
-from kinematics.linkage.planar.triads import Loops
+from kinematics.linkage.planar.triads import Loops, evaluate, invert
 
 Mask = NDArray[np.bool_]
 
@@ -190,6 +194,66 @@ def _spread(cosine: float, low: float, high: float) -> float:
     return float(max(first, abs(math.acos(min(max(high, -1.0), 1.0)) - angle)))
 
 
+@njit(**OPTIONS)
+def approaches(on: Mask, carries: Mask, reach: Real, pairs: Indices, items: Indices, turned: Real, moved: Real) -> Real:
+    """By how much the distances of pairs may be less than they are in known positions.
+
+    Parameters
+    ----------
+    on : bool, shape (links, joints)
+        Which joints a link has; link 0 is the ground.
+    carries : bool, shape (parts, links)
+        The links that a part is at rest on.
+    reach : float, shape (parts, joints)
+        How far the points of a part are from a joint at most, in unit lengths.
+    pairs : int, shape (p, 2)
+        Parts.
+    items : int, shape (m, 2)
+        Which pair at which position.
+    turned, moved : float, shapes (links, n) and (joints, n)
+        Bounds of :func:`by_closures`.
+
+    Returns
+    -------
+    float, shape (m,)
+        In unit lengths.
+    """
+    out = np.empty(len(items))
+    for m in range(len(items)):
+        pair, n = items[m]
+        p, q = pairs[pair]
+        least = _alone(on, carries, reach, p, n, turned, moved) + _alone(on, carries, reach, q, n, turned, moved)
+        for link in range(len(on)):
+            if not carries[p, link]:
+                continue
+            for other in range(len(on)):
+                if not carries[q, other]:
+                    continue
+                if other == link:
+                    least = 0.0
+                chord, across = 2.0 * math.sin(0.5 * turned[link, n]), 2.0 * math.sin(0.5 * turned[other, n])
+                for j in range(on.shape[1]):
+                    if on[link, j] and on[other, j]:
+                        least = min(least, reach[p, j] * chord + reach[q, j] * across)
+        out[m] = least
+    return out
+
+
+@njit(**OPTIONS)
+def _alone(on: Mask, carries: Mask, reach: Real, part: int, n: int, turned: Real, moved: Real) -> float:
+    """How far the points of a part move at most."""
+    least = np.inf
+    for link in range(len(on)):
+        if carries[part, link]:
+            if link == 0:
+                return 0.0
+            chord = 2.0 * math.sin(0.5 * turned[link, n])
+            for j in range(on.shape[1]):
+                if on[link, j]:
+                    least = min(least, moved[j, n] + reach[part, j] * chord)
+    return least
+
+
 def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
     """Bounds of the rotations of a class III group; π where the theorem does not hold.
 
@@ -206,25 +270,53 @@ def by_theorem(loops: Loops, rotations: Real, half: Real) -> Real:
     -------
     float, shape (links, n)
     """
-    columns = 1j * loops.coefficients[None] * np.exp(1j * rotations.T[:, None, :])
-    jacobians = np.concatenate([columns.real, columns.imag], axis=1)
     bounds = np.full(rotations.shape, np.pi)
-    sound = np.flatnonzero(np.isfinite(jacobians).all(axis=(1, 2)))
-    sound = sound[np.linalg.cond(jacobians[sound]) < CONDITION]
-    inverse = np.linalg.inv(jacobians[sound])
-    loop_count = len(loops.coefficients)
-    mixed = inverse[:, :, :loop_count] - 1j * inverse[:, :, loop_count:]
-    change = 2.0 * np.sin(0.5 * np.minimum(half[sound], np.pi))
-    rates = np.abs(mixed @ loops.by_input) * change[:, None]
-    strength = np.abs(mixed @ loops.coefficients)
-    for share in SHARES:
-        weights = rates + share * rates.max(axis=1, keepdims=True)
-        weights[weights == 0.0] = 1.0
-        eta = (rates / weights).max(axis=1)
-        omega = ((strength @ (weights**2)[:, :, None])[:, :, 0] / weights).max(axis=1)
-        product = eta * omega
-        holds = product <= 0.5
-        radius = 2.0 * eta[holds] / (1.0 + np.sqrt(1.0 - 2.0 * product[holds]))
-        here = sound[holds]
-        bounds[:, here] = np.minimum(bounds[:, here], weights[holds].T * radius)
+    _within_balls(loops.coefficients, loops.by_input, rotations, half, bounds)
     return bounds
+
+
+@njit(**OPTIONS)
+def _within_balls(c: Complex, k: Complex, rotations: Real, half: Real, bounds: Real) -> None:
+    """Lower the bounds to the radii of the balls; c and k are those of the loops."""
+    loops, links = c.shape
+    value, inverse = np.empty(links), np.empty((links, links))
+    rate, strength, weight = np.empty(links), np.empty((links, links)), np.empty(links)
+    none = np.zeros(loops, np.complex128)
+    for n in range(len(half)):
+        phi = rotations[:, n].copy()
+        if not np.isfinite(phi).all():
+            continue
+        evaluate(c, none, none, phi, 0.0, value, inverse)
+        largest = 0.0
+        for row in range(links):
+            largest = max(largest, np.abs(inverse[row]).sum())
+        if not invert(inverse) * largest < CONDITION:
+            continue
+        change = 2.0 * math.sin(0.5 * min(half[n], math.pi))
+        for row in range(links):
+            by_input = 0j
+            for loop in range(loops):
+                by_input += complex(inverse[row, loop], -inverse[row, loop + loops]) * k[loop]
+            rate[row] = abs(by_input) * change
+            for col in range(links):
+                by_link = 0j
+                for loop in range(loops):
+                    by_link += complex(inverse[row, loop], -inverse[row, loop + loops]) * c[loop, col]
+                strength[row, col] = abs(by_link)
+        fastest = rate.max()
+        for share in SHARES:
+            eta = omega = 0.0
+            for row in range(links):
+                weight[row] = rate[row] + share * fastest
+                if weight[row] == 0.0:
+                    weight[row] = 1.0
+            for row in range(links):
+                eta = max(eta, rate[row] / weight[row])
+                bend = 0.0
+                for col in range(links):
+                    bend += strength[row, col] * weight[col] * weight[col]
+                omega = max(omega, bend / weight[row])
+            if eta * omega <= 0.5:
+                radius = 2.0 * eta / (1.0 + math.sqrt(1.0 - 2.0 * eta * omega))
+                for row in range(links):
+                    bounds[row, n] = min(bounds[row, n], weight[row] * radius)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
-from kinematics.linkage.clearance.enclosures import by_closures, by_theorem
+from kinematics.linkage.clearance.enclosures import approaches, by_closures, by_theorem
 from kinematics.linkage.clearance.outlines import MEETING, Complex, Indices, Part, Real, distances
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
@@ -17,6 +17,9 @@ from kinematics.linkage.planar.program import program_of, unit_frame
 from kinematics.linkage.planar.triads import Loops, loop_equations
 
 Pairs = Sequence[tuple[int, int]]
+
+AT_JOINT = 1e-12
+"""Share of the size within which a single point lies at a joint: what rounding of its place leaves."""
 
 FIRST = 0.05
 """Half of a part of the range at first: radians, or a share of the mechanism's size along an input slide."""
@@ -70,6 +73,12 @@ class Scene:
         self._starts = np.concatenate([[0], np.cumsum([len(own) for own in points])])
         # How far the vertices of a part are from each joint: a rotation about that joint moves them.
         self._reach = np.array([[np.abs(own - joint).max() for joint in place] for own in points])
+        # A disc about a joint of its link is carried by every link of that joint.
+        discs = np.array([len(own) == 1 for own in points])
+        about = discs[:, None] & self._on[self._links] & (self._reach <= AT_JOINT)
+        self._reach[about] = 0.0
+        self._carries = about @ self._on.T
+        self._carries[np.arange(len(parts)), self._links] = True
         self._radii = np.array([part.radius for part in parts])[self.pairs].sum(axis=1)
         self.overlaps = -self._radii - MEETING * self.size
         self._loops: Loops | None = None
@@ -104,26 +113,11 @@ class Scene:
         pose = self._pose(inputs)
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
         shift[0] = 0.0
-        cores = self._vertices, self._starts, self._links, self.pairs
-        apart = distances(*cores, np.stack([pair, item], axis=1), pose.turn, shift)
+        items = np.stack([pair, item], axis=1)
+        apart = distances(self._vertices, self._starts, self._links, self.pairs, items, pose.turn, shift)
         apart[~pose.valid[item]] = np.nan
-        moves = self._moves(pose, halves)
-        first, second = self.pairs[pair].T
-        return self.size * apart - self._radii[pair], self.size * (moves[first, item] + moves[second, item])
-
-    def moves(self, centre: Real, half: Real) -> Real:
-        """How far parts move at most while the input stays within a half of a middle.
-
-        Parameters
-        ----------
-        centre, half : float, shape (n,)
-
-        Returns
-        -------
-        float, shape (parts, n)
-            Length units.
-        """
-        return self.size * self._moves(self._pose(centre), half)
+        nearer = approaches(self._on, self._carries, self._reach, self.pairs, items, *self._moves(pose, halves))
+        return self.size * apart - self._radii[pair], self.size * nearer
 
     def _pose(self, inputs: Real) -> _Pose:
         code, links = self._program.code, self._program.links
@@ -133,20 +127,16 @@ class Scene:
         rotations = angles - code.link_angles[0][:, None]
         return _Pose(places / self.size, rotations, np.exp(1j * rotations), motion.valid)
 
-    def _moves(self, pose: _Pose, half: Real) -> Real:
+    def _moves(self, pose: _Pose, half: Real) -> tuple[Real, Real]:
+        """Bounds of the rotations of links and of the displacements of joints, (links, n) and (joints, n)."""
         code, links = self._program.code, self._program.links
         turned = np.full(pose.rotations.shape, np.pi)
         if self._loops is not None:
             unknown = [links.index(link) for link in self._loops.links]
             turned[unknown] = by_theorem(self._loops, pose.rotations[unknown], half)
-        shifted = np.empty(pose.places.shape)
+        moved = np.empty(pose.places.shape)
         by_closures(
             code.rows, code.ratios, code.gives, self._on, code.joints[0], code.lines[0], code.line_angles[0],
-            code.driver, pose.places, pose.turn, half / self.unit, turned, shifted,
+            code.driver, pose.places, pose.turn, half / self.unit, turned, moved,
         )  # fmt: skip
-        chords = 2.0 * np.sin(0.5 * turned[self._links])
-        about = shifted[None] + self._reach[:, :, None] * chords[:, None]
-        moves: Real = np.where(self._on[self._links][:, :, None], about, np.inf).min(axis=1)
-        moves[self._links == 0] = 0.0
-        moves[~np.isfinite(moves)] = np.inf
-        return moves
+        return turned, moved

@@ -163,31 +163,34 @@ def free_ranges(
     centre, half = scene.divided(low, high)
     pair = np.repeat(np.arange(len(pairs)), len(centre))
     centre, half = np.tile(centre, len(pairs)), np.tile(half, len(pairs))
-    free: list[list[Interval]] = [[] for _ in pairs]
+    free: list[tuple[Indices, Real, Real]] = []
     while len(pair):
         here, bound = scene.distances(pair, centre, half)
         kept = np.maximum(here - bound, scene.overlaps[pair]) >= wanted - slack
         # Outlines that are nearer everywhere in a part of the range need no finer look.
         met = here + bound < wanted - slack
-        ends = np.clip([centre - half, centre + half], low, high)[:, kept]
-        for n, start, end in zip(pair[kept], *ends.tolist(), strict=True):
-            free[n].append((start, end))
+        start, end = np.clip([centre - half, centre + half], low, high)[:, kept]
+        free.append((pair[kept], start, end))
         # Where the bound is coarse, as it is near a toggle, far from the wanted distance no end is near.
         coarse = (here > wanted + COARSE * scene.size) & (half > FINEST * scene.unit)
         more = ~kept & ~met & ((half > 0.5 * fine) | coarse)
-        pair, centre, half = _halved(pair[more], centre[more], half[more])
-    return [_merged(own, 1e-9 * scene.unit) for own in free]
+        # In quarters, since few large batches take less time than many small ones; the last may be halves.
+        times = 1 if half[0] <= fine else 2
+        pair, centre, half = pair[more], centre[more], half[more]
+        for _ in range(times):
+            pair, centre, half = _halved(pair, centre, half)
+    of, starts, ends = (np.concatenate(columns) for columns in zip(*free, strict=True))
+    return [_merged(starts[of == n], ends[of == n], 1e-9 * scene.unit) for n in range(len(pairs))]
 
 
-def _merged(parted: list[Interval], near: float) -> list[Interval]:
-    """Intervals in order, those that follow on from each other as one."""
-    merged: list[Interval] = []
-    for start, end in sorted(parted):
-        if merged and start <= merged[-1][1] + near:
-            merged[-1] = merged[-1][0], end
-        else:
-            merged.append((start, end))
-    return merged
+def _merged(starts: Real, ends: Real, near: float) -> list[Interval]:
+    """Intervals that do not overlap in order, those that follow on from each other as one."""
+    if not len(starts):
+        return []
+    starts, ends = np.sort(starts), np.sort(ends)
+    apart = starts[1:] > ends[:-1] + near
+    first, last = np.concatenate([[True], apart]), np.concatenate([apart, [True]])
+    return list(zip(starts[first].tolist(), ends[last].tolist(), strict=True))
 
 
 def _halved(pair: Indices, centre: Real, half: Real) -> tuple[Indices, Real, Real]:

@@ -12,7 +12,7 @@ stub shaft has to stand in for it, from one of the bases, whichever is better, t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations, product
@@ -143,8 +143,7 @@ def laid_out(
 
         @cache
         def buildable(meeting: tuple[int, ...]) -> bool:
-            pairs = [found[n] for n in meeting]
-            return not builder.best(pairs).unparted(pairs)
+            return builder.parts([found[n] for n in meeting])
 
         longest = _longest_free(scene.free(found, closed=closed), low, high, buildable, closed=closed)
         free = None
@@ -193,25 +192,31 @@ class _Builder:
 
     def best(self, pairs: Sequence[_Pair]) -> _Built:
         """The planes in which the fewest of these pairs are in each other's way, then the fewest planes."""
+
+        def merit(way: _Built) -> tuple[int, int, int]:
+            reaches = [reach(way.planes, pin) for pin in way.pins]
+            return len(way.unparted(pairs)), max(way.planes), sum(high - low for low, high in reaches)
+
+        return min(self._ways(pairs), key=merit)
+
+    def parts(self, pairs: Sequence[_Pair]) -> bool:
+        """Whether there are planes in which none of these pairs is in each other's way."""
+        return any(not way.unparted(pairs) for way in self._ways(pairs))
+
+    def _ways(self, pairs: Sequence[_Pair]) -> Iterator[_Built]:
+        """The best planes with each choice of sides for the stub shafts."""
         apart = self._apart + [(pair.plates[0], pair.plates[1]) for pair in pairs if not pair.pins]
         meets: dict[int, set[int]] = {}
         for pair in pairs:
             if len(pair.pins) == 1:
                 meets.setdefault(pair.pins[0], set()).update(pair.plates)
-        ways = []
         for hung in product((False, True), repeat=len(self._stubs)):
             pins = tuple(
                 self._held(n, frozenset(meets.get(n, ())), dict(zip(self._stubs, hung, strict=True)))
                 for n in range(len(self._parts.pins))
             )
             planes = stacked(len(self._parts.plates), apart, pins, self._parts.meshes)
-            ways.append(_Built(planes, pins))
-
-        def merit(way: _Built) -> tuple[int, int, int]:
-            reaches = [reach(way.planes, pin) for pin in way.pins]
-            return len(way.unparted(pairs)), max(way.planes), sum(high - low for low, high in reaches)
-
-        return min(ways, key=merit)
+            yield _Built(planes, pins)
 
     def _held(self, number: int, meets: frozenset[int], hung: dict[int, bool]) -> Spindle:
         """A pin with the bases that hold it."""

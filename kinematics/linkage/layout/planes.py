@@ -102,10 +102,12 @@ def stacked(
             parted[place[other]] |= 1 << place[one]
     joined = np.array([_mask(place, pin.plates) for pin in pins], np.int64)
     # Of a mesh two plates may meet a pin: each counts.
-    met = np.array([[place[plate] for plate in sorted(pin.meets)].count(k) for pin in pins for k in range(len(kept))])
-    table = np.ascontiguousarray(met.reshape(len(pins), len(kept)), np.int64)
+    met = np.zeros((len(pins), len(kept)), np.int64)
+    for n, pin in enumerate(pins):
+        for plate in pin.meets:
+            met[n, place[plate]] += 1
     held = np.array([[pin.below, pin.above] for pin in pins], np.bool_).reshape(-1, 2)
-    last = _fewest(len(kept), parted, joined, held, table)
+    last = _fewest(len(kept), parted, joined, held, met)
     layers: list[int] = []
     lying = (1 << len(kept)) - 1
     while lying:

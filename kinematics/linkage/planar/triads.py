@@ -244,8 +244,8 @@ def _reach(c: Complex, k: Complex, fixed: Complex, at: float, phi: Real) -> floa
     """The certified step at a solution; 0 where the equations are singular."""
     links = len(phi)
     value, inverse = np.empty(links), np.empty((links, links))
-    _evaluate(c, k, fixed, phi, at, value, inverse)
-    return _certified(c, k, phi, at, inverse) if np.isfinite(_invert(inverse)) else 0.0
+    evaluate(c, k, fixed, phi, at, value, inverse)
+    return _certified(c, k, phi, at, inverse) if np.isfinite(invert(inverse)) else 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -257,8 +257,8 @@ def _march(
     links = c.shape[1]
     phi, value = angles[0].copy(), np.empty(links)
     inverse, slope = np.empty((links, links)), np.empty(links)
-    _evaluate(c, k, fixed, phi, sign * nodes[0], value, inverse)
-    _invert(inverse)
+    evaluate(c, k, fixed, phi, sign * nodes[0], value, inverse)
+    invert(inverse)
     for n in range(1, len(nodes)):
         step = reach[n - 1]
         if step < STALLED:
@@ -296,8 +296,8 @@ def _near(
         phi = found[n]
         phi[:] = angles[node[n]]
         if rotation[n] != at:
-            _evaluate(c, k, fixed, phi, at, value, inverse)
-            _invert(inverse)
+            evaluate(c, k, fixed, phi, at, value, inverse)
+            invert(inverse)
             if not _newton(c, k, fixed, phi, at, rotation[n], value, inverse, slope):
                 phi[:] = np.nan
 
@@ -318,17 +318,17 @@ def _newton(
     _subtract(phi, inverse, slope)
     last = np.inf
     for n in range(NEWTON_STEPS):
-        _evaluate(c, k, fixed, phi, to, value, inverse)
-        _invert(inverse)
+        evaluate(c, k, fixed, phi, to, value, inverse)
+        invert(inverse)
         change = _subtract(phi, inverse, value)
         if change < CONVERGED:
             return True
         if n > FEW_STEPS and change > 0.5 * last:
             break
         last = change
-    _evaluate(c, k, fixed, phi, to, value, inverse)
+    evaluate(c, k, fixed, phi, to, value, inverse)
     misfit = np.abs(value).max()
-    _invert(inverse)
+    invert(inverse)
     return bool(misfit < CLOSED)
 
 
@@ -342,14 +342,14 @@ def _rates(c: Complex, k: Complex, rotation: Real, angles: Real, given: Real, ou
     for n in range(len(rotation)):
         for link in range(links):
             phi[link] = angles[link, n]
-        _evaluate(c, k, none, phi, rotation[n], value, inverse)
+        evaluate(c, k, none, phi, rotation[n], value, inverse)
         largest = 0.0
         for row in range(links):
             total = 0.0
             for col in range(links):
                 total += abs(inverse[row, col])
             largest = max(largest, total)
-        sound = _invert(inverse) * largest < 1.0 / LOST
+        sound = invert(inverse) * largest < 1.0 / LOST
         w1 = given[0, n]
         w2 = given[1, n] if len(given) > 1 else 0.0
         w3 = given[2, n] if len(given) > 2 else 0.0
@@ -441,7 +441,8 @@ def _certified(c: Complex, k: Complex, phi: Real, at: float, inverse: Real) -> f
 
 
 @njit(cache=True, nogil=True)
-def _evaluate(c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, value: Real, jacobian: Real) -> None:
+def evaluate(c: Complex, k: Complex, fixed: Complex, phi: Real, at: float, value: Real, jacobian: Real) -> None:
+    """F and ∂F/∂φ, real parts above imaginary ones: shapes (links,) and (links, links), filled."""
     loops, links = c.shape
     z = complex(math.cos(at), math.sin(at))
     for row in range(loops):
@@ -469,7 +470,7 @@ def _subtract(phi: Real, matrix: Real, vector: Real) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _invert(matrix: Real) -> float:
+def invert(matrix: Real) -> float:
     """Invert in place by Gauss–Jordan elimination with row pivoting; the largest row sum of the inverse.
 
     The matrices have a few rows, and are inverted at every step: a library call would cost more than the work.
