@@ -79,6 +79,13 @@ def solve(
 
 
 @njit(**OPTIONS)
+def matrices(terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, filled: Real) -> None:
+    """The equations of all positions themselves, added to an array of shape (M, rows, columns)."""
+    for at in range(len(filled)):
+        fill(terms, coefficients, bases, joints, directions, at, filled[at])
+
+
+@njit(**OPTIONS)
 def fill(
     terms: Rows, coefficients: Real, bases: Rows, joints: Complex, directions: Complex, at: int, matrix: Real
 ) -> None:

@@ -7,22 +7,25 @@ which finds the drive and the shaking force by work and momentum.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.dynamics import kernels
+from kinematics.dynamics import kernels, redundancy
 from kinematics.dynamics.friction import Rubbing, contacts_of, factors_of, still, wrenches
 from kinematics.dynamics.friction_kernels import solve_rubbing
 from kinematics.dynamics.loads import Effort
 from kinematics.dynamics.machine import Machine
 from kinematics.dynamics.places import Places, cross
 from kinematics.dynamics.system import System, system_of
-from kinematics.linkage.planar.mechanism import GROUND, Complex, Real
+from kinematics.linkage.planar.mechanism import GROUND, Complex, Real, TopologyError
 
 Mask = NDArray[np.bool_]
+
+NOTHING = complex(np.nan, np.nan)
+"""A force that is not known, in either component."""
 
 SINGULAR = 1e12
 """Condition number beyond which a position is a dead centre: four digits of the reactions are left at most."""
@@ -52,6 +55,8 @@ class Reactions:
         Friction of each contact.
     jammed : bool
         Where friction leaves no solution, or several.
+    indeterminate : bool
+        Where some forces in the joints are not unique, since constraints are redundant: drive and shaking are.
     shaking_force, shaking_moment
         Sum of all forces of the mechanism on the ground, and their moment about the machine's point, less the drive.
     """
@@ -67,6 +72,7 @@ class Reactions:
     shaking_moment: Real
     rubbing: Rubbing
     jammed: Mask
+    indeterminate: Mask
 
 
 def efforts_of(machine: Machine, now: Places) -> list[Effort]:
@@ -80,8 +86,17 @@ def efforts_of(machine: Machine, now: Places) -> list[Effort]:
     return efforts
 
 
-def reactions(machine: Machine, now: Places) -> Reactions:
-    """All reactions of a machine at the positions of a motion."""
+def reactions(machine: Machine, now: Places, *, minimum_norm: bool = False) -> Reactions:
+    """All reactions of a machine at the positions of a motion.
+
+    Where constraints are redundant the forces in the joints that these leave open are NaN, or, with ``minimum_norm``,
+    those of the least sum of squares (:mod:`redundancy`).
+
+    Raises
+    ------
+    TopologyError
+        For friction where constraints are redundant: it depends on forces that are not unique.
+    """
     mechanism, system = machine.mechanism, system_of(machine.mechanism)
     shape = now.smooth.shape
     size = now.size
@@ -102,7 +117,12 @@ def reactions(machine: Machine, now: Places) -> Reactions:
     frictions = np.empty((0, len(known)))
     equations = system.terms, system.coefficients, system.bases
     contacts = contacts_of(mechanism, system, machine.friction)
-    if contacts:
+    open_forces: list[Real] = []
+    if machine.mechanism.redundant:
+        if contacts:
+            raise TopologyError("friction is not determined where constraints are redundant")
+        open_forces = redundancy.solve(*equations, joints, directions, known, posed, solutions, conditions)
+    elif contacts:
         columns = np.array([contact.columns for contact in contacts], np.int64)
         factors = np.stack([np.broadcast_to(factors_of(c, now, size), shape) for c in contacts]).reshape(
             len(contacts), -1
@@ -132,14 +152,41 @@ def reactions(machine: Machine, now: Places) -> Reactions:
         friction.reshape(shape) * (1.0 if c.slide >= 0 else size)
         for c, friction in zip(contacts, frictions, strict=True)
     ]
+    rubbing = Rubbing(contacts, tuple(values), np.asarray(stick))
     outcome = _Outcome(
         [column.reshape(shape) for column in solutions.T],
         conditions.reshape(shape),
         np.asarray(determined.reshape(shape)),
         np.asarray(jammed.reshape(shape)),
-        Rubbing(contacts, tuple(values), np.asarray(stick)),
+        rubbing,
     )
-    return _named(machine, now, system, efforts, on_pins, outcome, size)
+    found = _named(machine, now, system, efforts, on_pins, outcome, size)
+    if not machine.mechanism.redundant:
+        return found
+    nothing = {joint: np.zeros(shape, np.complex128) for joint in mechanism.joints}
+    stresses = [
+        _named(machine, now, system, [], nothing, outcome._replace(unknowns=[c.reshape(shape) for c in forces.T]), size)
+        for forces in open_forces
+    ]
+    return _opened(found, stresses, size, keep=minimum_norm)
+
+
+def _opened(found: Reactions, stresses: list[Reactions], size: Real, *, keep: bool) -> Reactions:
+    """Tell which forces are not unique, and, unless they are to be kept, take them out."""
+    indeterminate = np.zeros(found.solved.shape, np.bool_)
+
+    def told(force: Any, parts: list[Any]) -> Any:
+        unique = redundancy.unique(force, parts)
+        np.logical_or(indeterminate, ~unique, out=indeterminate)
+        return force if keep else np.where(unique, force, NOTHING if np.iscomplexobj(force) else np.nan)
+
+    joints = {
+        joint: {link: told(force, [stress.joints[joint][link] for stress in stresses]) for link, force in on.items()}
+        for joint, on in found.joints.items()
+    }
+    slides = tuple(told(normal, [stress.slides[n] for stress in stresses]) for n, normal in enumerate(found.slides))
+    gears = tuple(told(torque, [stress.gears[n] / size for stress in stresses]) for n, torque in enumerate(found.gears))
+    return replace(found, joints=joints, slides=slides, gears=gears, indeterminate=indeterminate)
 
 
 class _Outcome(NamedTuple):
@@ -212,7 +259,7 @@ def _named(
     slides = tuple(unknowns[system.slides_at : system.slides_at + len(mechanism.slides)])
     gears = tuple(size * torque for torque in unknowns[system.slides_at + len(slides) : system.columns - 1])
     drive = unknowns[-1] if mechanism.driven_by_slide else size[..., :] * unknowns[-1]
-    on_hub = {joint: np.where(solved, force, np.nan) for joint, force in on_pins.items()}
+    on_hub = {joint: np.where(solved, force, NOTHING) for joint, force in on_pins.items()}
     lines = _lines(now, slides, outcome.rubbing)
     for slide, force in zip(mechanism.slides, lines, strict=True):
         on_hub[slide.joint] = on_hub[slide.joint] + force
@@ -238,6 +285,7 @@ def _named(
         moment,
         outcome.rubbing,
         outcome.jammed,
+        np.zeros(now.smooth.shape, np.bool_),
     )
 
 

@@ -56,10 +56,10 @@ def forces_of(
     """The answer at inputs (degrees, or lengths along the input slide), their speeds and acceleration."""
     machine, warnings = machine_of(block, mechanism, unit)
     indexed = block.reports("joint_force_index")
-    course = _driven(machine, at, speed, acceleration, indexed)
+    course = _driven(machine, at, speed, acceleration, indexed, block.minimum_norm)
     found, check = course.reactions, course.balance
     closed = closes(mechanism, at, found.drive, repeated_after(block, mechanism))
-    drive_peaks, extremes = _extremes(machine, course, at, acceleration, closed)
+    drive_peaks, extremes = _extremes(machine, course, at, acceleration, closed, block.minimum_norm)
     reported = _reported(machine)
     power = found.drive * course.speed
     answer: dict[str, Any] = {"units": block.units, "length_unit": unit}
@@ -154,20 +154,24 @@ def _largest_index(course: Course, extremes: dict[str, Any]) -> tuple[float | No
     return largest, []
 
 
-def _driven(machine: Machine, at: Real, speed: Real, acceleration: float, indexed: bool) -> Course:
+def _driven(
+    machine: Machine, at: Real, speed: Real, acceleration: float, indexed: bool, minimum_norm: bool = False
+) -> Course:
     mechanism = machine.mechanism
     inputs = at if mechanism.driven_by_slide else np.radians(at)
     motion = drive(mechanism, inputs, speed=speed, acceleration=acceleration, order=2)
     paced = drive(mechanism, inputs, order=2)
-    return _course(machine, motion, paced, indexed)
+    return _course(machine, motion, paced, indexed, minimum_norm)
 
 
-def _course(machine: Machine, motion: MechanismMotion, paced: MechanismMotion, indexed: bool) -> Course:
+def _course(
+    machine: Machine, motion: MechanismMotion, paced: MechanismMotion, indexed: bool, minimum_norm: bool
+) -> Course:
     now, by_input = Places(machine.mechanism, motion, machine.scale), Places(machine.mechanism, paced, machine.scale)
     if machine.mechanism.driven_by_slide:
         # A unit of the input is one of the mechanism's own: the work of a metre is wanted, not of a millimetre.
         by_input = Places(machine.mechanism, _slowed(paced, machine.scale), machine.scale)
-    found = reactions(machine, now)
+    found = reactions(machine, now, minimum_norm=minimum_norm)
     check = balance(machine, now, by_input, found.rubbing)
     taken = -found.rubbing.work(now)
     index = joint_force_index(machine, now, machine.loads[0]) if indexed else None
@@ -201,6 +205,7 @@ def _status(course: Course) -> list[str]:
         "load_undetermined": undetermined,
         "friction_jam": found.jammed,
         "dead_centre": ~found.solved,
+        "statically_indeterminate": found.indeterminate,
         "stick": np.broadcast_to(found.rubbing.stick, course.valid.shape),
     }
     return [str(status) for status in np.select(list(reasons.values()), list(reasons), "ok")]
@@ -257,12 +262,13 @@ def _quantities(machine: Machine, course: Course) -> Samples:
 
 
 def _extremes(
-    machine: Machine, course: Course, at: Real, acceleration: float, closed: bool
+    machine: Machine, course: Course, at: Real, acceleration: float, closed: bool, minimum_norm: bool = False
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Of the drive, and of everything else by name."""
 
     def measure(inputs: Real, speeds: Real, machine: Machine) -> Samples:
-        return _quantities(machine, _driven(machine, inputs, speeds, acceleration, course.force_index is not None))
+        indexed = course.force_index is not None
+        return _quantities(machine, _driven(machine, inputs, speeds, acceleration, indexed, minimum_norm))
 
     speed = course.speed / (machine.scale if machine.mechanism.driven_by_slide else 1.0)
     found = peaks(at, speed, _quantities(machine, course), partial(measure, machine=machine), closed)
@@ -282,7 +288,10 @@ def _checks(found: Reactions, check: Balance) -> dict[str, float | None]:
     known = found.solved
     reach = max(_peak(found.drive[known]), NO_LOAD * _peak(check.scale[known]))
     force, moment = (_peak(values[known]) for values in (found.shaking_force, found.shaking_moment))
-    carried = max((_peak(values[known]) for on in found.joints.values() for values in on.values()), default=0.0)
+    carried = max(
+        (_peak(values[known & np.isfinite(values)]) for on in found.joints.values() for values in on.values()),
+        default=0.0,
+    )
     force, moment = max(force, NO_LOAD * carried), max(moment, NO_LOAD * _peak(check.scale[known]), NO_LOAD * reach)
     return {
         "virtual_work": _share(_peak((found.drive - check.drive)[known]), reach),
@@ -294,7 +303,7 @@ def _checks(found: Reactions, check: Balance) -> dict[str, float | None]:
 
 
 def _peak(values: Real | Complex) -> float:
-    return float(np.abs(values).max())
+    return float(np.abs(values).max(initial=0.0))
 
 
 def _share(part: float, whole: float) -> float:

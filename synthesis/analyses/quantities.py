@@ -172,6 +172,10 @@ def _undefined(mechanism: Mechanism, sines: dict[str, Real]) -> list[str]:
             "transmission_angle: no link is held by three legs on the input and the ground, so that no leg pushes on a "
             "path of its own; torque_ratio and force_ratio say how force is passed on"
         )
+    elif mechanism.redundant:
+        notes.append(
+            "transmission_angle: constraints are redundant, and which of the links pushes the others is not determined"
+        )
     elif not sines:
         notes.append("transmission_angle: nothing closes here, for gears alone drive every link")
     if given_up(mechanism):

@@ -78,6 +78,8 @@ def _named_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fault
 def _friction_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fault]:
     if block.friction is None:
         return
+    if mechanism.redundant:
+        yield "/dynamics/friction", "constraints are redundant: the forces that make friction are not unique"
     rubbing = rubbing_joints(mechanism)
     for joint in block.friction.pins:
         if joint not in rubbing:
@@ -93,6 +95,8 @@ def _friction_faults(block: WeighedLinkage, mechanism: Mechanism) -> Iterator[Fa
 def _report_faults(block: DynamicsBlock, mechanism: Mechanism) -> Iterator[Fault]:
     if block.report is not None and "joint_force_index" in block.report and not block.loads:
         yield "/dynamics/report", "the joint force index is that of the first of the loads; state one"
+    if block.report is not None and "joint_force_index" in block.report and mechanism.redundant:
+        yield "/dynamics/report", "constraints are redundant: the forces of the joint force index are not unique"
     if mechanism.driven_by_slide:
         detail = "a flywheel is on the shaft that drives; a slide drives this mechanism"
         if block.flywheel is not None:

@@ -101,6 +101,12 @@ class DynamicsBlock(WeighedLinkage):
     drive: Literal["torque"] | DrivenSlide | None = Field(
         default=None, description="What drives; it must be what the mechanism states."
     )
+    minimum_norm: bool = Field(
+        default=False,
+        strict=True,
+        description="Where constraints are redundant, and forces in joints not unique: give those of the least sum of "
+        "squares.",
+    )
     flywheel: StatedFlywheel | None = Field(default=None, description="Size a flywheel on the input shaft.")
     report: list[Reported] | None = Field(
         default=None,

@@ -138,11 +138,17 @@ class BalanceChecks(Answer):
     )
 
 
-Status = Literal["ok", "not_assembled", "dead_centre", "load_undetermined", "stick", "friction_jam"]
+Status = Literal[
+    "ok", "not_assembled", "dead_centre", "load_undetermined", "stick", "friction_jam", "statically_indeterminate"
+]
 
 
 class DynamicsAnswer(Answer):
-    """Forces over the motion, in the units of the request; null where `status` is neither `ok` nor `stick`."""
+    """Forces over the motion, in the units of the request; null where `status` is neither `ok` nor `stick`.
+
+    Where it is `statically_indeterminate` constraints are redundant: null are the forces in joints that are not unique,
+    unless `minimum_norm` is stated; all others stand.
+    """
 
     units: Literal["si", "consistent"]
     length_unit: Literal["mm", "cm", "m", "in"] = Field(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,8 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from kinematics.linkage.fourbar.closed_form import one_shape, require
 from kinematics.linkage.planar import drive_kernels as kernels
 from kinematics.linkage.planar.closures import RECENT, decompose
-from kinematics.linkage.planar.mechanism import Mechanism, Real
+from kinematics.linkage.planar.mechanism import Mechanism, Real, TopologyError
 from kinematics.linkage.planar.program import Frame, Program, Signs, assembly_signs, program_of, unit_frame
+from kinematics.linkage.planar.settling import settle
 from kinematics.linkage.planar.triad_transmission import triad_of, triad_sine
 from kinematics.linkage.planar.triads import STALLED, Loops, Track, loop_equations, rates
 
@@ -26,6 +28,9 @@ RealJet = NDArray[np.float64]
 """Real jet, shape (n, ...) with n from 1 to 4."""
 
 Mask = NDArray[np.bool_]
+
+MOST_CLOSURES = 6
+"""Closures of a mechanism with redundant constraints up to which all assemblies are tried at a position."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +61,8 @@ class MechanismMotion:
         its rate; NaN where the closures before it do not exist. Where two links or a link and a slide close, it is the
         square of the sine; where a known joint slides in the link, |q − p|² − r² in unit coordinates, with q − p from
         the link's pin to that joint and r the line's distance from the pin.
+
+    Where constraints are redundant there are neither sines nor margins: which link closes a loop is not determined.
     """
 
     valid: Mask
@@ -102,7 +109,7 @@ def drive(
     Raises
     ------
     TopologyError
-        For a class III mechanism with slides or gears.
+        For a class III mechanism with slides, gears or redundant constraints.
     DimensionError
         For an infinite input, signs other than +1 and −1 or not one for each closure, an order that is not 0 to 3, a
         link without length between the joints by which it closes, or a class III mechanism whose reference is at a
@@ -143,6 +150,8 @@ def drive(
     for n, sign in enumerate(chosen):
         rows[n, ...] = sign
     own = np.broadcast_to(np.arange(len(program.code.frame)).reshape(mechanism.shape), designs).ravel()
+    if mechanism.redundant:
+        return _settled(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
     return _named(mechanism, program, inputs, own, rows.reshape(len(rows), len(own)))
 
 
@@ -200,6 +209,26 @@ def _named(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, sig
     )
 
 
+def _settled(mechanism: Mechanism, program: Program, inputs: Real, own: Signs, signs: Signs) -> MechanismMotion:
+    """The motion of a mechanism with redundant constraints: dyads say where it is nearly, all constraints exactly."""
+    if program.class_iii:
+        raise TopologyError("a mechanism with redundant constraints must close by dyads; this one does not")
+
+    def nearly(chosen: Signs) -> tuple[dict[str, Jet], dict[str, RealJet]]:
+        motion = _named(mechanism, program, inputs[:1], own, chosen)
+        return motion.joints, motion.angles
+
+    assemblies = [signs]
+    closing = [row for row, step in enumerate(program.steps) if step.has_two_solutions]
+    if len(closing) <= MOST_CLOSURES:
+        for turned in list(product((1, -1), repeat=len(closing)))[1:]:
+            other = signs.copy()
+            other[closing] *= np.array(turned).reshape(-1, 1)
+            assemblies.append(other)
+    found = settle(mechanism, own, inputs, map(nearly, assemblies), program.reference_input)
+    return MechanismMotion(found.valid, found.smooth, inputs, found.angles, found.joints, found.slides, {}, {})
+
+
 def _class_iii(mechanism: Mechanism, program: Program, own: Signs, moved: Real) -> Real:
     """Rotations of all links of a class III mechanism, design by design; shape (links, D, n, N)."""
     designs, length, count = moved.shape
@@ -241,6 +270,11 @@ def _track(mechanism: Mechanism, design: int) -> tuple[Loops, Track]:
     joints = program_of(mechanism).code.joints[design]
     loops = loop_equations(mechanism, dict(zip(mechanism.joints, joints.tolist(), strict=True)))
     track = Track(loops)
+    if track.first_step < STALLED:
+        constraints = mechanism.constraints(np.array([design]))
+        free = int(constraints.mobility(constraints.reference)[0])
+        if free != 1:
+            raise TopologyError(f"expected a mobility of 1, got {free} by the rank of the constraints")
     at = program_of(mechanism).reference_input[design : design + 1]
     require("input of the reference", "away from a toggle", at, np.bool_(track.first_step >= STALLED))
     return loops, track

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from kinematics.linkage.planar.branches import Branch, cycle, dyadic_branches
 from kinematics.linkage.planar.closures import decompose
 from kinematics.linkage.planar.drive import assembly_signs, drive, drive_one, followed_to
-from kinematics.linkage.planar.mechanism import Mechanism
+from kinematics.linkage.planar.mechanism import Mechanism, TopologyError
 from kinematics.linkage.planar.other_driver import branches_by_other_driver
 from kinematics.linkage.planar.program import program_of
 from kinematics.linkage.planar.roots import find_roots, sign_changes
@@ -34,8 +34,10 @@ def branches(mechanism: Mechanism) -> list[Branch]:
     Raises
     ------
     TopologyError
-        Where neither its input nor another pair of links closes the mechanism by dyads.
+        Where neither its input nor another pair of links closes the mechanism by dyads, or constraints are redundant.
     """
+    if mechanism.redundant:
+        raise TopologyError("constraints are redundant; circuits are known of mechanisms that have just what they need")
     if decompose(mechanism).left or mechanism.driven_by_slide:
         return branches_by_other_driver(mechanism)
     return dyadic_branches(mechanism)

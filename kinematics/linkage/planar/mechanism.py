@@ -8,13 +8,14 @@ ground (its rotation drives), or the joint of a slide on the ground (its displac
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kinematics.errors import MechanismError
 from kinematics.linkage.fourbar.closed_form import one_shape, require
+from kinematics.linkage.planar.constraints import Constraints
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -73,7 +74,8 @@ class Mechanism:
     Raises
     ------
     TopologyError
-        For names that do not exist, a link without joints, or a mobility other than one.
+        For names that do not exist, a link without joints, or a mobility other than one. By counting it may be less
+        where dimensions agree so that constraints are redundant and the links move all the same.
     DimensionError
         For coordinates or gear ratios that are not finite, a joint that is not on its slide, or a link in motion whose
         first two joints lie on each other: it has no angle, and a crank without length drives nothing. Fixed pivots may
@@ -128,18 +130,79 @@ class Mechanism:
         self._check_names()
         self._check_slides()
         self._check_lengths()
-        if self.mobility != 1:
-            raise TopologyError(f"expected a mobility of 1, got {self.mobility}; look for a link or joint too many")
+        self._check_mobility()
 
     @property
     def mobility(self) -> int:
+        """Degrees of freedom: one, that of the input. :attr:`counted_mobility` is what a count makes of it."""
+        return 1
+
+    @property
+    def redundant(self) -> int:
+        """How many constraints could be left out without a further freedom."""
+        return 1 - self.counted_mobility
+
+    @property
+    def counted_mobility(self) -> int:
         """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
 
-        A joint on k links counts as k − 1 pins. Peaucellier's and other overconstrained mechanisms move although a
-        link more would count as one freedom less.
+        A joint on k links counts as k − 1 pins. Parallel cranks, closed trains of gears and other overconstrained
+        mechanisms move although their count is less than one.
         """
         pins = sum(self._links_at(joint) - 1 for joint in self.joints if self._links_at(joint))
         return 3 * (len(self.links) - 1) - 2 * pins - len(self.slides) - len(self.gears)
+
+    @property
+    def frame(self) -> tuple[Complex, Real]:
+        """Origin and size of unit coordinates, shape S: the first ground joint, and how far joints are from it."""
+        ground = self.links[GROUND]
+        origin = self.joints[ground[0]] if ground else next(iter(self.joints.values()))
+        size = np.stack([np.abs(z - origin) for z in self.joints.values()]).max(axis=0)
+        return np.asarray(origin), np.asarray(np.where(size > 0.0, size, 1.0))
+
+    def constraints(self, designs: NDArray[np.int64] | None = None) -> Constraints:
+        """All constraints of the designs, by their numbers (all, one after the other), in unit coordinates."""
+        origin, size = self.frame
+
+        def taken(values: NDArray[Any]) -> NDArray[Any]:
+            each = np.broadcast_to(values, self.shape).ravel()
+            return each if designs is None else each[designs]
+
+        def unit(z: Complex) -> Complex:
+            return taken((z - origin) / size)
+
+        return Constraints(
+            {name: unit(z) for name, z in self.joints.items()},
+            self.links,
+            [(s.joint, s.link, unit(s.point), taken(s.angle)) for s in self.slides],
+            self.gears,
+            self.input,
+            GROUND,
+        )
+
+    def _check_mobility(self) -> None:
+        counted = self.counted_mobility
+        if counted > 1:
+            raise TopologyError(f"expected a mobility of 1, got {counted}; look for a link or joint too many")
+        if counted == 1:
+            return
+        constraints = self.constraints()
+        found = constraints.mobility(constraints.reference)
+        if found.size and int(found.min()) < 1:
+            raise TopologyError(
+                f"expected a mobility of 1, got {counted}; look for a link or joint too many, or, where constraints "
+                "are meant to be redundant, for dimensions that do not agree"
+            )
+        if found.size and int(found.max()) > 1:
+            raise TopologyError(
+                f"expected a mobility of 1, got {int(found.max())} by the rank of the constraints; where the links "
+                "stand at a dead centre state another position of them"
+            )
+        if not constraints.moves():
+            raise TopologyError(
+                "expected a mobility of 1, got 0: the constraints agree in this position and in none nearby that the "
+                "input leads to"
+            )
 
     def _links_at(self, joint: str) -> int:
         return sum(joint in listed for listed in self.links.values())

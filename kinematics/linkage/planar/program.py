@@ -58,14 +58,10 @@ class Program(NamedTuple):
 @lru_cache(maxsize=RECENT)
 def unit_frame(mechanism: Mechanism) -> Frame:
     """The mechanism's unit coordinates."""
-    ground = mechanism.links[GROUND]
-    origin = mechanism.joints[ground[0]] if ground else next(iter(mechanism.joints.values()))
-    spread = np.stack([np.abs(z - origin) for z in mechanism.joints.values()])
-    size = spread.max(axis=0)
-    size = np.where(size > 0.0, size, 1.0)
+    origin, size = mechanism.frame
     joints = {name: np.asarray((z - origin) / size) for name, z in mechanism.joints.items()}
     lines = {k: np.asarray((s.point - origin) / size) for k, s in enumerate(mechanism.slides)}
-    return Frame(np.asarray(origin), size, joints, lines)
+    return Frame(origin, size, joints, lines)
 
 
 def assembly_signs(mechanism: Mechanism, steps: tuple[Step, ...]) -> tuple[Signs, ...]:

@@ -1,0 +1,312 @@
+"""All constraints of a mechanism at once, for those that have more than they need.
+
+A parallelogram with a third crank moves because its dimensions agree, though a count of its links and joints leaves it
+no freedom. Dyads alone cannot say so: they leave the constraints out that are not needed. Here the unknowns are the
+poses of all links in motion, z + (p − p₀) e^{iφ} for the point p of the reference, p₀ the link's first joint, and
+
+    pin     point of a link = point of the hub, the first link at that joint      two equations
+    slide   Re(n̄ (joint − point of the line)) = 0, n the line's normal            one
+    gears   rotation of the second − ratio × rotation of the first = 0            one
+    input   rotation of the input link, or Re(t̄ (joint − point of the line)),     one
+            less what is given
+
+are more equations than unknowns. Their rank says how free the mechanism is (mobility = unknowns − rank of all but the
+input's); least squares give poses from poses nearby, and, derivative by derivative, the rates: the n-th derivative of
+every equation is its Jacobian times the n-th derivatives of the unknowns, and something that is known by then.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+CONSISTENT = 3e-6
+"""Largest misfit of the constraints, as a share of the size, with which they are met: dimensions may be rounded."""
+
+DEPENDENT = 1e-5
+"""Singular value, as a share of the largest, below which constraints depend on each other, so rounded."""
+
+LOOKED_AT = (0.05, 0.1, 0.15, 0.2)
+"""Moves of the input (radians, or shares of the size) one way or the other by which a mechanism has to show that it
+moves."""
+
+PASSES = 5
+"""Steps of Gauss's and Newton's method. From a dyad's position, good to the root of rounding at worst, two would do."""
+
+
+class Poses(NamedTuple):
+    """Places of the links' first joints and rotations from the reference, as jets of shape (n, links, M)."""
+
+    places: Complex
+    rotations: Real
+
+    @classmethod
+    def unknown(cls, length: int, links: int, count: int) -> Poses:
+        """Poses that are not known yet: NaN."""
+        return cls(np.full((length, links, count), np.nan + 0j), np.full((length, links, count), np.nan))
+
+    def take(self, which: NDArray[Any]) -> Poses:
+        """Those of some positions."""
+        return Poses(self.places[:, :, which], self.rotations[:, :, which])
+
+    def put(self, which: NDArray[Any], others: Poses) -> None:
+        """Fill in some positions."""
+        self.places[:, :, which], self.rotations[:, :, which] = others
+
+
+class Constraints:
+    """The constraints of M designs (or positions) in unit coordinates.
+
+    Parameters
+    ----------
+    joints : mapping of str to complex, shape (M,)
+        Places in the reference.
+    links : mapping of str to sequence of str
+        Joints of every link; ``ground`` is the one that does not move.
+    slides : sequence of (joint, link, point, angle)
+        Points and angles in the reference, shape (M,).
+    gears : sequence of (first, second, ratio)
+    input : str
+        A link, or the joint of a slide on the ground.
+    """
+
+    def __init__(
+        self,
+        joints: Mapping[str, Complex],
+        links: Mapping[str, Sequence[str]],
+        slides: Sequence[tuple[str, str, Complex, Real]],
+        gears: Sequence[tuple[str, str, float]],
+        input: str,
+        ground: str,
+    ) -> None:
+        self.links = tuple(link for link in links if link != ground)
+        number = {link: n for n, link in enumerate(self.links)}
+        number[ground] = len(self.links)
+        self.bases = tuple(links[link][0] for link in self.links)
+        self._base = np.stack([*(joints[joint] for joint in self.bases), np.zeros_like(next(iter(joints.values())))])
+        hubs = {joint: next(link for link, listed in links.items() if joint in listed) for joint in joints}
+        self._joints = {joint: (number[hub], joints[joint]) for joint, hub in hubs.items()}
+        self._pins = [
+            (number[link], number[hubs[joint]], joints[joint])
+            for joint in joints
+            for link, listed in links.items()
+            if joint in listed and link != hubs[joint]
+        ]
+        self._slides = [
+            (number[hubs[joint]], joints[joint], number[link], point, 1j * np.exp(1j * angle))
+            for joint, link, point, angle in slides
+        ]
+        self._gears = [(number[first], number[second], ratio) for first, second, ratio in gears]
+        self._input = number.get(input)
+        if self._input is None:
+            hub, at, on, point, normal = next(
+                line
+                for line, (joint, link, _, _) in zip(self._slides, slides, strict=True)
+                if joint == input and link == ground
+            )
+            self._along = hub, at, on, point, -1j * normal
+
+    @property
+    def reference(self) -> Poses:
+        """The poses of the reference."""
+        places = self._base[None, :-1].copy()
+        return Poses(places, np.zeros(places.shape))
+
+    def given(self, poses: Poses) -> Real:
+        """What the input stands at, shape (n, M)."""
+        return self._driven(self._jets(poses))
+
+    def settled(self, start: Poses, input: Real) -> tuple[Poses, Real, Real]:
+        """Poses that meet all constraints, and their derivatives.
+
+        Parameters
+        ----------
+        start : Poses
+            Poses nearby, shape (1, links, M).
+        input : float, shape (n, M)
+            The input from the reference, and its rates.
+
+        Returns
+        -------
+        poses : Poses, shape (n, links, M)
+        misfit : float, shape (M,)
+            The largest residual that is left.
+        least : float, shape (M,)
+            Least singular value of the Jacobian as a share of the largest: 0 where the input does not say how the links
+            move.
+        """
+        poses = start
+        for _ in range(PASSES):
+            jets = self._jets(poses)
+            change = self._step(self._inverse(jets)[0], self._residuals(jets, input[:1])[0])
+            poses = Poses(poses.places - change[0], poses.rotations - change[1])
+        jets = self._jets(poses)
+        misfit = np.abs(self._residuals(jets, input[:1])[0]).max(axis=0)
+        inverse, least = self._inverse(jets)
+        for n in range(1, len(input)):
+            further = np.zeros_like(poses.places[:1]), np.zeros_like(poses.rotations[:1])
+            poses = Poses(*(np.concatenate([jet, none]) for jet, none in zip(poses, further, strict=True)))
+            change = self._step(inverse, self._residuals(self._jets(poses), input[: n + 1])[n])
+            poses.places[n], poses.rotations[n] = -change[0], -change[1]
+        return poses, misfit, least
+
+    def mobility(self, poses: Poses) -> NDArray[np.int64]:
+        """Unknowns less the rank of all constraints but the input's, shape (M,)."""
+        jacobian = self._jacobian(self._jets(poses))[:, :-1]
+        unknowns = jacobian.shape[2]
+        if not jacobian.shape[1]:
+            return np.full(len(jacobian), unknowns)
+        values = np.linalg.svd(jacobian, compute_uv=False)
+        return np.asarray(unknowns - (values > DEPENDENT * values[:, :1]).sum(axis=1))
+
+    def moves(self) -> bool:
+        """Whether the input moves all designs from the reference, one way at least, and the constraints remain met."""
+        at = self.given(self.reference)
+        moved = np.ones((2, at.shape[1]), np.bool_)
+        for met, way in zip(moved, (-1.0, 1.0), strict=True):
+            poses = self.reference
+            for move in LOOKED_AT:
+                poses, misfit, least = self.settled(poses, at + way * move)
+                met &= (misfit <= CONSISTENT) & (least > DEPENDENT)
+        return bool(moved.any(axis=0).all())
+
+    def misfit(self, poses: Poses, input: Real) -> Real:
+        """The largest residual of poses of shape (1, links, M) at inputs (1, M); NaN where they are, shape (M,)."""
+        return np.asarray(np.abs(self._residuals(self._jets(poses), input)[0]).max(axis=0))
+
+    def points(self, poses: Poses) -> dict[str, Complex]:
+        """Jets of all joints, shape (n, M) each."""
+        jets = self._jets(poses)
+        return {joint: self._point(jets, hub, at) for joint, (hub, at) in self._joints.items()}
+
+    def travels(self, poses: Poses) -> list[Real]:
+        """Jets of where the slides' joints stand along their lines, from the lines' points; shape (n, M) each."""
+        jets = self._jets(poses)
+        return [self._along_line(jets, *line[:4], -1j * line[4]) for line in self._slides]
+
+    def _jets(self, poses: Poses) -> tuple[Complex, Complex, Real]:
+        """Places, e^{iφ} and φ of all links, the ground last; shape (n, links + 1, M)."""
+        places, rotations = poses
+        n, _, count = places.shape
+        unit = np.empty(rotations.shape, np.complex128)
+        unit[0] = np.exp(1j * rotations[0])
+        if n > 1:
+            unit[1] = 1j * rotations[1] * unit[0]
+        if n > 2:
+            unit[2] = (1j * rotations[2] - rotations[1] ** 2) * unit[0]
+        if n > 3:
+            w, alpha = rotations[1], rotations[2]
+            unit[3] = (1j * (rotations[3] - w**3) - 3.0 * w * alpha) * unit[0]
+        still = np.zeros((n, 1, count))
+        standing = still + 0j
+        standing[0] = 1.0
+        return (
+            np.concatenate([places, still + 0j], axis=1),
+            np.concatenate([unit, standing], axis=1),
+            np.concatenate([rotations, still], axis=1),
+        )
+
+    def _point(self, jets: tuple[Complex, Complex, Real], link: int, at: Complex) -> Complex:
+        places, unit, _ = jets
+        return np.asarray(places[:, link] + unit[:, link] * (at - self._base[link]))
+
+    def _driven(self, jets: tuple[Complex, Complex, Real]) -> Real:
+        if self._input is not None:
+            return jets[2][:, self._input]
+        hub, at, on, point, along = self._along
+        offset = self._point(jets, hub, at) - self._point(jets, on, point)
+        return np.asarray((np.conj(along) * offset).real)
+
+    def _along_line(
+        self, jets: tuple[Complex, Complex, Real], hub: int, at: Complex, on: int, point: Complex, direction: Complex
+    ) -> Real:
+        """Jet of how far a joint is from a line's point, along a direction of the line's link; shape (n, M)."""
+        offset = self._point(jets, hub, at) - self._point(jets, on, point)
+        along = np.conj(jets[1][:, on] * direction)
+        return np.stack(
+            [
+                np.sum([math.comb(n, j) * (along[j] * offset[n - j]).real for j in range(n + 1)], axis=0)
+                for n in range(len(offset))
+            ]
+        )
+
+    def _residuals(self, jets: tuple[Complex, Complex, Real], input: Real) -> Real:
+        """All equations and their derivatives, shape (n, equations, M)."""
+        rows: list[Real] = []
+        for link, hub, at in self._pins:
+            apart = self._point(jets, link, at) - self._point(jets, hub, at)
+            rows += [apart.real, apart.imag]
+        rows += [self._along_line(jets, *line) for line in self._slides]
+        for first, second, ratio in self._gears:
+            turned = jets[2][:, second] - ratio * jets[2][:, first]
+            turned[0] = np.remainder(turned[0] + np.pi, 2.0 * np.pi) - np.pi
+            rows.append(turned)
+        rows.append(self._driven(jets) - input)
+        return np.stack(rows, axis=1)
+
+    def _jacobian(self, jets: tuple[Complex, Complex, Real]) -> Real:
+        """Of the equations by x, y, φ of each link, shape (M, equations, 3 × links)."""
+        count = jets[0].shape[2]
+        moving = len(self.links)
+        rows: list[NDArray[np.float64]] = []
+
+        def row() -> Real:
+            rows.append(np.zeros((3 * moving + 3, count)))
+            return rows[-1]
+
+        def add(into: Real, direction: Complex, link: int, at: Complex, sign: float) -> None:
+            """The derivative of Re(conj(direction) · point of the link)."""
+            arm = 1j * jets[1][0, link] * (at - self._base[link])
+            into[3 * link] += sign * direction.real
+            into[3 * link + 1] += sign * direction.imag
+            into[3 * link + 2] += sign * (np.conj(direction) * arm).real
+
+        right = np.ones(count, np.complex128)
+        for link, hub, at in self._pins:
+            for direction in (right, 1j * right):
+                one = row()
+                add(one, direction, link, at, 1.0)
+                add(one, direction, hub, at, -1.0)
+        for hub, at, on, point, normal in self._slides:
+            across, one = jets[1][0, on] * normal, row()
+            add(one, across, hub, at, 1.0)
+            add(one, across, on, point, -1.0)
+            offset = (self._point(jets, hub, at) - self._point(jets, on, point))[0]
+            one[3 * on + 2] += (np.conj(1j * across) * offset).real
+        for first, second, ratio in self._gears:
+            one = row()
+            one[3 * second + 2] += 1.0
+            one[3 * first + 2] -= ratio
+        one = row()
+        if self._input is not None:
+            one[3 * self._input + 2] += 1.0
+        else:
+            hub, at, _, _, along = self._along
+            add(one, along + 0j * right, hub, at, 1.0)
+        return np.moveaxis(np.stack(rows), 2, 0)[:, :, : 3 * moving]
+
+    def _inverse(self, jets: tuple[Complex, Complex, Real]) -> tuple[Real, Real]:
+        """The pseudoinverse of the Jacobian, and its least singular value over the largest."""
+        jacobian = self._jacobian(jets)
+        known: NDArray[np.bool_] = np.asarray(np.isfinite(jacobian).all(axis=(1, 2)))
+        left, values, right = np.linalg.svd(np.where(known[:, None, None], jacobian, 0.0), full_matrices=False)
+        largest = values[:, :1]
+        kept = values > 1e-9 * largest
+        inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+        least = np.where(known, values[:, -1] / np.where(largest[:, 0] > 0.0, largest[:, 0], 1.0), np.nan)
+        return np.swapaxes(right, 1, 2) * inverse[:, None, :] @ np.swapaxes(left, 1, 2), least
+
+    def _step(self, inverse: Real, residuals: Real) -> tuple[Complex, Real]:
+        """Changes of places and rotations, shape (links, M), for residuals of shape (equations, M)."""
+        change = np.einsum("mij,jm->im", inverse, residuals).reshape(-1, 3, residuals.shape[1])
+        return change[:, 0] + 1j * change[:, 1], change[:, 2]
+
+
+__all__ = ["CONSISTENT", "DEPENDENT", "Constraints", "Poses"]

@@ -1,0 +1,102 @@
+"""Motion of a mechanism with redundant constraints: positions near by are settled to meet all of them.
+
+Where a parallelogram passes its change point its dyad alone would go either way; the third crank allows one of them
+only. So every assembly of the dyads is tried, the reference's first, until one meets all constraints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.linkage.planar.constraints import CONSISTENT, Poses
+from kinematics.linkage.planar.drive_kernels import SINGULAR
+from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
+
+NEAR = 1e-2
+"""Misfit of the constraints, as a share of the size, up to which a position is near: a dyad of rounded dimensions is
+off by their root at its change point."""
+
+Start = tuple[dict[str, Complex], dict[str, Real]]
+"""Joints and angles by name, each of shape (1,) + S + (N,)."""
+
+
+class Settled(NamedTuple):
+    """Motion over designs × inputs as in :class:`~kinematics.linkage.planar.drive.MechanismMotion`."""
+
+    valid: NDArray[np.bool_]
+    smooth: NDArray[np.bool_]
+    angles: dict[str, Real]
+    joints: dict[str, Complex]
+    slides: dict[str, Real]
+
+
+def settle(
+    mechanism: Mechanism, own: NDArray[np.int64], inputs: Real, starts: Iterable[Start], reference: Real
+) -> Settled:
+    """Positions and rates that meet all constraints.
+
+    Parameters
+    ----------
+    own : int, shape (D,)
+        The design of each row of inputs.
+    inputs : float, shape (n,) + S + (N,) with D rows of N
+        Absolute inputs and their rates.
+    starts : iterable of Start
+        Positions near by, the likeliest first; NaN where there are none.
+    reference : float, shape (M,)
+        The designs' inputs in the reference.
+    """
+    length, *shape = inputs.shape
+    each = np.repeat(own, shape[-1])
+
+    def of_each(values: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(np.broadcast_to(values, mechanism.shape).ravel()[each])
+
+    origin, size = (of_each(values) for values in mechanism.frame)
+    constraints = mechanism.constraints(each)
+    turned = {link: of_each(mechanism.link_angle(link)) for link in constraints.links}
+    moved = inputs.reshape(length, -1).copy()
+    moved[0] -= reference[each]
+    if mechanism.driven_by_slide:
+        moved /= size
+        moved[0] += constraints.given(constraints.reference)[0]
+    poses = Poses.unknown(length, len(constraints.links), len(each))
+    valid, least = np.zeros(len(each), np.bool_), np.full(len(each), np.nan)
+    for joints, angles in starts:
+        near = Poses(
+            np.stack([(joints[base].ravel() - origin) / size for base in constraints.bases])[None],
+            np.stack([angles[link].ravel() - turned[link] for link in constraints.links])[None],
+        )
+        left = np.flatnonzero(~valid & (constraints.misfit(near, moved[:1]) <= NEAR))
+        if not len(left):
+            continue
+        found, misfit, smallest = mechanism.constraints(each[left]).settled(near.take(left), moved[:, left])
+        met = misfit <= CONSISTENT
+        poses.put(left[met], found.take(met))
+        valid[left[met]], least[left[met]] = True, smallest[met]
+        if valid.all():
+            break
+    smooth = valid & (least > SINGULAR)
+    for jet in poses:
+        jet[1:, :, ~smooth] = np.nan
+
+    def shaped(jet: NDArray[Any], unit: Real, zero: NDArray[Any]) -> NDArray[Any]:
+        jet = jet * unit
+        jet[0] += zero
+        return jet.reshape(length, *shape)
+
+    one, none = np.ones(()), np.zeros(())
+    return Settled(
+        valid.reshape(shape),
+        smooth.reshape(shape),
+        {link: shaped(poses.rotations[:, n], one, turned[link]) for n, link in enumerate(constraints.links)},
+        {name: shaped(jet, size, origin) for name, jet in constraints.points(poses).items()},
+        {
+            name: shaped(jet, size, none)
+            for name, jet in zip(mechanism.slide_names, constraints.travels(poses), strict=True)
+        },
+    )

@@ -1,0 +1,91 @@
+"""Reactions where constraints are redundant: what is unique is exact, and what is not is told as such."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinematics.dynamics import JointForce, Machine, Places, balance, constant, reactions
+from kinematics.dynamics.friction import Friction
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
+from tests.kinematics.dynamics.machines import machine, moved
+from tests.kinematics.test_redundant_constraints import CRANK, LINKS, geared, parallelogram
+
+
+def with_rod() -> Mechanism:
+    """Three parallel cranks whose coupler moves a slider by a rod: pins that redundancy does not reach."""
+    joints = {"O2": 0j, "O4": 3.0, "O6": 5.0 + 1.3j, "A": CRANK, "B": 3.0 + CRANK, "C": 5.0 + 1.3j + CRANK}
+    joints |= {"P": 4.0 + 2.0j + CRANK, "D": 9.0 + 2.5j}
+    links = LINKS | {"coupler": ("A", "B", "C", "P"), "rod": ("P", "D")}
+    return Mechanism(joints, links, "input", (Slide("D", "ground", np.asarray(9.0 + 2.5j), np.asarray(0.2)),))
+
+
+@pytest.mark.parametrize("mechanism", [parallelogram(5.0 + 1.3j), parallelogram(5.0 + 0j), geared(1.0), with_rod()])
+@pytest.mark.parametrize("minimum_norm", [False, True])
+def test_drive_and_shaking_are_those_of_energy_and_momentum(mechanism: Mechanism, minimum_norm: bool) -> None:
+    whole = machine(np.random.default_rng(3), mechanism)
+    now, paced = moved(mechanism, reach=np.pi, count=36)
+    found, check = reactions(whole, now, minimum_norm=minimum_norm), balance(whole, now, paced)
+    assert found.solved.all()
+    assert found.indeterminate.all()
+    for values, others in (
+        (found.drive, check.drive),
+        (found.shaking_force, check.shaking_force),
+        (found.shaking_moment, check.shaking_moment),
+    ):
+        assert np.abs(values - others).max() < 1e-10 * np.abs(others).max()
+    assert np.isnan([force for on in found.joints.values() for force in on.values()]).any() == (
+        not minimum_norm and not mechanism.gears
+    )
+    assert all(np.isnan(torque).all() != minimum_norm for torque in found.gears)
+
+
+def test_forces_that_redundancy_does_not_reach_stay() -> None:
+    """Those at a rod are the same as without the third crank."""
+    mechanism = with_rod()
+    free = Mechanism(
+        {joint: z for joint, z in mechanism.joints.items() if joint != "O6"},
+        {link: tuple(j for j in listed if j != "O6") for link, listed in mechanism.links.items() if link != "third"},
+        "input",
+        mechanism.slides,
+    )
+    whole = machine(np.random.default_rng(4), free)
+    more = replace(whole, mechanism=mechanism)
+    found, without = (reactions(each, moved(each.mechanism, reach=0.5)[0]) for each in (more, whole))
+    for joint, on in found.joints.items():
+        for link, force in on.items():
+            if joint in ("P", "D"):
+                np.testing.assert_allclose(force, without.joints[joint][link], rtol=1e-9)
+            else:
+                assert np.isnan(force).all()
+    np.testing.assert_allclose(found.slides[0], without.slides[0], rtol=1e-9)
+    np.testing.assert_allclose(found.drive, without.drive, rtol=1e-9)
+
+
+def test_least_forces_share_a_load_evenly() -> None:
+    """Three upright cranks in line under a bar that is loaded in the middle: each carries a third."""
+    mechanism = Mechanism({"O2": 0j, "O4": 2.0, "O6": 4.0, "A": 1j, "B": 2.0 + 1j, "C": 4.0 + 1j}, LINKS, "input")
+    loaded = Machine(mechanism, loads=(JointForce("B", constant(-9j)),))
+    found = reactions(loaded, Places(mechanism, drive(mechanism, [np.pi / 2.0], speed=0.0, order=2)), minimum_norm=True)
+    for pivot, link in (("O2", "input"), ("O4", "rocker"), ("O6", "third")):
+        assert found.joints[pivot][link][0] == pytest.approx(3j, abs=1e-12)
+    assert found.drive[0] == pytest.approx(0.0, abs=1e-12)
+    assert found.indeterminate.all()
+
+
+def test_dead_centre_has_no_forces() -> None:
+    mechanism = parallelogram(5.0 + 0j)
+    now = Places(mechanism, drive(mechanism, [0.0, 1e-3], order=2))
+    found = reactions(machine(np.random.default_rng(5), mechanism), now)
+    assert found.solved.tolist() == [False, True]
+    assert found.indeterminate.tolist() == [False, True]
+    assert np.isnan(found.drive[0])
+
+
+def test_friction_is_not_determined() -> None:
+    whole = replace(machine(np.random.default_rng(6), parallelogram(5.0 + 1j)), friction=Friction({"A": (0.1, 0.05)}))
+    with pytest.raises(TopologyError, match="friction"):
+        reactions(whole, moved(whole.mechanism)[0])

@@ -1,0 +1,114 @@
+"""Mechanisms that move because their dimensions agree: more constraints than a count of freedoms allows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematics.linkage.planar.drive import drive
+from kinematics.linkage.planar.limits import branches
+from kinematics.linkage.planar.mechanism import GearPair, Mechanism, Slide, TopologyError
+
+CRANK = np.exp(0.7j)
+LINKS = {
+    "ground": ("O2", "O4", "O6"),
+    "input": ("O2", "A"),
+    "coupler": ("A", "B", "C"),
+    "rocker": ("O4", "B"),
+    "third": ("O6", "C"),
+}
+
+
+def parallelogram(third_pivot: complex, length: float = 1.0, crank: complex = CRANK) -> Mechanism:
+    """Three cranks that turn a coupler in parallel."""
+    pivots = {"O2": 0j, "O4": 3.0 + 0j, "O6": third_pivot}
+    pins = {"A": crank, "B": 3.0 + crank, "C": third_pivot + length * crank}
+    return Mechanism({**pivots, **pins}, LINKS, "input")
+
+
+def geared(ratio: float) -> Mechanism:
+    """Three coaxial links and gears between every two of them, 1 : −2 : 1."""
+    links = {"ground": ("O",), "input": ("O", "P"), "second": ("O", "Q"), "last": ("O", "R")}
+    gears = (GearPair("input", "second", -2.0), GearPair("second", "last", -0.5), GearPair("input", "last", ratio))
+    return Mechanism({"O": 0j, "P": 1.0, "Q": 1j, "R": -1.0}, links, "input", gears=gears)
+
+
+@pytest.mark.parametrize("pivot", [5.0 + 1.3j, 5.0 + 0j])
+def test_third_crank_leads_through_the_change_point(pivot: complex) -> None:
+    """A dyad alone may fold over there; where the pivots are in line nothing says how the links move at that place."""
+    mechanism = parallelogram(pivot)
+    at = np.radians(np.arange(0.0, 361.0, 15.0))
+    motion = drive(mechanism, at)
+    assert motion.valid.all()
+    folded = np.isclose(np.sin(at), 0.0, atol=1e-9) & (pivot.imag == 0.0)
+    np.testing.assert_array_equal(motion.smooth, ~folded)
+    for joint, start in (("A", 0.0), ("B", 3.0), ("C", pivot)):
+        expected = start + np.exp(1j * at)
+        np.testing.assert_allclose(motion.joints[joint][0], expected, atol=1e-7 if folded.any() else 1e-13)
+        for n in (1, 2, 3):
+            there = motion.joints[joint][n][motion.smooth]
+            np.testing.assert_allclose(there, (1j**n * np.exp(1j * at))[motion.smooth], atol=1e-11)
+    np.testing.assert_allclose(motion.angles["coupler"][1:, motion.smooth], 0.0, atol=1e-11)
+    assert mechanism.mobility == 1
+    assert mechanism.counted_mobility == 0
+
+
+def test_bar_on_three_parallel_slides() -> None:
+    """It moves along them and does not turn, whatever its two assemblies at two of the slides are."""
+    joints = {"A": 0j, "B": 2.0 + 0.5j, "C": 1.0 + 1.0j}
+    slides = tuple(Slide(joint, "ground", np.asarray(joints[joint]), np.asarray(0.0)) for joint in "ABC")
+    motion = drive(Mechanism(joints, {"ground": (), "bar": ("A", "B", "C")}, "A", slides), [-0.3, 0.0, 7.0], speed=2.0)
+    assert motion.smooth.all()
+    np.testing.assert_allclose(motion.joints["C"][0], [0.7 + 1j, 1.0 + 1j, 8.0 + 1j], atol=1e-13)
+    np.testing.assert_allclose(motion.slides["B"][:2], [[-0.3, 0.0, 7.0], [2.0, 2.0, 2.0]], atol=1e-13)
+    np.testing.assert_allclose(motion.angles["bar"][1:], 0.0, atol=1e-13)
+
+
+def test_rates_are_those_of_the_positions() -> None:
+    """A redundant crank on a parallelogram whose coupler moves a dyad: derivatives by differences."""
+    joints = {"O2": 0j, "O4": 3.0, "O6": 5.0 + 1.3j, "O8": 7.0 + 4.0j}
+    joints |= {"A": CRANK, "B": 3.0 + CRANK, "C": 5.0 + 1.3j + CRANK, "D": 5.0 + 4.5j, "P": 4.0 + 2.0j + CRANK}
+    links = LINKS | {"ground": ("O2", "O4", "O6", "O8"), "coupler": ("A", "B", "C", "P")}
+    mechanism = Mechanism(joints, links | {"rod": ("P", "D"), "output": ("O8", "D")}, "input")
+    step = 1e-4
+    at = 0.7 + step * np.arange(-2, 3)
+    motion = drive(mechanism, at)
+    assert motion.valid.all()
+    for jet in motion.joints.values():
+        for n in range(3):
+            slope = (jet[n, 0] - 8.0 * jet[n, 1] + 8.0 * jet[n, 3] - jet[n, 4]) / (12.0 * step)
+            assert slope == pytest.approx(jet[n + 1, 2], abs=1e-9)
+
+
+def test_closed_train_of_gears() -> None:
+    motion = drive(geared(1.0), np.linspace(0.0, 9.0, 7))
+    assert motion.valid.all()
+    np.testing.assert_allclose(motion.angles["second"][1], -2.0, rtol=1e-13)
+    np.testing.assert_allclose(motion.angles["last"][1], 1.0, rtol=1e-13)
+
+
+def test_designs_of_one_make_are_driven_together() -> None:
+    pivots = np.array([5.0 + 1.3j, 1.0 - 2.0j, -2.0 + 0.5j])
+    joints = {"O2": 0j, "O4": 3.0, "O6": pivots, "A": CRANK, "B": 3.0 + CRANK, "C": pivots + CRANK}
+    motion = drive(Mechanism(joints, LINKS, "input"), np.linspace(0.0, 6.0, 5))
+    assert motion.joints["C"].shape == (4, 3, 5)
+    np.testing.assert_allclose(motion.joints["C"][0] - motion.joints["A"][0], pivots[:, None] + np.zeros(5), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: parallelogram(5.0 + 1.3j, 1.1), "in none nearby"),
+        (lambda: parallelogram(5.0 + 1.3j, 1.01), "in none nearby"),
+        (lambda: parallelogram(5.0 + 0j, crank=1.0 + 0j), "dead centre"),
+        (lambda: geared(1.1), "do not agree"),
+    ],
+)
+def test_dimensions_that_do_not_agree_are_no_mechanism(make: object, told: str) -> None:
+    with pytest.raises(TopologyError, match=told):
+        make()  # type: ignore[operator]
+
+
+def test_circuits_are_not_listed() -> None:
+    with pytest.raises(TopologyError, match="redundant"):
+        branches(parallelogram(5.0 + 1.3j))
