@@ -1,12 +1,14 @@
 """Forces of linkages: how fast they are had, and whether a limit on them is met where a known linkage meets it.
 
-    python -m benchmarks.dynamics [speed | analysis | limited] [--count N] [--seed N]
+    python -m benchmarks.dynamics [speed | analysis | limited | routes] [--count N] [--seed N]
 
 ``speed``: force analyses a second of fourbars in closed form, compiled, beside plain vectorised numpy of the same
 formulas and the general equations; 10 000 candidates ordered by their peak torque. ``analysis``: what a block
 ``dynamics`` adds to an analysis of 360 steps. ``limited``: planted tasks of motion, with a limit on the torque 5 %
 above that of the linkage that they were made from; every answer is confirmed by the general equations at 1440
-positions. Times are of the processor, on one core.
+positions. ``routes``: 10 000 random machines of every type and chains of dyads to ten links, with springs, dampers,
+weight, loads that follow their links and masses on pins, over a full turn: how far reactions and the balances of energy
+and momentum differ. Times are of the processor, on one core.
 """
 
 from __future__ import annotations
@@ -34,6 +36,8 @@ from synthesis.model.dynamics import DesignDynamics
 from synthesis.model.linkages import FOURBAR_LINKS, FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.forces import run_of, shaped, with_forces
 from synthesis.registry import parse_problem
+from tests.kinematics.dynamics.machines import differences
+from tests.kinematics.mechanism_sampling import CHAIN, EVERY
 
 POSITIONS = 72
 SPEED_RPM = 60.0
@@ -239,14 +243,45 @@ def _peak(problem: Any, row: np.ndarray) -> float:
     return float(with_forces(problem, design).forces.drive_torque.max)
 
 
+def routes(count: int, seed: int) -> None:
+    """Reactions against energy and momentum on random machines of all makes."""
+    makes = EVERY | CHAIN
+    each = -(-count // len(makes))
+    begun = time.process_time()
+    found: list[Any] = []
+    which: list[str] = []
+    for n, (name, make) in enumerate(makes.items()):
+        rng = np.random.default_rng([seed, 40, n])
+        found.append(differences(rng, make(rng, each), math.pi, 37))
+        which += [name] * each
+    bare, told = (np.concatenate(columns, axis=1) for columns in zip(*found, strict=True))
+    known = np.isfinite(told).all(axis=0)
+    print(f"{int(known.sum())} of {known.size} machines of {len(makes)} makes have positions with forces")
+    for name, shares in (("of the peak", told), ("of the peak, even where it is what millions of it leave", bare)):
+        worst = [(float(np.nanmax(row)), which[int(np.nanargmax(row))]) for row in shares]
+        listed = ", ".join(
+            f"{what} {value:.1e} ({make})"
+            for what, (value, make) in zip(("drive", "shaking force", "moment"), worst, strict=True)
+        )
+        above = int((np.nanmax(np.where(known, shares, 0.0), axis=0) > 1e-9).sum())
+        print(f"worst difference, {name}: {listed}; {above} above 1e-9")
+    print(f"CPU: {time.process_time() - begun:.0f} s")
+
+
 def main() -> None:
     """Run one part, or all."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited"])
+    parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited", "routes"])
     parser.add_argument("--count", type=int)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    for name, part, count in (("speed", speed, 10_000), ("analysis", analysis, 20), ("limited", limited, 100)):
+    parts = (
+        ("speed", speed, 10_000),
+        ("analysis", analysis, 20),
+        ("limited", limited, 100),
+        ("routes", routes, 10_000),
+    )
+    for name, part, count in parts:
         if asked.part in (None, name):
             part(asked.count or count, asked.seed)
 

@@ -183,6 +183,47 @@ def peaucellier_cell(rng: Rng, n: int) -> Mechanism:
     return stack(made)
 
 
+def dyad_chain(rng: Rng, n: int, links: int = 10) -> Mechanism:
+    """A crank and dyads on points of the links before, of random make: two links, or a link and a slide.
+
+    Of its make all designs are one; up to so many links, the ground among them. Joints of a dyad are new points.
+    """
+    joints: dict[str, NDArray[np.complex128]] = {"O": np.zeros(n, np.complex128)}
+    listed: dict[str, tuple[str, ...]] = {"ground": ("O",), "crank": ("O", "J0")}
+    slides: list[Slide] = []
+
+    def place() -> NDArray[np.complex128]:
+        return np.asarray(rng.normal(size=n) + 1j * rng.normal(size=n))
+
+    def joint(*on: str) -> str:
+        name = f"J{len(joints) - 1}"
+        joints[name] = place()
+        for link in on:
+            listed[link] = (*listed[link], name)
+        return name
+
+    joints["J0"] = place()
+    while len(listed) < links:
+        known = list(listed)
+        first, second = (str(link) for link in rng.choice(known, size=2, replace=False))
+        kind = str(rng.choice(["RRR", "RRP", "RPR"])) if len(listed) + 2 <= links else str(rng.choice(["RRP", "RPR"]))
+        link = f"link {len(listed)}"
+        listed[link] = (joint(first),)
+        angle = rng.uniform(-np.pi, np.pi, n)
+        if kind == "RRR":
+            other = f"link {len(listed)}"
+            listed[other] = (joint(second),)
+            joint(link, other)
+        elif kind == "RRP":
+            slider = joint(link)
+            slides.append(Slide(slider, second, joints[slider] + rng.normal(size=n) * np.exp(1j * angle), angle))
+        else:
+            joint(link)
+            slot = joint(second)
+            slides.append(Slide(slot, link, joints[slot] + rng.normal(size=n) * np.exp(1j * angle), angle))
+    return Mechanism(joints, listed, "crank", tuple(slides))
+
+
 DYADIC: dict[str, Make] = {
     "fourbar": fourbar,
     "slider-crank": slider_crank,
@@ -238,6 +279,15 @@ def _dwell(output: str, rng: Rng, n: int) -> Mechanism:
 
 
 _DWELLS: dict[str, Make] = {f"dwell_{output}": partial(_dwell, output) for output in ("rocker", "slider", "slot")}
+
+CHAINS = 30
+"""Makes of dyad chains that are drawn."""
+
+CHAIN: dict[str, Make] = {
+    f"dyad chain {k}": lambda rng, n, k=k: dyad_chain(rng, n, 4 + k % 7)  # type: ignore[misc]
+    for k in range(CHAINS)
+}
+"""Dyad chains of four to ten links."""
 
 EVERY = DYADIC | CLASS_THREE | _DWELLS
 DYADIC |= _DWELLS

@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from kinematics.dynamics import Body, JointForce, Load, Machine, Places, PointForce, Torque, constant
+from kinematics.dynamics import (
+    Body,
+    JointForce,
+    Load,
+    Machine,
+    Places,
+    PointForce,
+    Torque,
+    balance,
+    constant,
+    reactions,
+)
 from kinematics.dynamics.friction import Friction, rubbing_joints
 from kinematics.dynamics.loads import Resistance, TurningResistance
 from kinematics.dynamics.springs import Spring, TorsionSpring
@@ -16,6 +28,10 @@ from kinematics.linkage.planar.mechanism import GROUND, Mechanism
 Rng = np.random.Generator
 
 GRAVITY = complex(1.7, -9.6)
+
+REMAINDER = 1e-6
+"""Share of the forces in the joints (of the parts of the drive) below which the shaking force (the drive) is what is
+left of them by cancelling: rounding of the parts is as large as 1e-9 of it."""
 
 
 def masses(rng: Rng, mechanism: Mechanism) -> tuple[dict[str, Body], dict[str, np.ndarray]]:
@@ -90,3 +106,34 @@ def moved(
     at = np.asarray(mechanism.reference_input)[..., None] + np.linspace(-reach, reach, count)
     now = drive(mechanism, at, speed=speed, acceleration=acceleration, order=2)
     return Places(mechanism, now), Places(mechanism, drive(mechanism, at, order=2))
+
+
+class Differences(NamedTuple):
+    """Of both routes to drive, shaking force and shaking moment, shape (3, machines): as shares of their own peaks, and
+    of these where they are not below :data:`REMAINDER`; NaN where a machine has no position with forces."""
+
+    bare: np.ndarray
+    told: np.ndarray
+
+
+def differences(rng: Rng, mechanism: Mechanism, reach: float = 0.3, count: int = 5) -> Differences:
+    """The largest disagreement of reactions with energy and momentum over all positions that have forces."""
+    whole = machine(rng, mechanism)
+    now, paced = moved(mechanism, reach, count)
+    found, check = reactions(whole, now), balance(whole, now, paced)
+
+    def peak(values: np.ndarray) -> np.ndarray:
+        return np.where(found.solved, np.abs(values), 0.0).max(axis=-1)
+
+    pairs = (
+        (found.drive, check.drive),
+        (found.shaking_force, check.shaking_force),
+        (found.shaking_moment, check.shaking_moment),
+    )
+    apart = np.stack([peak(one - other) for one, other in pairs])
+    peaks = np.stack([peak(one) for one, _ in pairs])
+    pins = np.max([peak(force) for on in found.joints.values() for force in on.values()], axis=0)
+    far = np.max([peak(jet[0] - whole.about) for jet in now.joints.values()], axis=0)
+    parts = np.stack([peak(check.scale), pins, pins * far])
+    with np.errstate(invalid="ignore"):
+        return Differences(apart / peaks, apart / np.maximum(peaks, REMAINDER * parts))
