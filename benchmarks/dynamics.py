@@ -1,9 +1,10 @@
 """Forces of linkages: how fast they are had, and whether a limit on them is met where a known linkage meets it.
 
-    python -m benchmarks.dynamics [speed | analysis | limited | routes] [--count N] [--seed N]
+    python -m benchmarks.dynamics [speed | dyads | analysis | limited | routes] [--count N] [--seed N]
 
 ``speed``: force analyses a second of fourbars in closed form, compiled, beside plain vectorised numpy of the same
-formulas and the general equations; 10 000 candidates ordered by their peak torque. ``analysis``: what a block
+formulas and the general equations; 10 000 candidates ordered by their peak torque. ``dyads``: the same of linkages of
+dyads, sixbars and chains to ten links, by elimination. ``analysis``: what a block
 ``dynamics`` adds to an analysis of 360 steps. ``limited``: planted tasks of motion, with a limit on the torque 5 %
 above that of the linkage that they were made from; every answer is confirmed by the general equations at 1440
 positions. ``routes``: 10 000 random machines of every type and chains of dyads to ten links, with springs, dampers,
@@ -23,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.dynamics import Machine, Places, body, reactions
+from kinematics.dynamics.dyads import dyad_forces
 from kinematics.dynamics.fourbar import DRIVE, Fourbars, Weights, peaks
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
@@ -36,10 +38,25 @@ from synthesis.model.dynamics import DesignDynamics
 from synthesis.model.linkages import FOURBAR_LINKS, FourbarConfiguration, fourbar_mechanism
 from synthesis.outcome.forces import run_of, shaped, with_forces
 from synthesis.registry import parse_problem
-from tests.kinematics.dynamics.machines import differences
-from tests.kinematics.mechanism_sampling import CHAIN, EVERY
+from tests.kinematics.dynamics.dyad_twin import Twin
+from tests.kinematics.dynamics.machines import differences, masses
+from tests.kinematics.mechanism_sampling import CHAIN, EVERY, take
 
 POSITIONS = 72
+DYADIC_ROWS = (
+    "fourbar",
+    "slider-crank",
+    "watt_1 driven by its input",
+    "watt_2 driven by its input",
+    "stephenson_1 driven by its input",
+    "stephenson_3 driven by its input",
+    "geared fivebar",
+    "drag link and slider",
+    "dyad chain 6",
+    "dyad chain 13",
+    "dyad chain 20",
+)
+"""Of the chains those with ten links."""
 SPEED_RPM = 60.0
 SPEED = SPEED_RPM * math.tau / 60.0
 PLATE = {"density": 7800.0, "thickness": 10.0, "width": 20.0, "holes": {"A": 8.0, "B": 8.0}}
@@ -166,6 +183,54 @@ def speed(count: int, seed: int) -> None:
     print(f"{count} candidates weighed by their shapes and ordered by peak torque: {cpu_of(order, 3):.2f} s")
 
 
+def dyads(count: int, seed: int) -> None:
+    """Analyses a second of linkages of dyads by elimination, beside plain numpy and the general equations."""
+    for name in DYADIC_ROWS:
+        rng = np.random.default_rng([seed, 50])
+        drawn = (EVERY | CHAIN)[name](rng, 3 * count)
+        start = np.asarray(drawn.reference_input)[:, None]
+        inputs = start + np.linspace(-0.05, 0.05, POSITIONS)
+        whole = drive(drawn, inputs, order=2).smooth.all(axis=1)
+        mechanism = take(drawn, np.flatnonzero(whole)[:count])
+        inputs = inputs[whole][:count]
+        bodies, pin_masses = masses(rng, mechanism)
+        machine = Machine(mechanism, bodies, pin_masses, -9.81j)
+        few = take(mechanism, slice(0, 100))
+        some = Machine(
+            few,
+            {
+                k: body(0.0)._replace(mass=b.mass[:100], cg=b.cg[:100], inertia=b.inertia[:100])
+                for k, b in bodies.items()
+            },
+            {joint: mass[:100] for joint, mass in pin_masses.items()},
+            -9.81j,
+        )
+
+        def by_equations(some: Machine = some, at: np.ndarray = inputs[:100]) -> Any:
+            return reactions(some, Places(some.mechanism, drive(some.mechanism, at, speed=SPEED, order=2)))
+
+        found = dyad_forces(machine, inputs, SPEED)
+        general, plain = by_equations(), Twin(some, inputs[:100], SPEED)
+        posed = general.condition < 1e4
+        peak = np.where(posed, np.abs(general.drive), 0.0).max(axis=1, keepdims=True)
+        differ = max(
+            float((np.where(posed, np.abs(one - general.drive), 0.0) / peak).max())
+            for one in (found.drive[:100], plain.drive)
+        )
+        rates = [
+            one.size / cpu_of(work)
+            for one, work in (
+                (inputs, lambda: dyad_forces(machine, inputs, SPEED)),  # noqa: B023
+                (inputs[:100], lambda: Twin(some, inputs[:100], SPEED)),  # noqa: B023
+                (inputs[:100], by_equations),
+            )
+        ]
+        print(
+            f"{name}, {len(mechanism.links)} links, {len(inputs)} designs: compiled {rates[0] / 1e6:.2f} M analyses/s, "
+            f"plain numpy {rates[1] / 1e6:.2f} M, general equations {rates[2] / 1e3:.0f} k; they differ by {differ:.0e}"
+        )
+
+
 def analysis(count: int, seed: int) -> None:
     """What forces add to an analysis of 360 steps."""
     added = []
@@ -271,12 +336,13 @@ def routes(count: int, seed: int) -> None:
 def main() -> None:
     """Run one part, or all."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited", "routes"])
+    parser.add_argument("part", nargs="?", choices=["speed", "analysis", "limited", "routes", "dyads"])
     parser.add_argument("--count", type=int)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
     parts = (
         ("speed", speed, 10_000),
+        ("dyads", dyads, 1000),
         ("analysis", analysis, 20),
         ("limited", limited, 100),
         ("routes", routes, 10_000),
