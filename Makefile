@@ -4,7 +4,8 @@
 # make test-cluster  the service on PostgreSQL, RabbitMQ and Redis (installed where they are missing and we are root)
 # make test-browser  drive the studio in the system's Chromium, check its types and its accessibility, and run a
 #              generated TypeScript client in node (Chromium and node are installed where they are missing and we are root)
-# make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1
+# make campaign  the checks with thousands of random problems: a tenth of them, or all with SHARE=1 (an independent
+#              multibody program is installed for them)
 # make fuzz    hundreds of requests of each operation, and of absurd problems of each kind; half an hour
 # make demo    solve one real problem through HTTP, print it, draw it to var/demo.svg
 # make openapi  rewrite docs/openapi.json after a change of the API or of a kind of problem
@@ -17,6 +18,7 @@ STAMP  := $(VENV)/.installed
 UV     := $(BIN)/uv
 PIP    := $(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check
 NODE   := tests/node/node_modules/.installed
+MULTIBODY := $(VENV)/.multibody
 
 # Files of tests are dealt out to two processes.
 SPREAD := -n 2 --dist loadfile
@@ -73,7 +75,7 @@ chromium:
 
 SHARE := 0.1
 
-campaign: $(STAMP)
+campaign: $(STAMP) $(MULTIBODY)
 	$(BIN)/pytest -m "campaign and not browser" --campaign-share $(SHARE) $(SPREAD) $(shell grep -rlE campaign tests --include='test_*.py')
 
 fuzz: $(STAMP)
@@ -145,6 +147,11 @@ $(NODE): tests/node/package.json tests/node/package-lock.json
 	    && apt-get update -q && apt-get install -qy --no-install-recommends nodejs npm; } \
 	    || { echo "these tests need node and npm: apt-get install nodejs npm"; exit 1; }
 	@cd tests/node && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
+
+# An independent multibody program, which the campaign alone asks: no part of the service, and none of its lock.
+$(MULTIBODY): tests/oracles/multibody.lock | $(STAMP)
+	@$(UV) pip install --python $(BIN)/python --quiet --no-deps --require-hashes -r tests/oracles/multibody.lock
 	@touch $@
 
 clean:
