@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import httpx
@@ -87,16 +88,18 @@ def test_flywheels_of_the_books_linkages(client: httpx.Client, case: Case) -> No
     drive = np.array(coarse["dynamics"]["drive"])
     found = fine["dynamics"]["flywheel"]
     # The table's extremes are those of its own steps of 5 degrees, and its first energy is that of straight lines.
-    straight = np.concatenate(([0.0], np.cumsum(0.5 * (drive[1:] + drive[:-1]) * math.radians(5.0))))
-    straight -= drive[:-1].mean() * np.radians(np.arange(0.0, 361.0, 5.0))
-    assert np.ptp(straight) == pytest.approx(case.expected["energy_5deg"].value, rel=0.03)
+    above, step = drive - drive[:-1].mean(), math.radians(5.0)
+    energy = [0.0]
+    for before, after in pairwise(above):
+        share = before / (before - after) if before * after < 0.0 else 0.0
+        energy += [energy[-1] + 0.5 * share * before * step, energy[-1] + 0.5 * (before + after) * step]
     case.check(
         T_max=drive.max(),
         T_min=drive.min(),
         T_mean_exact=found["mean_torque"],
         energy_exact=found["energy"],
         inertia_exact=found["inertia"],
-        energy_5deg=case.expected["energy_5deg"].value,
+        energy_5deg=np.ptp(energy),
     )
 
 
