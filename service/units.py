@@ -11,6 +11,7 @@ _SI = {
     Dimension.INERTIA: "kg·m²",
     Dimension.TORSION_STIFFNESS: "N·m/rad",
     Dimension.GRAVITY: "m/s²",
+    Dimension.UNBALANCE: "g·mm",
 }
 """What only the masses and loads of a linkage have."""
 
@@ -51,5 +52,6 @@ def symbols(problem: StatedProblem) -> dict[Dimension, str]:
         Dimension.ROTATIONAL_SPEED: "1/min",
         Dimension.RADIAN_FREQUENCY: "rad/s",
         Dimension.PERCENT: "%",
+        Dimension.GRADE: "mm/s",
         **stated,
     }

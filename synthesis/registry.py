@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Union
 from pydantic import ConfigDict, Discriminator, Tag, TypeAdapter
 
 from synthesis.kinds import (
+    balancing,
     cam,
     dwell,
     function,
@@ -43,6 +44,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         layshaft_gearbox,
         function,
         cam,
+        balancing,
     )
 }
 """Every kind of problem by its name, in the order in which they are offered."""

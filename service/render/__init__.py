@@ -25,6 +25,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "planetary_train": ("svg", "dxf", "csv"),
     "gearbox": ("svg", "dxf", "csv"),
     "layshaft_gearbox": ("svg", "dxf", "csv"),
+    "rotor": ("svg", "dxf", "csv"),
 }
 """The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
@@ -46,6 +47,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.gears.planetary_sheet import planetary_sheet
     from service.render.gears.train_sheet import gear_train_sheet
     from service.render.linkage.sheet import linkage_sheet
+    from service.render.rotor.sheet import rotor_sheet
 
     return {
         LINKAGE: linkage_sheet,
@@ -55,6 +57,7 @@ def _sheets() -> dict[str, Maker]:
         "planetary_train": planetary_sheet,
         "gearbox": gearbox_sheet,
         "layshaft_gearbox": layshaft_sheet,
+        "rotor": rotor_sheet,
     }
 
 
@@ -76,6 +79,7 @@ def _drawings() -> dict[str, Maker]:
     from service.render.gears.dxf import gear_train_drawing, planetary_drawing
     from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
     from service.render.linkage.dxf import linkage_drawing
+    from service.render.rotor.dxf import rotor_drawing
 
     return {
         LINKAGE: linkage_drawing,
@@ -85,6 +89,7 @@ def _drawings() -> dict[str, Maker]:
         "planetary_train": planetary_drawing,
         "gearbox": gearbox_drawing,
         "layshaft_gearbox": layshaft_drawing,
+        "rotor": rotor_drawing,
     }
 
 
@@ -92,6 +97,7 @@ def _tables() -> dict[str, Maker]:
     from service.render.cam.csv import barrel_table, cam_table
     from service.render.gears.csv import gear_train_table, gearbox_table, layshaft_table, planetary_table
     from service.render.linkage.csv import function_table, linkage_table
+    from service.render.rotor.csv import rotor_table
 
     return {
         LINKAGE: linkage_table,
@@ -102,6 +108,7 @@ def _tables() -> dict[str, Maker]:
         "planetary_train": planetary_table,
         "gearbox": gearbox_table,
         "layshaft_gearbox": layshaft_table,
+        "rotor": rotor_table,
     }
 
 

@@ -12,6 +12,7 @@ import { Explorer } from "./explorer.js";
 import { Gears } from "./gears.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
+import { Rotor } from "./rotor.js";
 
 /** Samples of a cycle. */
 const STEPS = 240;
@@ -21,7 +22,7 @@ const TURN_STEPS = 360;
 
 /** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
-  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears,
+  cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
 };
 
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */

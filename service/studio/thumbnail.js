@@ -52,6 +52,14 @@ function outlines(curves, closed) {
 /** Pitch circles. @param {any} mechanism @param {any} metrics @returns {Circle[]} */
 function circles(mechanism, metrics) {
   const { module } = mechanism;
+  if (mechanism.type === "rotor") {
+    const reach = Math.max(...mechanism.corrections.map((/** @type {any} */ one) => one.radius ?? one.unbalance), 1e-300);
+    return [{ centre: [0, 0], radius: 1.2 * reach }, ...mechanism.corrections.map((/** @type {any} */ one) => {
+      const far = one.radius ?? one.unbalance;
+      const angle = (one.angle * Math.PI) / 180;
+      return { centre: [far * Math.cos(angle), far * Math.sin(angle)], radius: 0.12 * reach };
+    })];
+  }
   const row = (/** @type {[number, number, number, number][]} */ pairs) => pairs.flatMap(([from, to, one, other]) =>
     /** @type {Circle[]} */ ([{ centre: [from, 0], radius: one }, { centre: [to, 0], radius: other }]));
   if (mechanism.type === "layshaft_gearbox") {

@@ -8,18 +8,18 @@ function symbols(problem) {
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
   // Masses and loads of a linkage come with units of their own.
-  const own = problem.kind === "cam" ? null : problem.dynamics?.units ?? "si";
+  const own = problem.kind === "cam" ? null : problem.dynamics?.units ?? problem.units ?? "si";
   const force = inches && own === null ? "lbf" : "N";
   const forces = own === "consistent" ? {} : {
     force, stiffness: own === null ? `${force}/${length}` : "N/m", mass: inches && own === null ? "lbf·s²/in" : "kg",
     torque: own === null ? `${force}·${length}` : "N·m", power: "W", density: "kg/m³", inertia: "kg·m²",
-    "torsion stiffness": "N·m/rad", gravity: "m/s²",
+    "torsion stiffness": "N·m/rad", gravity: "m/s²", unbalance: "g·mm",
   };
   return /** @type {Record<string, string>} */ ({
     length, area: `${length}²`, "inverse length": `1/${length}`, angle: "°",
     displacement: lift, velocity: `${rate}/rad`, acceleration: `${rate}/rad²`, jerk: `${rate}/rad³`,
     output: slides ? length : "°", "length per radian": `${length}/rad`,
-    "rotational speed": "1/min", percent: "%", ...forces,
+    "rotational speed": "1/min", percent: "%", "balance grade": "mm/s", ...forces,
   });
 }
 

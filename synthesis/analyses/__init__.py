@@ -18,6 +18,7 @@ from synthesis.analyses import (
     gearbox,
     linkage,
     planetary_train,
+    rotor,
     universal_joint,
 )
 from synthesis.analyses.base import AnalysisRequest, Family
@@ -37,6 +38,7 @@ FAMILIES: dict[str, Family] = {
         gearbox.FAMILY,
         gearbox.LAYSHAFT_FAMILY,
         planetary_train.FAMILY,
+        rotor.FAMILY,
         universal_joint.FAMILY,
     )
     for name in mechanism_types(family.request)

@@ -46,6 +46,8 @@ class Dimension(StrEnum):
     INERTIA = "inertia"
     TORSION_STIFFNESS = "torsion stiffness"
     GRAVITY = "gravity"
+    UNBALANCE = "unbalance"
+    GRADE = "balance grade"
     PERCENT = "percent"
 
 
@@ -74,6 +76,8 @@ DENSITY = Dimension.DENSITY
 INERTIA = Dimension.INERTIA
 TORSION_STIFFNESS = Dimension.TORSION_STIFFNESS
 GRAVITY = Dimension.GRAVITY
+UNBALANCE = Dimension.UNBALANCE
+GRADE = Dimension.GRADE
 PERCENT = Dimension.PERCENT
 
 Length = Annotated[float, LENGTH]
@@ -93,6 +97,11 @@ RotationalSpeed = Annotated[float, ROTATIONAL_SPEED]
 RadianFrequency = Annotated[float, RADIAN_FREQUENCY]
 Force = Annotated[float, FORCE]
 Torque = Annotated[float, TORQUE]
+Mass = Annotated[float, MASS]
+Unbalance = Annotated[float, UNBALANCE]
+"""A mass times its distance from the axis; g·mm, or in the consistent units."""
+Grade = Annotated[float, GRADE]
+"""Balance quality grade G of ISO 21940, e ω: mm/s in any units."""
 Percent = Annotated[float, PERCENT]
 
 

@@ -68,8 +68,10 @@ PURE = {
     "Ratio": {"value"},
     "RatioRange": {"least", "greatest"},
     "Reachable": {"max_link_ratio", "tolerance"},
+    "Reading": {"amplitude"},  # in any unit
     "Rest": {"off_end"},
     "Sensitivity": {"x", "y", "travel", "share"},  # length by length
+    "RotorMetrics": {"residual_vibration"},  # in the unit of the readings
     "RoundingCost": {"rms_residual"},
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},

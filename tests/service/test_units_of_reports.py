@@ -14,7 +14,18 @@ from service.render.page.numbers import length
 from service.render.report import Occasion, report
 from service.units import symbols
 from synthesis.dispatch import solve
-from synthesis.model.dimension import ACCELERATION, ANGLE, FORCE, JERK, LENGTH, OUTPUT, PERCENT, VELOCITY, dimensions
+from synthesis.model.dimension import (
+    ACCELERATION,
+    ANGLE,
+    FORCE,
+    GRADE,
+    JERK,
+    LENGTH,
+    OUTPUT,
+    PERCENT,
+    VELOCITY,
+    dimensions,
+)
 from synthesis.registry import KINDS, examples, parse_problem
 
 OCCASION = Occasion("01K6WM2B7Q3W9Z0V5N8XJ4R1TD", "", None, "2026-01-31T12:00:00.000000Z", None, "1.2.3")
@@ -29,6 +40,7 @@ SLOW = ("path", "dwell")
 MEASURING = {
     "transmission_angle": ANGLE,
     "contact_force": FORCE,
+    "grade": GRADE,
     "shortest_link": LENGTH,
     "fixed_pivot_region": LENGTH,
     "driver_pivot_region": LENGTH,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.service.stated import cams, gears, linkages
+from tests.service.stated import balancing, cams, gears, linkages
 
 TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "motion": (linkages.MOTION, linkages.MOTION_ROWS),
@@ -20,6 +20,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "layshaft_gearbox": (gears.LAYSHAFT, gears.LAYSHAFT_ROWS),
     "cam": (cams.CAM, cams.CAM_ROWS),
     "function": (linkages.FUNCTION, linkages.FUNCTION_ROWS),
+    "balancing": (balancing.ROTOR, balancing.ROTOR_ROWS),
 }
 
 EXHAUSTIVE = "an exhaustive search returns nothing that fails"

@@ -1,0 +1,58 @@
+"""A balanced rotor as DXF: a template of each plane of correction, side by side.
+
+==========  ==================================================
+layer       what is on it
+==========  ==================================================
+PLANE_n     the circle on which the masses lie, and its axis
+ADDED       crosses where masses are added
+REMOVED     circles where masses are taken away, with a cross
+TEXT        the mass of each, its angle, and the plane's place
+==========  ==================================================
+
+Angles are counted from the x axis, seen against the z axis; radii are true where the statement has a radius.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from service.render.page import dxf
+from service.render.page.numbers import angle, length
+from service.render.rotor.faces import faces
+from service.units import symbols
+from synthesis.kinds.balancing.design import RotorDesign
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.model.dimension import Dimension
+
+APART, LETTERS, MARK = 3.2, 0.06, 0.05
+"""Distance of the faces, height of letters, and size of a mark, in radii of a face."""
+
+
+def rotor_drawing(design: RotorDesign, problem: BalancingProblem, title: str) -> str:
+    """The templates of a balanced rotor as a DXF document (R2010)."""
+    units, shown = symbols(problem), faces(design.mechanism)
+    layers = {"ADDED": (5, "CONTINUOUS"), "REMOVED": (1, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
+    layers |= {f"PLANE_{n}": (3, "CONTINUOUS") for n in range(1, len(shown) + 1)}
+    document = dxf.new_drawing(title or "Balanced rotor", problem.length_unit, layers)
+    space = document.modelspace()
+    for n, face in enumerate(shown):
+        size = face.radius
+        centre = complex(APART * size * n)
+        dxf.add_circle(space, centre, size, f"PLANE_{n + 1}")
+        dxf.add_cross(space, centre, 0.1 * size, f"PLANE_{n + 1}")
+        heading = f"PLANE {n + 1}, z = {length(face.z)} {problem.length_unit}"
+        dxf.add_words(space, centre - 1.35j * size, heading, LETTERS * size)
+        for mark in face.marks:
+            entry, at = mark.correction, centre + mark.at
+            layer = "REMOVED" if entry.removed else "ADDED"
+            dxf.add_cross(space, at, MARK * size, layer)
+            if entry.removed:
+                dxf.add_circle(space, at, 0.7 * MARK * size, layer)
+            mass, dimension = (
+                (entry.unbalance, Dimension.UNBALANCE) if entry.mass is None else (entry.mass, Dimension.MASS)
+            )
+            words = f"{length(mass)} {units[dimension]} {angle(entry.angle % 360.0, 2)}"
+            beyond = centre + cmath.rect(1.18 * size, math.radians(entry.angle))
+            dxf.add_words(space, beyond, words.replace("°", " deg"), 0.8 * LETTERS * size)
+    return dxf.written(document)

@@ -1,0 +1,41 @@
+"""The faces of a rotor: its planes of correction as they are seen along the axis, each with what is done there."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+from synthesis.kinds.balancing.design import RotorCorrection, RotorMechanism
+
+
+class Mark(NamedTuple):
+    """A mass on a face: its place, in length units or, without a radius, in shares of the largest unbalance."""
+
+    at: complex
+    correction: RotorCorrection
+
+
+class Face(NamedTuple):
+    """A plane of correction: its place along the axis, its marks, and the radius on which the outermost lies."""
+
+    z: float
+    marks: list[Mark]
+    radius: float
+
+
+def faces(mechanism: RotorMechanism) -> list[Face]:
+    """The faces of all planes, drawn to one radius."""
+    size = max((entry.unbalance for entry in mechanism.corrections), default=0.0) or 1.0
+    reach = max((entry.radius or entry.unbalance / size for entry in mechanism.corrections), default=1.0)
+    return [
+        Face(z, [mark for mark in _marks(mechanism, size) if mark.correction.plane == plane], reach)
+        for plane, z in enumerate(mechanism.planes)
+    ]
+
+
+def _marks(mechanism: RotorMechanism, size: float) -> list[Mark]:
+    return [
+        Mark(cmath.rect(entry.radius or entry.unbalance / size, math.radians(entry.angle)), entry)
+        for entry in mechanism.corrections
+    ]

@@ -1,0 +1,166 @@
+"""The best choice among places on a circle: which holes to drill how deep, or which weights to fix where.
+
+Every place of a plane contributes one of a few vectors, or nothing. Wanted are the choices whose sum is nearest to a
+target, for each number of places used. The places are split in two halves; all sums of each half are listed, and for
+every sum of one half the nearest of the other is looked up in a tree (Horowitz and Sahni's two lists for subset sums,
+J. ACM 21, 1974, in the plane). That covers (10⁵)² choices exactly. Places beyond are branched on, and a branch whose
+continuous optimum, the distance to the zonotope of all that its places can sum to, is no better is left out.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Complex = NDArray[np.complex128]
+
+GROUP = 100_000
+"""Sums that are listed of a half at most."""
+
+QUERIES = 3_000_000
+"""Sums that are looked up at most, in some seconds; beyond, what was found is not proved to be the best."""
+
+
+class Choice(NamedTuple):
+    """Places that are used, each with the number of its contribution; the sum's difference to the target."""
+
+    picks: dict[int, int]
+    residual: complex
+
+
+class Chosen(NamedTuple):
+    """The best choices, each with more places and less residual than the one before it; and what is proved."""
+
+    choices: list[Choice]
+    bound: float
+    proved: bool
+
+
+class _Sums(NamedTuple):
+    """All sums of a group of places, with the places used and the choice as a number in mixed base."""
+
+    values: Complex
+    used: NDArray[np.int64]
+    codes: NDArray[np.int64]
+
+
+def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chosen:
+    """The choices nearest to a target by the number of places that they use.
+
+    Parameters
+    ----------
+    target : complex
+        What is to be summed up.
+    places : sequence of complex arrays
+        What each place can contribute besides nothing.
+    most : int
+        Most places that are used.
+    """
+    first, second, rest = _split(places, most)
+    head, tail = _sums([places[n] for n in first], most), _sums([places[n] for n in second], most)
+    trees = {
+        used: (cKDTree(np.stack([tail.values.real, tail.values.imag], axis=1)[at]), at)
+        for used in np.unique(tail.used).tolist()
+        if len(at := np.flatnonzero(tail.used == used))
+    }
+    best: dict[int, Choice] = {}
+    listed = [places[n] for n in (*first, *second)]
+    asked, complete = 0, True
+    for branch in itertools.product(*(range(len(places[n]) + 1) for n in rest)):
+        picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
+        if len(picked) > most:
+            continue
+        left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
+        # A branch uses so many places at least: it is of no use where as few come nearer than it ever can.
+        few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
+        if rest and few and _beyond(left, listed) >= min(few):
+            continue
+        if asked > QUERIES:
+            complete = False
+            break
+        for used in np.unique(head.used).tolist():
+            at = np.flatnonzero(head.used == used)
+            wanted = left - head.values[at]
+            points = np.stack([wanted.real, wanted.imag], axis=1)
+            for more, (tree, among) in trees.items():
+                count = len(picked) + used + more
+                if count > most:
+                    continue
+                distance, index = tree.query(points)
+                asked += len(points)
+                n = int(np.argmin(distance))
+                if count not in best or distance[n] < abs(best[count].residual):
+                    picks = picked | _picks(first, places, int(head.codes[at[n]]))
+                    picks |= _picks(second, places, int(tail.codes[among[index[n]]]))
+                    reached = sum(complex(places[k][pick]) for k, pick in sorted(picks.items()))
+                    best[count] = Choice(picks, target - reached)
+    front: list[Choice] = []
+    for count in sorted(best):
+        if not front or abs(best[count].residual) < abs(front[-1].residual):
+            front.append(best[count])
+    bound = abs(front[-1].residual) if complete else _beyond(target, places)
+    return Chosen(front, bound, complete)
+
+
+def _split(places: Sequence[Complex], most: int) -> tuple[list[int], list[int], list[int]]:
+    """Places of the two halves, and those beyond; every second one is the other half's."""
+    halves: tuple[list[int], list[int]] = ([], [])
+    rest: list[int] = []
+    for n in range(len(places)):
+        for half in sorted(halves, key=len):
+            if _count([len(places[k]) for k in (*half, n)], most) <= GROUP:
+                half.append(n)
+                break
+        else:
+            rest.append(n)
+    return *halves, rest
+
+
+def _count(sizes: Sequence[int], most: int) -> int:
+    """How many choices there are of places with so many contributions, of which at most some are used."""
+    counts = [1]
+    for size in sizes:
+        counts = [
+            (counts[k] if k < len(counts) else 0) + (size * counts[k - 1] if k else 0)
+            for k in range(min(len(counts), most) + 1)
+        ]
+    return sum(counts)
+
+
+def _sums(places: Sequence[Complex], most: int) -> _Sums:
+    values, used, codes = np.zeros(1, np.complex128), np.zeros(1, np.int64), np.zeros(1, np.int64)
+    for contributions in places:
+        levels = np.concatenate([[0.0], contributions])
+        taken = used[:, None] + (np.arange(len(levels)) > 0)
+        kept = taken <= most
+        values = (values[:, None] + levels)[kept]
+        codes = (codes[:, None] * len(levels) + np.arange(len(levels)))[kept]
+        used = taken[kept]
+    return _Sums(values, used, codes)
+
+
+def _picks(group: Sequence[int], places: Sequence[Complex], code: int) -> dict[int, int]:
+    picks = {}
+    for n in reversed(group):
+        code, pick = divmod(code, len(places[n]) + 1)
+        if pick:
+            picks[n] = pick - 1
+    return picks
+
+
+def _beyond(target: complex, places: Sequence[Complex]) -> float:
+    """Distance from a target to the sums of convex combinations of what places contribute: no choice comes nearer.
+
+    The largest distance along a direction is a lower bound, whatever the directions; those of the sides of a zonotope
+    of segments from 0 give its distance but for its corners.
+    """
+    directions = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False))
+    support = np.zeros(720)
+    for contributions in places:
+        support += np.maximum(0.0, (np.conj(directions)[:, None] * contributions).real.max(axis=1))
+    return max(0.0, float(((np.conj(directions) * target).real - support).max()))

@@ -1,0 +1,216 @@
+"""The proof of a balanced rotor: its masses turned as points in space, and the forces that hold it.
+
+Nothing of the solver's formulas is used. Every unbalance and every correction of the answer is a point mass on a
+circle; at positions over a turn the forces at both bearings are solved from Newton's and Euler's equations of the whole
+rotor, and are compared with those of the rotor before.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.balancing.design import (
+    BearingForces,
+    PlaneBalance,
+    RotorCorrection,
+    RotorDesign,
+    RotorMechanism,
+    RotorMetrics,
+    RotorUnbalance,
+)
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.rotor import RAD_PER_S, Balancing, Rotor, coefficients, metres
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import GRADE
+from synthesis.model.dynamics import METRES
+from synthesis.proof.checks import at_most, tolerated
+
+Real = NDArray[np.float64]
+
+POSITIONS = 72
+"""Over a turn, at which the forces are solved."""
+
+BALANCED = 1e-10
+"""Share of the forces of all unbalances by themselves that is rounding."""
+
+FORETOLD = 1e-9
+"""Share of the readings up to which those that are foretold are 0."""
+
+GRAM_MILLIMETRES = 1e6
+"""g·mm in a kg·m."""
+
+
+class Turned(NamedTuple):
+    """Over a turn: the largest of the whole force, of its moment about the first plane, and of the bearings' forces."""
+
+    force: float
+    moment: float
+    supports: list[float]
+
+
+class Points(NamedTuple):
+    """Point masses on circles: mass times radius, angle (radians) and place along the axis."""
+
+    moments: Real
+    angles: Real
+    z: Real
+
+
+def verify_rotor(problem: BalancingProblem, rotor: Rotor, found: Balancing) -> RotorDesign:
+    """A rotor with its corrections, measured."""
+    planes, unit = problem.used_planes, metres(problem)
+    written = GRAM_MILLIMETRES * unit if problem.units == "si" else 1.0
+    mechanism = _mechanism(problem, rotor, found, written)
+    before, after = _points(mechanism, written, corrected=False), _points(mechanism, written, corrected=True)
+    added = [0j] * len(planes)
+    for weight in found.weights:
+        added[weight.plane] += weight.moment
+    left = [abs(complex(needed) - moment) for needed, moment in zip(found.needed, added, strict=True)]
+    checks = _checks(problem, before, after, left)
+    grades = _grades(problem, before, after)
+    if problem.max_grade is not None and grades is not None:
+        checks.append(at_most("grade", grades[1], problem.max_grade, GRADE))
+    vibration = None
+    if problem.influence is not None:
+        initial = np.array([reading.vector for reading in problem.influence.initial])
+        vibration = np.abs(initial + coefficients(problem) @ np.array(added))
+        if _continuous(problem) and len(vibration) == len(planes):
+            largest = float(np.abs(initial).max())
+            checks.append(tolerated("vibration", _share(float(vibration.max()), largest), FORETOLD))
+    speed = None if problem.rpm is None else problem.rpm * RAD_PER_S
+    supports, turning = problem.supports, 1.0 if speed is None else speed
+    at_first, at_last = (_turned(points, planes[0], supports, unit, turning) for points in (before, after))
+    metrics = RotorMetrics(
+        residual_unbalance=written * sum(left),
+        bound=written * sum(found.bounds),
+        optimal=found.proved,
+        places=len(found.weights),
+        initial_unbalance=written * abs(complex(rotor.moments.sum())),
+        residual_couple=at_last.moment if speed is not None and len(planes) == 1 else None,
+        initial_grade=None if grades is None else grades[0],
+        grade=None if grades is None else grades[1],
+        shaking_force=None if speed is None else at_first.force,
+        shaking_moment=None if speed is None else at_first.moment,
+        residual_vibration=None if vibration is None else vibration.tolist(),
+        planes=[
+            PlaneBalance(
+                z=planes[plane],
+                needed=written * abs(complex(needed)),
+                needed_angle=math.degrees(float(np.angle(needed))),
+                residual=written * left[plane],
+                bound=written * found.bounds[plane],
+                places=sum(weight.plane == plane for weight in found.weights),
+            )
+            for plane, needed in enumerate(found.needed)
+        ],
+        bearings=None
+        if speed is None or supports is None
+        else [
+            BearingForces(z=z, before=first, after=last)
+            for z, first, last in zip(supports, at_first.supports, at_last.supports, strict=True)
+        ],
+    )
+    return RotorDesign(mechanism=mechanism, verification=Verification.of(checks), metrics=metrics)
+
+
+def _mechanism(problem: BalancingProblem, rotor: Rotor, found: Balancing, written: float) -> RotorMechanism:
+    """The rotor of the answer."""
+    planes, supports = problem.used_planes, problem.supports
+    return RotorMechanism(
+        unbalances=[
+            RotorUnbalance(unbalance=written * abs(moment), angle=math.degrees(float(np.angle(moment))), z=z)
+            for moment, z in zip(rotor.moments.tolist(), rotor.z.tolist(), strict=True)
+        ],
+        corrections=[
+            RotorCorrection(
+                plane=weight.plane,
+                z=planes[weight.plane],
+                angle=weight.angle,
+                unbalance=written * abs(weight.moment),
+                mass=weight.mass,
+                radius=weight.radius,
+                removed=weight.removed,
+            )
+            for weight in found.weights
+        ],
+        planes=planes,
+        bearings=None if supports is None else (supports[0], supports[1]),
+    )
+
+
+def _points(mechanism: RotorMechanism, written: float, *, corrected: bool) -> Points:
+    """The point masses of a rotor of the answer, in masses times length units."""
+    rows = [(entry.unbalance, entry.angle, entry.z) for entry in mechanism.unbalances]
+    if corrected:
+        signs = [-1.0 if entry.removed else 1.0 for entry in mechanism.corrections]
+        added = zip(signs, mechanism.corrections, strict=True)
+        rows += [(sign * entry.unbalance, entry.angle, entry.z) for sign, entry in added]
+    moments, angles, z = np.array(rows, np.float64).T
+    return Points(moments / written, np.radians(angles), z)
+
+
+def _turned(points: Points, about: float, supports: list[float] | None, unit: float, speed: float) -> Turned:
+    """The rotor at positions over a turn: m a of its points in space, and what holds it."""
+    turn = 2.0 * np.pi * np.arange(POSITIONS) / POSITIONS
+    angles = points.angles + turn[:, None]
+    pull = unit * speed**2 * points.moments
+    forces = np.stack([pull * np.cos(angles), pull * np.sin(angles)], axis=-1)  # (positions, points, 2)
+    whole = forces.sum(axis=1)
+    moment = ((points.z - about)[:, None] * forces).sum(axis=1)
+    held: list[float] = []
+    if supports is not None:
+        levers = np.array([[1.0, 1.0], [supports[0] - about, supports[1] - about]])
+        carried = np.linalg.solve(levers, np.stack([whole, moment], axis=1))
+        held = np.hypot(carried[..., 0], carried[..., 1]).max(axis=0).tolist()
+    return Turned(
+        float(np.hypot(whole[:, 0], whole[:, 1]).max()), unit * float(np.hypot(moment[:, 0], moment[:, 1]).max()), held
+    )
+
+
+def _checks(problem: BalancingProblem, before: Points, after: Points, left: list[float]) -> list[Check]:
+    """What is left in the planes is what is said; of single masses, nothing, and no force is on the bearings."""
+    planes = problem.used_planes
+    measured = _turned(after, planes[0], planes if len(planes) == 2 else None, 1.0, 1.0)
+    found = measured.supports or [measured.force]
+    parts = _alone(before, planes)
+    off = max(abs(one - other) for one, other in zip(found, left, strict=True))
+    checks = [tolerated("residual", _share(off, parts), BALANCED)]
+    if _continuous(problem) and len(planes) == 2 and problem.supports is not None:
+        forces = _turned(after, planes[0], problem.supports, 1.0, 1.0).supports
+        checks.append(tolerated("bearing_forces", _share(max(forces), _alone(after, problem.supports)), BALANCED))
+    return checks
+
+
+def _alone(points: Points, supports: list[float]) -> float:
+    """The sum of what each point by itself exerts where the rotor is held: what their sum is a share of."""
+    if len(supports) == 1:
+        return float(np.abs(points.moments).sum())
+    near, far = supports
+    shares = np.abs((points.z - near) / (far - near)) + np.abs((points.z - far) / (far - near))
+    return float((np.abs(points.moments) * shares).sum())
+
+
+def _grades(problem: BalancingProblem, *rotors: Points) -> list[float] | None:
+    """e ω in mm/s of rotors; None without mass and speed.
+
+    The unbalance is the sum of those in the bearings' planes (the tolerance planes of ISO 21940-11), where these are
+    known, so that a couple that one plane leaves counts too.
+    """
+    if problem.rotor_mass is None or problem.rpm is None:
+        return None
+    rate = METRES[problem.length_unit] * 1e3 * problem.rpm * RAD_PER_S / problem.rotor_mass
+    turned = [_turned(points, problem.planes[0], problem.supports, 1.0, 1.0) for points in rotors]
+    return [rate * (sum(one.supports) if one.supports else one.force) for one in turned]
+
+
+def _continuous(problem: BalancingProblem) -> bool:
+    """Whether each plane has one mass of the size and at the angle that it needs."""
+    return problem.correction is None or problem.correction.placed is None
+
+
+def _share(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else 0.0

@@ -1,0 +1,61 @@
+"""The best choice among places: against all choices listed, whatever is branched on."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synthesis.kinds.balancing import places as searched
+from synthesis.kinds.balancing.places import best_choices
+
+
+def listed(target: complex, places: list[Any], most: int) -> dict[int, float]:
+    """The least distance by the number of places used, over all choices."""
+    least: dict[int, float] = {}
+    for picks in itertools.product(*(range(-1, len(place)) for place in places)):
+        used = sum(pick >= 0 for pick in picks)
+        if used <= most:
+            reached = sum(place[pick] for place, pick in zip(places, picks, strict=True) if pick >= 0)
+            least[used] = min(least.get(used, np.inf), abs(target - reached))
+    return least
+
+
+@pytest.mark.parametrize("most", [1, 2, 5])
+@pytest.mark.parametrize("group", [searched.GROUP, 8])
+def test_it_is_the_best_of_all(monkeypatch: pytest.MonkeyPatch, most: int, group: int) -> None:
+    monkeypatch.setattr(searched, "GROUP", group)
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        places = [rng.normal(size=3) + 1j * rng.normal(size=3) for _ in range(5)]
+        target = complex(*rng.normal(size=2)) * 2.0
+        found = best_choices(target, places, most)
+        least = listed(target, places, most)
+        assert found.proved
+        assert found.bound == pytest.approx(min(least.values()), rel=1e-12)
+        for choice in found.choices:
+            reached = sum(complex(places[n][pick]) for n, pick in choice.picks.items())
+            assert abs(choice.residual - (target - reached)) < 1e-12
+            assert abs(choice.residual) == pytest.approx(least[len(choice.picks)], rel=1e-12)
+        distances = [abs(choice.residual) for choice in found.choices]
+        assert distances == sorted(distances, reverse=True)
+        assert distances[-1] == pytest.approx(min(least.values()), rel=1e-12)
+
+
+def test_what_is_not_looked_through_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(searched, "GROUP", 8)
+    monkeypatch.setattr(searched, "QUERIES", 20)
+    rng = np.random.default_rng(4)
+    places = [rng.normal(size=3) + 1j * rng.normal(size=3) for _ in range(6)]
+    found = best_choices(0.3 + 0.2j, places, 6)
+    least = min(listed(0.3 + 0.2j, places, 6).values())
+    assert not found.proved
+    assert found.bound <= least + 1e-12 <= abs(found.choices[-1].residual) + 2e-12
+
+
+def test_the_bound_is_the_distance_to_what_can_be_summed_up() -> None:
+    square = [np.array([1.0 + 0j]), np.array([1j])]
+    assert searched._beyond(3.0 + 0.5j, square) == pytest.approx(2.0, rel=1e-12)
+    assert searched._beyond(0.4 + 0.9j, square) == 0.0
