@@ -47,7 +47,7 @@ class PlaneBalance(Answer):
     needed: Unbalance = Field(description="What has to be added there.")
     needed_angle: Angle
     residual: Unbalance = Field(description="What is left of it.")
-    bound: Unbalance = Field(description="No choice of the stated places leaves less.")
+    bound: Unbalance = Field(description="No choice of the stated places leaves less, of however many.")
     places: int = Field(description="Masses or holes of the plane.")
 
 
@@ -63,8 +63,8 @@ class RotorMetrics(Answer):
     """Measured properties of a balanced rotor."""
 
     residual_unbalance: Unbalance = Field(description="Sum of what is left in the planes.")
-    bound: Unbalance = Field(description="No choice of the stated places leaves less.")
-    optimal: bool = Field(description="Whether it is proved that nothing better can be chosen.")
+    bound: Unbalance = Field(description="No choice of the stated places leaves less, of however many.")
+    optimal: bool = Field(description="Whether it is proved that as few places in each plane cannot leave less.")
     places: int = Field(description="Masses or holes of all planes.")
     initial_unbalance: Unbalance = Field(description="The sum of the unbalances as vectors, before.")
     residual_couple: Torque | None = optional(
