@@ -112,7 +112,7 @@ def _object(schema: Schema, root: Schema, rng: Random) -> Schema:
     wanted = schema.get("required", [])
     return {
         name: drawn(value, root, rng)
-        for name, value in schema["properties"].items()
+        for name, value in schema.get("properties", {}).items()
         if name in wanted or rng.random() < 0.3
     }
 

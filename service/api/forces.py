@@ -43,7 +43,8 @@ async def forces_of_design(
     """Forces of design ``number`` of the job's result with the block `dynamics` of its problem.
 
     A crank that turns through is driven through its cycle, any other input over the range that the design was verified
-    along, at constant speed. The answer is that of `POST /v1/analyses`.
+    along, at constant speed; a design that has a block `dynamics` of its own, over the motion of its problem. The
+    answer is that of `POST /v1/analyses`.
     """
     job, result = await solved(desk, tenant, job_id)
     return await answered(analyst, _forces, job, result, number, query.steps, None)
@@ -97,6 +98,8 @@ def _forces(job: JobRow, result: str, number: str, steps: int, body: Any) -> byt
     designs = kind.result.model_validate_json(result).designs
     design = designs[design_index(number, len(designs))]
     problem = read(job.kind, job.problem)
+    if body is None and getattr(design, "dynamics", None):
+        return to_json(_with_its_own(problem, design, steps), inf_nan_mode="null")
     if not isinstance(problem, LinkageProblem):
         raise _refused("Only linkages have forces in their joints.")
     if body is None:
@@ -114,6 +117,15 @@ def _forces(job: JobRow, result: str, number: str, steps: int, body: Any) -> byt
         if body is None or not error.path:
             raise _refused(sentence(str(error))) from None
         raise invalid_request([(error.path, sentence(error.detail))]) from None
+
+
+def _with_its_own(problem: Any, design: Any, steps: int) -> dict[str, Any]:
+    """The forces of a design that has a block of its own, over the motion that its problem states."""
+    from synthesis.analyses import parse_request
+
+    motion = problem.motion.model_copy(update={"steps": steps}).model_dump(exclude_unset=True, by_alias=True)
+    stated = {"mechanism": design.mechanism.model_dump(), "motion": motion, "dynamics": design.dynamics}
+    return parse_request({**stated, "length_unit": problem.length_unit}).answer()
 
 
 def _refused(detail: str) -> Refusal:

@@ -11,6 +11,7 @@ CARRIED = {"body_travel_ratio", "body_turn_ratio"}
 PURE = {
     "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
     "Allocation": {"cost"},
+    "BalanceMetrics": {"value", "bound"},  # shares of what was before
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
     "CamLimits": {"curvature_ratio"},
@@ -34,6 +35,8 @@ PURE = {
     "Gap": {"value", "limit"},  # of the check's own dimension
     "GasPressure": {"pressure"},  # columns of several units
     "GearPair": {"ratio"},
+    "GearedInertia": {"ratio"},
+    "StatedFlywheel": {"coefficient"},
     "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
     "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance"},
@@ -82,6 +85,7 @@ PURE = {
     "StructureVerdict": {"max_error"},
     "SuggestedShift": {"driver", "driven", "contact_ratio"},  # shifts in modules
     "TablePoint": {"x", "y"},
+    "Sweep": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units
     "Yield": {"value", "low", "high"},

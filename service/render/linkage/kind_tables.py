@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinematics.linkage.planar.branches import cycle
+from kinematics.linkage.planar.mechanism import GROUND
 from service.render.linkage import fourbar_tables
 from service.render.linkage.content import Content
 from service.render.linkage.drawing import PlanarPicture, Scene
@@ -20,8 +21,12 @@ from service.render.linkage.motion import DrivenLinkage, demands_of, target_curv
 from service.render.page import blocks
 from service.render.page.diagrams import Diagram
 from service.render.page.numbers import angle, length, small
-from service.render.page.svg import Box, Element, Viewport, line, path
+from service.render.page.svg import Box, Element, Viewport, circle, line, path
 from service.render.page.symbols import CURVE, DEMANDED, OUTPUT
+from service.units import symbols
+from synthesis.kinds.balancing.curves import shaking_curves
+from synthesis.kinds.balancing.design import BalancedDesign
+from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.dwell.design import DwellDesign
 from synthesis.kinds.dwell.problem import DwellProblem
 from synthesis.kinds.function.design import FunctionDesign
@@ -37,6 +42,7 @@ from synthesis.kinds.steering.design import SteeringDesign
 from synthesis.kinds.steering.problem import SteeringProblem
 from synthesis.kinds.straight_line.design import StraightLineDesign
 from synthesis.kinds.straight_line.problem import StraightLineProblem
+from synthesis.model.dimension import Dimension
 from synthesis.model.linkage_answer import FourbarMechanism, LinkageDesign
 
 SAMPLES = 721
@@ -47,6 +53,9 @@ MAX_ROWS = 12
 
 PLACES = 4
 """Places of its range at which a parallel motion is drawn; the body is drawn heavy at all of them."""
+
+WEIGHT = 16.0
+"""Radius of the heaviest counterweight that is no disc, pixels."""
 
 NAMES = {
     "slider_crank": "Slider-crank",
@@ -385,6 +394,62 @@ def _coupler_point(mechanism: Any) -> list[tuple[str, str]]:
     ]
 
 
+def balancing(design: BalancedDesign, problem: BalancingProblem, linkage: DrivenLinkage) -> Content:
+    """A balanced linkage: at places of its cycle, its counterweights where they stand at first; what shakes it."""
+    links, start = linkage.mechanism.links, float(linkage.mechanism.reference_input)
+    # A geared inertia is a wheel; the joint that gives its link an angle means nothing.
+    hidden = {joint for gear in design.geared for joint in links[gear.link]} - set(links[GROUND])
+    scene = Scene(linkage, np.linspace(start, linkage.cycle[1], PLACES + 1)[:-1], [], hidden=hidden)
+    weights = [(weight, complex(*weight.at)) for weight in design.counterweights if weight.mass > 0.0]
+    heaviest = max((weight.mass for weight, _ in weights), default=1.0)
+    box = Box.around(np.concatenate([scene.places(), [at for _, at in weights]]))
+
+    def discs(view: Viewport) -> list[Element]:
+        drawn = []
+        for weight, at in weights:
+            size = WEIGHT * math.sqrt(weight.mass / heaviest)
+            if weight.disc_radius is not None:
+                size = view.scale * weight.disc_radius
+            arm = complex(linkage.mechanism.joints[weight.joint])
+            drawn.append(line(view.point(arm), view.point(at), stroke=DEMANDED, stroke_width=2.0))
+            marks = {"fill": "none", "stroke": DEMANDED, "data_counterweight": weight.link}
+            drawn.append(circle(view.point(at), size, stroke_width=2.4, **marks))
+        return drawn
+
+    units, unit = symbols(problem), problem.length_unit
+    mass = units[Dimension.MASS]
+    rows = [
+        (f"on {weight.link}", f"{length(weight.mass)} {mass} at {length(weight.radius)} {unit}, {angle(weight.angle)}")
+        for weight, _ in weights
+    ]
+    rows += [
+        (f"{gear.link} : {gear.against}", f"{gear.ratio:g}, {length(gear.inertia)} {units[Dimension.INERTIA]}")
+        for gear in design.geared
+    ]
+    places = [
+        (name, f"({length(x, box.diagonal)}, {length(y, box.diagonal)})")
+        for name, (x, y) in design.mechanism.skeleton.joints.items()
+        if name not in hidden
+    ]
+    curves = shaking_curves(problem, design)
+    per = f"({units[Dimension.FORCE]})", f"({units[Dimension.TORQUE]})"
+    return Content(
+        "Balanced linkage",
+        f"Linkage with {len(weights)} counterweight{'s' * (len(weights) != 1)}",
+        f"a linkage at {PLACES} places of its motion, with its counterweights",
+        PlanarPicture(scene, unit, discs, box),
+        [blocks.rows("Counterweights", rows or [("none", "")])],
+        titles={"value": "what is left", "bound": "least that could be"},
+        dimensions=blocks.rows(f"Joints in the reference ({unit})", places),
+        diagrams=[
+            Diagram(f"shaking force before {per[0]}", "force_before", curves.at, curves.force_before, CURVE),
+            Diagram(f"shaking force after {per[0]}", "force_after", curves.at, curves.force_after, OUTPUT),
+            Diagram(f"shaking moment before {per[1]}", "moment_before", curves.at, curves.moment_before, CURVE),
+            Diagram(f"shaking moment after {per[1]}", "moment_after", curves.at, curves.moment_after, OUTPUT),
+        ],
+    )
+
+
 _CONTENTS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
     "motion": guided,
     "path": guided,
@@ -394,6 +459,7 @@ _CONTENTS: dict[str, Callable[[Any, Any, DrivenLinkage], Content]] = {
     "straight_line": straight_line,
     "dwell": dwell,
     "parallel_motion": parallel_motion,
+    "balancing": balancing,
 }
 
 

@@ -1,13 +1,16 @@
-"""Balanced rotors as answers."""
+"""Balanced rotors and linkages as answers."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from synthesis.model.answer import Answer, Result, Verification, optional
-from synthesis.model.dimension import Angle, Force, Grade, Length, Mass, Torque, Unbalance
+from synthesis.model.answer import Answer, Point, Result, Verification, optional
+from synthesis.model.dimension import INERTIA, Angle, Force, Grade, Length, Mass, Torque, Unbalance
+from synthesis.model.linkage_answer import Skeleton
+
+Inertia = Annotated[float, INERTIA]
 
 
 class RotorUnbalance(Answer):
@@ -89,8 +92,72 @@ class RotorDesign(Answer):
     metrics: RotorMetrics
 
 
-class BalancingResult(Result[RotorDesign]):
-    """Balanced rotors, the least residual first.
+class BalancedLinkage(Answer):
+    """A linkage by its skeleton, with the links of geared inertias where it has them."""
 
-    Where places are chosen, the designs are the Pareto set of the residual against the places that are used.
+    type: Literal["skeleton"] = "skeleton"
+    skeleton: Skeleton
+
+
+class Counterweight(Answer):
+    """A weight that is fixed to a link."""
+
+    link: str
+    mass: Mass
+    at: Point = Field(description="Its centre in the reference configuration.")
+    joint: str = Field(description="About which its radius and angle are told: the link's fixed pivot or first joint.")
+    radius: Length = Field(description="From that joint.")
+    angle: Angle = Field(
+        description="From the line of that joint to the link's next joint, counter-clockwise, degrees."
+    )
+    moment: Unbalance = Field(description="Mass times radius.")
+    inertia: Inertia = Field(description="About its own centre; of a disc, or of an inertia without mass.")
+    disc_radius: Length | None = optional("Of a disc of the stated density and thickness.")
+
+
+class GearedInertia(Answer):
+    """A link that gears turn against another one, on the same pivot."""
+
+    link: str
+    against: str
+    ratio: float
+    inertia: Inertia
+
+
+class BalanceMetrics(Answer):
+    """What shakes the frame before and after, and what that takes.
+
+    Peaks over the motion, of the inertia of the links alone.
+    """
+
+    value: float = Field(description="What is left, as a share of what was before.")
+    bound: float = Field(description="No counterweights that are allowed leave less.")
+    shaking_force: Force
+    unbalanced_shaking_force: Force
+    shaking_moment: Torque
+    unbalanced_shaking_moment: Torque
+    drive: Torque = Field(description="Greatest torque (force, where the input slides) of the drive.")
+    unbalanced_drive: Torque
+    added_mass: Mass
+
+
+class BalancedDesign(Answer):
+    """A linkage with its counterweights and the proof of what they do."""
+
+    mechanism: BalancedLinkage
+    dynamics: dict[str, Any] = Field(
+        description="The whole block `dynamics` with the counterweights in it, as `POST /v1/analyses` takes it."
+    )
+    counterweights: list[Counterweight]
+    geared: list[GearedInertia] = Field(description="Empty where none is needed.")
+    verification: Verification
+    metrics: BalanceMetrics
+
+
+class BalancingResult(Result[RotorDesign | BalancedDesign]):
+    """What balances a rotor or a linkage.
+
+    Of a rotor the least residual comes first; where places are chosen, the designs are the Pareto set of the residual
+    against the places that are used. Of a linkage each design is a set of links with counterweights, the lightest
+    first.
     """

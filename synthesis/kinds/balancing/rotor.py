@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from kinematics.dynamics.rotor import influence_coefficients, plane_corrections, unbalances_by_influence
 from synthesis.kinds.balancing.places import best_choices
-from synthesis.kinds.balancing.problem import BalancingProblem, Correction, Holes
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.stated_rotor import Correction, Holes
 from synthesis.model.dynamics import METRES
+from synthesis.model.motions import RAD_PER_S
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
-
-RAD_PER_S = math.pi / 30.0
-"""One revolution a minute in rad/s."""
 
 
 class Rotor(NamedTuple):

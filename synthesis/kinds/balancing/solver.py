@@ -14,6 +14,10 @@ from synthesis.outcome.sifting import Sifting
 
 def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingResult:
     """Solve a problem of balancing."""
+    if problem.object == "linkage":
+        from synthesis.kinds.balancing.linkage import solve_linkage
+
+        return solve_linkage(problem, progress)
     progress(0.0, "choosing masses")
     rotor = rotor_of(problem)
     ways = balanced(problem, rotor)

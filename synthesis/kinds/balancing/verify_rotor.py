@@ -23,10 +23,11 @@ from synthesis.kinds.balancing.design import (
     RotorUnbalance,
 )
 from synthesis.kinds.balancing.problem import BalancingProblem
-from synthesis.kinds.balancing.rotor import RAD_PER_S, Balancing, Rotor, coefficients, metres
+from synthesis.kinds.balancing.rotor import Balancing, Rotor, coefficients, metres
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import GRADE
 from synthesis.model.dynamics import METRES
+from synthesis.model.motions import RAD_PER_S
 from synthesis.proof.checks import at_most, tolerated
 
 Real = NDArray[np.float64]

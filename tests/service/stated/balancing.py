@@ -41,10 +41,49 @@ STOCK: dict[str, Any] = {
     "planes": [0.0],
 }
 
+LINKAGE: dict[str, Any] = {
+    "object": "linkage",
+    "masses": [],
+    "planes": [0.0],
+    "rpm": None,
+    "rotor_mass": None,
+    "correction": None,
+    "mechanism": {
+        "type": "fourbar",
+        "fixed_pivots": {"input": [0.0, 0.0], "output": [280.0, 0.0]},
+        "links": {"input": 100.0, "coupler": 300.0, "output": 200.0},
+    },
+    "motion": {"speed_rpm": 60.0},
+    "dynamics": {
+        "bodies": {
+            "input": {"mass": 0.5, "cg": {"distance": 50.0}, "inertia": 0.0006},
+            "coupler": {"mass": 1.2, "cg": {"distance": 140.0}, "inertia": 0.012},
+            "output": {"mass": 0.9, "cg": {"distance": 90.0}, "inertia": 0.004},
+        }
+    },
+}
+DISCS = {**LINKAGE, "counterweights": {"density": 7800.0, "thickness": 20.0}}
+
 ROTOR_ROWS: dict[str, Any] = {
+    "goal": Row("force_and_moment", LINKAGE),
+    "mechanism": Row({**LINKAGE["mechanism"], "assembly": "crossed"}, LINKAGE),
+    "motion": Row({"speed_rpm": 70.0}, LINKAGE),
+    "motion.speed": Row(2.0, {**LINKAGE, "motion": {}}),
+    "motion.speed_rpm": Row(70.0, LINKAGE),
+    "motion.acceleration": Row(5.0, LINKAGE),
+    "motion.from": Row(120.0, LINKAGE),
+    "motion.to": Row(90.0, LINKAGE),
+    "motion.steps": Row(5000, LINKAGE),
+    "dynamics": Row({"bodies": {"coupler": {"mass": 1.0, "cg": {"distance": 140.0}, "inertia": 0.01}}}, LINKAGE),
+    "counterweights": Row({"radius": 50.0}, LINKAGE),
+    "counterweights.links": Row(["input", "coupler", "output"], {**LINKAGE, "counterweights": {"mass": 1.0}}),
+    "counterweights.radius": Row(50.0, LINKAGE),
+    "counterweights.mass": Row(1.0, LINKAGE),
+    "counterweights.density": Row(2700.0, DISCS),
+    "counterweights.thickness": Row(30.0, DISCS),
     "length_unit": "in",
     "units": "consistent",
-    "object": Row("linkage"),
+    "object": Row("linkage", {**LINKAGE, "object": "rotor"}),
     "seed": 7,
     "max_designs": Row(1, HOLES),
     "include_failed": Row(True, {**HOLES, "max_grade": 10.0, "bearings": [0.0, 100.0]}),

@@ -37,5 +37,5 @@ NO_EFFECT = {
 }
 """Fields with which no answer changes, and why."""
 
-ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "Manufacture"})
+ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "DynamicsBlock", "Manufacture"})
 """Models whose fields have rows or tests of their own: paths, skeletons beside dimensions, rooms, masses, shops."""

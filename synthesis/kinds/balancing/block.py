@@ -1,0 +1,32 @@
+"""The block ``dynamics`` of an answer: what the client stated, with counterweights and geared inertias in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from kinematics.dynamics.bodies import body, joined
+from kinematics.dynamics.machine import Machine
+from synthesis.kinds.balancing.force_balance import Weight
+from synthesis.model.dynamics import DynamicsBlock
+
+
+def weighted(machine: Machine, block: DynamicsBlock, weights: Sequence[Weight]) -> dict[str, Any]:
+    """The block with the bodies of links that carry a weight as mass, centre of gravity and moment of inertia."""
+    stated = block.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    bodies = dict(stated.get("bodies", {}))
+    for link in dict.fromkeys(weight.link for weight in weights):
+        own = machine.bodies.get(link)
+        parts = [weight.body for weight in weights if weight.link == link]
+        if own is not None and (float(own.mass) > 0.0 or float(own.inertia) > 0.0):
+            parts.insert(0, own if float(own.mass) > 0.0 else body(0.0, complex(parts[0].cg), float(own.inertia)))
+        whole = joined(parts)
+        cg = complex(whole.cg) / machine.scale
+        bodies[link] = {"mass": float(whole.mass), "cg": [cg.real, cg.imag], "inertia": float(whole.inertia)}
+    return {**stated, "bodies": bodies}
+
+
+def with_inertias(block: dict[str, Any], inertias: dict[str, float]) -> dict[str, Any]:
+    """The block with links that have an inertia and no mass that counts."""
+    turned = {link: {"mass": 0.0, "inertia": inertia} for link, inertia in inertias.items()}
+    return {**block, "bodies": {**block["bodies"], **turned}}

@@ -1,0 +1,88 @@
+"""Linkages: exact counterweights for force, or for force and moment, each verified by driving what is answered."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from synthesis.kinds.balancing.design import BalancedDesign, BalancingResult
+from synthesis.kinds.balancing.driven import Task, placed, task_of
+from synthesis.kinds.balancing.force_balance import Weight, balanceable, force_balances, unpinned
+from synthesis.kinds.balancing.moment_balance import NoMomentBalance, moment_balance
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.verify_linkage import verify_linkage
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting
+
+LEAST_POSITIONS = 5
+"""Positions at which a linkage must be assembled for its motion to be one."""
+
+
+def solve_linkage(problem: BalancingProblem, progress: Progress) -> BalancingResult:
+    """Balance a linkage."""
+    task = task_of(problem)
+    sifting = Sifting[BalancedDesign](problem)
+    if placed(task.machine, task.positions(72)).smooth.sum() < LEAST_POSITIONS:
+        return _answer(problem, sifting, "The mechanism cannot be assembled over this motion.", complete=False)
+    if problem.goal == "force_and_moment":
+        return _without_moment(problem, task, sifting)
+    progress(0.2, "finding sets of links")
+    sets = force_balances(task, problem.counterweights)
+    progress(0.7, "verifying")
+
+    def verified(weights: list[Weight]) -> BalancedDesign:
+        return verify_linkage(problem, task, task.machine.mechanism, weights, {})
+
+    sifting.sift(sets, verified)
+    progress(1.0, "verified")
+    # What no weights can do is told by the rank of a linear system; sets are listed up to a number.
+    complete = not sifting.rejected
+    return _answer(problem, sifting, _summary(problem, task, sifting), complete=complete)
+
+
+def _without_moment(problem: BalancingProblem, task: Task, sifting: Sifting[BalancedDesign]) -> BalancingResult:
+    try:
+        geared = moment_balance(task.machine, problem.counterweights)
+    except NoMomentBalance as error:
+        return _answer(problem, sifting, f"No such balance is known: {error}.", complete=False)
+    verified = partial(verify_linkage, problem, task, geared.mechanism, inertias=geared.inertias)
+    sifting.sift([geared.weights], verified)
+    done = (
+        "Neither a force nor a moment shakes the frame: the coupler is two masses at its pins, and gears turn an equal "
+    )
+    summary = f"{done}inertia against each crank." if sifting.passed else "No design was found."
+    return _answer(problem, sifting, summary + sifting.reasons(), complete=False)
+
+
+def _answer(
+    problem: BalancingProblem, sifting: Sifting[BalancedDesign], summary: str, *, complete: bool
+) -> BalancingResult:
+    return BalancingResult(
+        designs=sifting.designs(list),
+        search=sifting.search(problem.goal, complete=complete),
+        summary=summary,
+    )
+
+
+def _summary(problem: BalancingProblem, task: Task, sifting: Sifting[BalancedDesign]) -> str:
+    stated = problem.counterweights.links
+    if sifting.passed:
+        first = sifting.passed[0]
+        links = [weight.link for weight in first.counterweights]
+        if not links:
+            return "The linkage is balanced as it is."
+        grown = first.metrics.shaking_moment, first.metrics.unbalanced_shaking_moment
+        change = f" The shaking moment becomes {grown[0] / grown[1]:.3g} times what it was." if grown[1] > 0.0 else ""
+        return f"No force shakes the frame with counterweights on {_listed(links)}.{change}"
+    if sifting.rejected:
+        return f"No design was found.{sifting.reasons()}"
+    loose = unpinned(task.machine.mechanism)
+    theorem = "a linkage can be balanced where every link reaches the ground by a path of pins"
+    if stated is not None and balanceable(task):
+        return f"No weights of this size on {_listed(stated)} balance the force; others do."
+    if loose:
+        return f"None exists: {theorem}, and {_listed(loose)} {'has' if len(loose) == 1 else 'have'} none."
+    return "None exists: no weights on the moving links balance the force."
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -1,0 +1,33 @@
+"""What is wrong with a linkage that is to be balanced: as an analysis tells it, and what balancing needs besides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from kinematics.linkage.planar.mechanism import GROUND
+from synthesis.analyses.weighed import weighed_faults, weighed_request
+from synthesis.kinds.balancing.stated_weights import Counterweights
+from synthesis.mechanisms.machine import machine_of
+from synthesis.model.dynamics import DynamicsBlock, LengthUnit
+from synthesis.model.motions import Sweep
+
+
+def linkage_faults(
+    stated: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, weights: Counterweights
+) -> list[tuple[str, str]]:
+    """Faults of a mechanism, its masses, its motion and its counterweights, by their fields."""
+    faults = weighed_faults(stated, dynamics, unit)
+    if faults:
+        return faults
+    mechanism = weighed_request(stated, dynamics, unit).mechanism.mechanism()
+    if mechanism.driven_by_slide and motion.speed_rpm is not None:
+        faults.append(("/motion/speed_rpm", "a slider drives this; state its speed as `speed`, length units a second"))
+    machine, _ = machine_of(dynamics, mechanism, unit)
+    masses = [*(float(part.mass) for part in machine.bodies.values()), *map(float, machine.pin_masses.values())]
+    if not any(masses):
+        faults.append(("/dynamics/bodies", "without mass nothing shakes; state what the links weigh"))
+    moving = [link for link in mechanism.links if link != GROUND]
+    for n, link in enumerate(weights.links or []):
+        if link not in moving:
+            faults.append((f"/counterweights/links/{n}", f"no link in motion; they are {', '.join(moving)}"))
+    return faults

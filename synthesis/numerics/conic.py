@@ -1,0 +1,66 @@
+"""Conic programs in the form that Clarabel takes, without a modelling layer: building one costs as good as nothing.
+
+    minimize  c·x   subject to   b − A x ∈ K,
+
+K the product of zero cones, nonnegative orthants and second-order cones {(t, v): t ≥ |v|}. The dual objective is told
+too: of any program of this form it is a lower bound of the least value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+
+class Rows(NamedTuple):
+    """Rows b − A x in one cone, or of second-order cones in many of ``size`` rows each."""
+
+    cone: Literal["zero", "nonnegative", "second_order"]
+    matrix: Real
+    offset: Real
+    size: int = 0
+
+
+class Solution(NamedTuple):
+    """The minimizer, its value and that of the dual; ``status`` tells whether there is one."""
+
+    x: Real
+    value: float
+    dual: float
+    status: Literal["solved", "infeasible", "unbounded", "failed"]
+
+
+def minimized(cost: Real, rows: Sequence[Rows]) -> Solution:
+    """Solve a conic program by Clarabel's interior-point method."""
+    clarabel, sparse = import_module("clarabel"), import_module("scipy.sparse")
+    cones = []
+    for part in rows:
+        if part.cone == "second_order":
+            cones += [clarabel.SecondOrderConeT(part.size)] * (len(part.offset) // part.size)
+        else:
+            make = clarabel.ZeroConeT if part.cone == "zero" else clarabel.NonnegativeConeT
+            cones.append(make(len(part.offset)))
+    matrix = sparse.csc_matrix(np.concatenate([part.matrix for part in rows]))
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    count = len(cost)
+    solver = clarabel.DefaultSolver(
+        sparse.csc_matrix((count, count)), cost, matrix, np.concatenate([part.offset for part in rows]), cones, settings
+    )
+    found = solver.solve()
+    name = str(found.status)
+    status: Literal["solved", "infeasible", "unbounded", "failed"] = "failed"
+    if name in ("Solved", "AlmostSolved"):
+        status = "solved"
+    elif name in ("PrimalInfeasible", "AlmostPrimalInfeasible"):
+        status = "infeasible"
+    elif name in ("DualInfeasible", "AlmostDualInfeasible"):
+        status = "unbounded"
+    return Solution(np.array(found.x), float(found.obj_val), float(found.obj_val_dual), status)
