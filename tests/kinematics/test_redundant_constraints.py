@@ -64,6 +64,39 @@ def test_bar_on_three_parallel_slides() -> None:
     np.testing.assert_allclose(motion.angles["bar"][1:], 0.0, atol=1e-13)
 
 
+def test_trammel_with_a_crank_passes_its_change_points() -> None:
+    """A bar of length 2 with its ends on two slides, whose middle goes round on a crank of length 1.
+
+    Crank, bar and one slide alone may fold over where the end on the slide is above the pivot.
+    """
+    start = 0.4
+    middle = np.exp(1j * start)
+    joints = {"O": 0j, "M": middle, "A": 2.0 * middle.real + 0j, "B": 2j * middle.imag}
+    slides = (
+        Slide("A", "ground", np.asarray(0j), np.asarray(0.0)),
+        Slide("B", "ground", np.asarray(0j), np.asarray(np.pi / 2.0)),
+    )
+    mechanism = Mechanism(joints, {"ground": ("O",), "crank": ("O", "M"), "bar": ("M", "A", "B")}, "crank", slides)
+    at = np.radians(np.arange(0.0, 360.0, 15.0))
+    motion = drive(mechanism, at)
+    assert motion.smooth.all()
+    np.testing.assert_allclose(motion.joints["A"][0], 2.0 * np.cos(at), atol=1e-12)
+    np.testing.assert_allclose(motion.joints["B"][2], -2j * np.sin(at), atol=1e-11)
+    np.testing.assert_allclose(motion.angles["bar"][1], -1.0, atol=1e-12)
+
+
+def test_short_way_between_two_limits_is_a_motion() -> None:
+    """A rocker that stands near its limit, with a copy of the coupler."""
+    links = {"ground": ("O2", "O4"), "input": ("O2", "A"), "coupler": ("A", "B"), "output": ("O4", "B")}
+    angle = np.arccos(-1.0 / 8.0) - 1e-3  # coupler and output are stretched at arccos(−1/8)
+    crank = 2.0 * np.exp(1j * angle)
+    gap = 3.0 - crank
+    joint = crank + gap / abs(gap) * (abs(gap) / 2.0 + 1j * np.sqrt(14.5 / 4.0 - (abs(gap) / 2.0) ** 2))
+    mechanism = Mechanism({"O2": 0j, "O4": 3.0, "A": crank, "B": joint}, links | {"copy": ("A", "B")}, "input")
+    motion = drive(mechanism, [angle - 1e-3, angle, angle + 0.5])
+    assert motion.valid.tolist() == [True, True, False]
+
+
 def test_rates_are_those_of_the_positions() -> None:
     """A redundant crank on a parallelogram whose coupler moves a dyad: derivatives by differences."""
     joints = {"O2": 0j, "O4": 3.0, "O6": 5.0 + 1.3j, "O8": 7.0 + 4.0j}

@@ -33,9 +33,24 @@ CONSISTENT = 3e-6
 DEPENDENT = 1e-5
 """Singular value, as a share of the largest, below which constraints depend on each other, so rounded."""
 
-LOOKED_AT = (0.05, 0.1, 0.15, 0.2)
-"""Moves of the input (radians, or shares of the size) one way or the other by which a mechanism has to show that it
-moves."""
+FAR_ENOUGH = 0.2
+"""Move of the input from the reference, radians or shares of the size, by which a mechanism has shown that it moves."""
+
+LEAST_STEP = 1e-6
+"""Step of the input below which the way from the reference has an end."""
+
+TRIALS = 60
+"""Steps at most, with those that were too long."""
+
+AT_A_LIMIT = 0.1
+"""Least singular value, as a share of that in the reference, at an end of the way that is a limit of the motion: there
+it goes with the root of the distance. At an end where constraints disagree it is what it was."""
+
+MOST_TURN = 0.5
+"""Rotation of a link in one step, radians, beyond which another assembly might have been come upon."""
+
+SINGULAR = 1e-7
+"""Least singular value, as a share of the largest, below which rates are undefined."""
 
 PASSES = 5
 """Steps of Gauss's and Newton's method. From a dyad's position, good to the root of rounding at worst, two would do."""
@@ -167,15 +182,34 @@ class Constraints:
         return np.asarray(unknowns - (values > DEPENDENT * values[:, :1]).sum(axis=1))
 
     def moves(self) -> bool:
-        """Whether the input moves all designs from the reference, one way at least, and the constraints remain met."""
+        """Whether the input moves all designs from the reference, one way at least, while all constraints are met.
+
+        It is followed in steps along the tangent until it has moved :data:`FAR_ENOUGH`, or to a limit of the motion.
+        """
         at = self.given(self.reference)
-        moved = np.ones((2, at.shape[1]), np.bool_)
-        for met, way in zip(moved, (-1.0, 1.0), strict=True):
-            poses = self.reference
-            for move in LOOKED_AT:
-                poses, misfit, least = self.settled(poses, at + way * move)
-                met &= (misfit <= CONSISTENT) & (least > DEPENDENT)
-        return bool(moved.any(axis=0).all())
+        moved = np.zeros(at.shape[1], np.bool_)
+        for way in (-1.0, 1.0):
+            moved |= self._moves(at, way)
+        return bool(moved.all())
+
+    def _moves(self, at: Real, way: float) -> NDArray[np.bool_]:
+        count = at.shape[1]
+        rates = np.concatenate([at, np.full((1, count), way)])
+        poses, _, least = self.settled(self.reference, rates)
+        begun, done = least.copy(), np.zeros(count)
+        step = np.full(count, 0.25 * FAR_ENOUGH)
+        for _ in range(TRIALS):
+            if not ((done < FAR_ENOUGH) & (step > LEAST_STEP)).any():
+                break
+            guess = Poses(poses.places[:1] + step * poses.places[1:], poses.rotations[:1] + step * poses.rotations[1:])
+            tried, misfit, smallest = self.settled(guess, rates + np.array([[way], [0.0]]) * (done + step))
+            turned = np.abs(tried.rotations[0] - poses.rotations[0]).max(axis=0)
+            met = (misfit <= CONSISTENT) & (turned <= MOST_TURN) & (smallest > SINGULAR) & (done < FAR_ENOUGH)
+            poses.put(met, tried.take(met))
+            least = np.where(met, smallest, least)
+            done = np.where(met, done + step, done)
+            step = np.where(met, 1.5 * step, 0.5 * step)
+        return (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * begun))
 
     def misfit(self, poses: Poses, input: Real) -> Real:
         """The largest residual of poses of shape (1, links, M) at inputs (1, M); NaN where they are, shape (M,)."""

@@ -1,7 +1,7 @@
 """Motion of a mechanism with redundant constraints: positions near by are settled to meet all of them.
 
 Where a parallelogram passes its change point its dyad alone would go either way; the third crank allows one of them
-only. So every assembly of the dyads is tried, the reference's first, until one meets all constraints.
+only. So where the dyads close in the reference's assembly, but miss a constraint, the other assemblies are tried.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinematics.linkage.planar.constraints import CONSISTENT, Poses
-from kinematics.linkage.planar.drive_kernels import SINGULAR
+from kinematics.linkage.planar.constraints import CONSISTENT, SINGULAR, Poses
 from kinematics.linkage.planar.mechanism import Complex, Mechanism, Real
 
 NEAR = 1e-2
@@ -46,7 +45,7 @@ def settle(
     inputs : float, shape (n,) + S + (N,) with D rows of N
         Absolute inputs and their rates.
     starts : iterable of Start
-        Positions near by, the likeliest first; NaN where there are none.
+        Positions near by, those of the reference's assembly first; NaN where there are none.
     reference : float, shape (M,)
         The designs' inputs in the reference.
     """
@@ -65,13 +64,16 @@ def settle(
         moved /= size
         moved[0] += constraints.given(constraints.reference)[0]
     poses = Poses.unknown(length, len(constraints.links), len(each))
+    closed = None
     valid, least = np.zeros(len(each), np.bool_), np.full(len(each), np.nan)
     for joints, angles in starts:
         near = Poses(
             np.stack([(joints[base].ravel() - origin) / size for base in constraints.bases])[None],
             np.stack([angles[link].ravel() - turned[link] for link in constraints.links])[None],
         )
-        left = np.flatnonzero(~valid & (constraints.misfit(near, moved[:1]) <= NEAR))
+        misfit = constraints.misfit(near, moved[:1])
+        closed = np.isfinite(misfit) if closed is None else closed
+        left = np.flatnonzero(~valid & closed & (misfit <= NEAR))
         if not len(left):
             continue
         found, misfit, smallest = mechanism.constraints(each[left]).settled(near.take(left), moved[:, left])

@@ -11,7 +11,9 @@ from kinematics.dynamics import JointForce, Machine, Places, balance, constant, 
 from kinematics.dynamics.friction import Friction
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism, Slide, TopologyError
+from tests.campaign import further
 from tests.kinematics.dynamics.machines import machine, moved
+from tests.kinematics.mechanism_sampling import CHAIN, DYADIC, take
 from tests.kinematics.test_redundant_constraints import CRANK, LINKS, geared, parallelogram
 
 
@@ -41,6 +43,41 @@ def test_drive_and_shaking_are_those_of_energy_and_momentum(mechanism: Mechanism
         not minimum_norm and not mechanism.gears
     )
     assert all(np.isnan(torque).all() != minimum_norm for torque in found.gears)
+
+
+@pytest.mark.parametrize(
+    "name", further(DYADIC | CHAIN, ["slider-crank", "crank-shaper", "geared fivebar", *list(CHAIN)[:2]])
+)
+def test_link_that_is_there_twice_changes_no_motion_and_no_unique_force(name: str) -> None:
+    """A copy without mass on the first two joints of a link, over a full turn or from toggle to toggle."""
+    rng = np.random.default_rng([26, list(DYADIC | CHAIN).index(name)])
+    designs = (DYADIC | CHAIN)[name](rng, 3)
+    for n in range(3):
+        once = take(designs, n)
+        link = str(rng.choice([link for link in once.links if link != "ground"]))
+        links = {**once.links, "copy": once.links[link][:2]}
+        twice = Mechanism(once.joints, links, once.input, once.slides, once.gears)
+        whole = machine(rng, once)
+        at = np.asarray(once.reference_input) + np.linspace(-np.pi, np.pi, 25)
+        plain, more = (drive(each, at, speed=2.0, acceleration=3.0, order=2) for each in (once, twice))
+        np.testing.assert_array_equal(plain.smooth, more.smooth)
+        found = reactions(whole, Places(once, plain))
+        doubled = reactions(replace(whole, mechanism=twice), Places(twice, more))
+        posed = found.solved & doubled.solved & (found.condition < 1e5)
+        if not posed.any():
+            continue
+        assert doubled.indeterminate[posed].all()
+        largest = max(np.abs(force[posed]).max() for on in found.joints.values() for force in on.values())
+        for one, other in (
+            (found.drive, doubled.drive),
+            (found.shaking_force, doubled.shaking_force),
+            (found.shaking_moment, doubled.shaking_moment),
+        ):
+            assert np.abs(one - other)[posed].max() <= 1e-8 * np.abs(one[posed]).max()
+        for joint, on in found.joints.items():
+            for of, force in on.items():
+                there = posed & np.isfinite(doubled.joints[joint][of])
+                assert np.abs(force - doubled.joints[joint][of])[there].max(initial=0.0) <= 1e-9 * largest
 
 
 def test_forces_that_redundancy_does_not_reach_stay() -> None:
