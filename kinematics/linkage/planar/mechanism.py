@@ -8,6 +8,7 @@ ground (its rotation drives), or the joint of a slide on the ground (its displac
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -142,14 +143,14 @@ class Mechanism:
         """How many constraints could be left out without a further freedom."""
         return 1 - self.counted_mobility
 
-    @property
+    @cached_property
     def counted_mobility(self) -> int:
         """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
 
         A joint on k links counts as k − 1 pins. Parallel cranks, closed trains of gears and other overconstrained
         mechanisms move although their count is less than one.
         """
-        pins = sum(self._links_at(joint) - 1 for joint in self.joints if self._links_at(joint))
+        pins = sum(map(len, self.links.values())) - len(self.joints)
         return 3 * (len(self.links) - 1) - 2 * pins - len(self.slides) - len(self.gears)
 
     @property
