@@ -38,6 +38,24 @@ export function pointsBox(value, set) {
   return box;
 }
 
+/**
+ * What a statement has as an analysis has it, such as a mechanism: its JSON. Nothing is set while the text is none.
+ * @param {any} value @param {(value: any) => void} set
+ */
+export function jsonBox(value, set) {
+  const box = el("textarea", { rows: 8, spellcheck: "false", placeholder: "{ }", oninput: () => {
+    const text = box.value.trim();
+    try {
+      set(text === "" ? undefined : JSON.parse(text));
+      box.setCustomValidity("");
+    } catch {
+      box.setCustomValidity("This is no JSON yet.");
+    }
+  } });
+  if (value !== undefined && value !== null) box.value = JSON.stringify(value, null, 1);
+  return box;
+}
+
 /** A number where the text is one. @param {string} text */
 export function plain(text) {
   const value = Number(text);

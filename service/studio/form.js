@@ -5,7 +5,7 @@
  * default holds. Each control carries its JSON pointer as `data-path`, by which errors find it.
  */
 
-import { choice, choices, numberBox, plain, pointsBox, stockBox } from "./controls.js";
+import { choice, choices, jsonBox, numberBox, plain, pointsBox, stockBox } from "./controls.js";
 import { el, words } from "./dom.js";
 import { discriminator, initial, kinded, optionOf, resolved, shapeOf, tagsOf } from "./schema.js";
 import { table } from "./table.js";
@@ -113,7 +113,9 @@ function field(sheet, schema, name, owner, path, required) {
     case "shapes":
       return shapes(sheet, what, schema, name, note, path, required, owner, set);
     default:
-      return elsewhere(name, path);
+      if (what.options.every((one) => one.type === "array" && one.items?.type === "string")) return labelled(name, "", `${note} As in input, output.`, path, required, textBox(value, fallback, set, named));
+      // A mechanism as an analysis has it, or the corners of a shape, each in one of several ways.
+      return labelled(name, unit, note ? `${note} As JSON.` : "As JSON.", path, required, jsonBox(value, set));
   }
 }
 
@@ -148,7 +150,7 @@ function shapes(sheet, what, schema, name, note, path, required, owner, set) {
   way.setAttribute("aria-label", `${words(name)}: how it is stated`);
   const one = { ...now, ...(dimension ? { "x-dimension": dimension } : {}) };
   // What is not stated yet stays unstated while it is only looked at.
-  const inside = now.type === "object" || now.type === "array"
+  const inside = now.type === "object" || kinded(now, sheet.root).control === "table"
     ? group(sheet, { ...one, default: schema.default }, name, note, path, true, owner, set, () => {
       if (shapeOf([now], owner[name]) === undefined) owner[name] = shapeOf([now], schema.default) ? structuredClone(schema.default) : initial(now, sheet.root);
       return now.type === "array" ? [table(sheet, now.items, owner[name], path)] : controls(sheet, now, owner[name], path);
@@ -267,12 +269,6 @@ function flag(name, note, path, value, set) {
     el("p", { class: "error", id: `${id}e` }), el("p", { class: "note", id: `${id}n` }, note));
 }
 
-/** @param {string} name @param {string} path */
-function elsewhere(name, path) {
-  return el("div", { class: "field", "data-path": path }, el("span", { class: "label" }, words(name)),
-    el("p", { class: "error" }), el("p", { class: "note" }, "Stated in the JSON below."));
-}
-
 /** @param {any} value @param {any} fallback @param {(value: any) => void} set @param {(text: string) => any} read */
 function textBox(value, fallback, set, read) {
   const written = (/** @type {any} */ one) => Array.isArray(one) ? one.map((part) => part ?? "open").join(", ") : String(one ?? "");
@@ -280,6 +276,11 @@ function textBox(value, fallback, set, read) {
     oninput: () => set(box.value.trim() === "" ? undefined : read(box.value.trim())) });
   if (value !== undefined && value !== null) box.value = written(value);
   return box;
+}
+
+/** Names between commas. @param {string} text */
+function named(text) {
+  return text.split(",").map((one) => one.trim()).filter(Boolean);
 }
 
 /** `0, open` or `90`; what is no number stays as it is written, and the service says so. @param {string} text @param {Schema[]} options */
