@@ -112,7 +112,7 @@ def warm_up() -> None:
 
     for family in families():
         family.request.example().answer()
-    for mechanism in (_SLIDER_CRANK, _CLASS_III):
+    for mechanism in (_SLIDER_CRANK, _CLASS_III, _REDUNDANT):
         parse_request({"mechanism": mechanism, "dynamics": {}}).answer()
     rubbing = {"friction": {"pins": {"B": {"mu": 0.1, "radius": 0.1}}}}
     parse_request({"mechanism": _SLIDER_CRANK, "motion": {"at": 30.0}, "dynamics": rubbing}).answer()
@@ -123,6 +123,19 @@ _SLIDER_CRANK = {
     "fixed_pivot": [0.0, 0.0],
     "links": {"crank": 2.0, "coupler": 7.0},
     "slide": {"point": [0.0, 1.0], "angle": 0.0},
+}
+_REDUNDANT = {
+    "type": "skeleton",
+    "skeleton": {
+        "joints": {"O": [0.0, 0.0], "P": [1.0, 0.0], "Q": [0.0, 1.0]},
+        "links": [
+            {"name": "ground", "joints": ["O"]},
+            {"name": "input", "joints": ["O", "P"]},
+            {"name": "output", "joints": ["O", "Q"]},
+        ],
+        "gears": [{"links": ["input", "output"], "ratio": -1.0}] * 2,
+        "input_link": "input",
+    },
 }
 _CLASS_III = {
     "type": "stephenson_2",

@@ -78,6 +78,69 @@ def test_force_that_is_unique_at_one_position_is_given_there(client: httpx.Clien
     assert joints["C"]["third"]["x"][0] is not None
 
 
+GEARS: Statement = {
+    "type": "skeleton",
+    "skeleton": {
+        "joints": {"O": [0.0, 0.0], "P": [50.0, 0.0], "Q": [0.0, 40.0], "R": [-30.0, 0.0]},
+        "links": [
+            {"name": "ground", "joints": ["O"]},
+            {"name": "input", "joints": ["O", "P"]},
+            {"name": "second", "joints": ["O", "Q"]},
+            {"name": "last", "joints": ["O", "R"]},
+        ],
+        "gears": [
+            {"links": ["input", "second"], "ratio": -2.0},
+            {"links": ["second", "last"], "ratio": -0.5},
+            {"links": ["input", "last"], "ratio": 1.0},
+        ],
+        "input_link": "input",
+    },
+}
+
+
+def test_gears_between_every_two_of_three_coaxial_links(client: httpx.Client) -> None:
+    """How they share a torque is open; what it takes to drive is not, nor what the shaft carries."""
+    block = {"loads": [{"link": "last", "torque": {"constant": -6.0}}], "point_masses": [{"joint": "Q", "mass": 2.0}]}
+    shared, least = (asked(client, GEARS, block | more, motion=TURN) for more in ({}, {"minimum_norm": True}))
+    for found in (shared, least):
+        assert set(found["dynamics"]["status"]) == {"statically_indeterminate"}
+        np.testing.assert_allclose(found["dynamics"]["drive"], 6.0, rtol=1e-12)
+        weight = found["dynamics"]["joints"]["O"]["second"]
+        force = np.hypot(np.array(weight["x"], float), np.array(weight["y"], float))
+        np.testing.assert_allclose(force, 2.0 * 0.04 * (4.0 * np.pi) ** 2, rtol=1e-9)
+    assert all(torque is None for gear in shared["dynamics"]["gears"] for torque in gear["torque"])
+    to_second, to_last, direct = (gear["torque"][0] for gear in least["dynamics"]["gears"])
+    assert to_last + direct == pytest.approx(6.0)
+    assert to_second == pytest.approx(-0.5 * to_last)
+    unequal = copy.deepcopy(GEARS)
+    unequal["skeleton"]["gears"][2]["ratio"] = 1.01
+    refused = client.post("/v1/analyses", json={"mechanism": unequal, "motion": TURN, "dynamics": block})
+    assert refused.status_code == 422
+    assert [error["path"] for error in refused.json()["errors"]] == ["/mechanism/skeleton"]
+
+
+def test_bar_on_three_slides_that_one_of_them_drives(client: httpx.Client) -> None:
+    """In millimetres: the drive is the weight's and the inertia's share along the slides."""
+    skeleton = {
+        "joints": {"O": [0.0, -50.0], "A": [0.0, 0.0], "B": [200.0, 30.0], "C": [100.0, 80.0]},
+        "links": [{"name": "ground", "joints": ["O"]}, {"name": "bar", "joints": ["A", "B", "C"]}],
+        "slides": [
+            {"joint": "A", "link": "ground", "point": [0.0, 0.0], "angle": 30.0},
+            {"joint": "B", "link": "ground", "point": [200.0, 30.0], "angle": 30.0},
+            {"joint": "C", "link": "ground", "point": [100.0, 80.0], "angle": 30.0},
+        ],
+        "input_link": "A",
+    }
+    block = {"gravity": {}, "bodies": {"bar": {"mass": 3.0, "cg": [90.0, 40.0], "inertia": 0.1}}}
+    motion = {"from": -500.0, "to": 500.0, "steps": 4, "speed": 100.0, "acceleration": 2000.0}
+    found = asked(client, {"type": "skeleton", "skeleton": skeleton}, block, motion=motion)["dynamics"]
+    assert set(found["status"]) == {"statically_indeterminate"}
+    np.testing.assert_allclose(found["drive"], 3.0 * (2.0 + 9.80665 * 0.5), rtol=1e-9)
+    assert found["checks"]["virtual_work"] < 1e-9
+    assert found["checks"]["momentum"] < 1e-9
+    assert all(normal is None for slide in found["slides"] for normal in slide["normal"])
+
+
 def test_with_as_many_constraints_as_needed_the_field_changes_nothing(client: httpx.Client) -> None:
     two = copy.deepcopy(CRANKS)
     links = two["skeleton"]["links"]
