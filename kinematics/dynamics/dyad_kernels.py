@@ -16,7 +16,9 @@ Backwards, the last closure first, each link needs the resultant N of its pins' 
     RPR   λ = −K / (p × n),
     gear  the torque K on the link, −ratio K on the other.
 
-The pins get what is left; the driving link, or the driving slide, comes last.
+The pins get what is left; the driving link, or the driving slide, comes last. Every step is done for many inputs at
+once, in loops without branches on separate rows, of which the compiler makes vector instructions; what is not a number
+stays where it is, and is told at the end.
 """
 
 from __future__ import annotations
@@ -42,6 +44,10 @@ ON_LINK, ON_JOINT = range(2)
 
 DRIVE, PIN_FORCE, SHAKING_X, SHAKING_Y, MOMENT = range(5)
 """Rows of the results."""
+
+LANES = 64
+"""Inputs at most that are worked on side by side, by vector instructions; all that is known of them stays in the
+first-level cache."""
 
 OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 """How the kernels are compiled: products and sums may be fused, nothing else is relaxed."""
@@ -111,68 +117,93 @@ def eliminate(
     out : float, shape (5, D, N)
         Filled; NaN where a closure cannot be assembled or is a toggle.
     """
-    links, count = len(bases), joints.shape[1]
-    x, turn, angle = np.zeros((count, 6)), np.zeros((links, 4)), np.zeros(links)
-    need, pins, fixed = np.zeros((links, 3)), np.zeros((count, 2)), np.zeros((len(rows), 8))
+    links, count, inputs = len(bases), joints.shape[1], moved.shape[2]
+    x, turn, angle = np.zeros((count, 6, LANES)), np.zeros((links, 4, LANES)), np.zeros((links, LANES))
+    need, pins, whole = np.zeros((links, 3, LANES)), np.zeros((count, 2, LANES)), np.ones(LANES, np.bool_)
+    fixed, results = np.zeros((len(rows), 8)), np.zeros((5, LANES))
     turn[0, 0] = 1.0
     gx, gy = gravity.real, gravity.imag
+    block = -(-inputs // -(-inputs // LANES)) if inputs else 1
     for d in range(joints.shape[0]):
         place = joints[d]
         for joint in range(count):
+            x[joint] = 0.0
             x[joint, 0], x[joint, 1] = place[joint].real, place[joint].imag
-            x[joint, 2:] = 0.0
         _reference(rows, place, lines[d], normals[d], bases, fixed)
-        for at in range(moved.shape[2]):
+        for start in range(0, inputs, block):
+            lanes = min(block, inputs - start)
+            whole[:] = True
             first = driver[0]
             if first < 0:
-                joint = driver[1]
-                normal = normals[d, driver[2]]
-                for k in range(3):
-                    x[joint, 2 * k] = moved[k, d, at] * normal.imag
-                    x[joint, 2 * k + 1] = -moved[k, d, at] * normal.real
-                x[joint, 0] += place[joint].real
-                x[joint, 1] += place[joint].imag
+                joint, normal = driver[1], normals[d, driver[2]]
+                for k in range(lanes):
+                    at = start + k
+                    for n in range(3):
+                        x[joint, 2 * n, k] = moved[n, d, at] * normal.imag
+                        x[joint, 2 * n + 1, k] = -moved[n, d, at] * normal.real
+                    x[joint, 0, k] += place[joint].real
+                    x[joint, 1, k] += place[joint].imag
             else:
-                angle[first] = moved[0, d, at]
-                turn[first, 0], turn[first, 1] = math.cos(angle[first]), math.sin(angle[first])
-                turn[first, 2], turn[first, 3] = moved[1, d, at], moved[2, d, at]
-                _carry(first, bases[first], place, carried, turn, x)
-            if not _assemble(
-                rows, ratios, bases, exact, carried, place, lines[d], normals[d], signs, d, fixed, x, turn, angle
-            ):
-                for k in range(5):
-                    out[k, d, at] = np.nan
-                continue
+                for k in range(lanes):
+                    at = start + k
+                    angle[first, k] = moved[0, d, at]
+                    turn[first, 0, k], turn[first, 1, k] = math.cos(angle[first, k]), math.sin(angle[first, k])
+                    turn[first, 2, k], turn[first, 3, k] = moved[1, d, at], moved[2, d, at]
+                _carry(first, bases[first], place, carried, turn, x, lanes)
+            _assemble(
+                rows,
+                ratios,
+                bases,
+                exact,
+                carried,
+                place,
+                lines[d],
+                normals[d],
+                signs,
+                d,
+                fixed,
+                x,
+                turn,
+                angle,
+                whole,
+                lanes,
+            )
             for joint in range(count):
                 m = pin_mass[d, joint]
-                pins[joint, 0], pins[joint, 1] = m * (gx - x[joint, 4]), m * (gy - x[joint, 5])
+                for k in range(lanes):
+                    pins[joint, 0, k], pins[joint, 1, k] = m * (gx - x[joint, 4, k]), m * (gy - x[joint, 5, k])
             for link in range(1, links):
-                base = bases[link]
-                c, s, w, alpha = turn[link, 0], turn[link, 1], turn[link, 2], turn[link, 3]
-                g = cg[d, link]
-                rx, ry = c * g.real - s * g.imag, s * g.real + c * g.imag
-                m = mass[d, link]
-                fx = m * (x[base, 4] - w * w * rx - alpha * ry - gx)
-                fy = m * (x[base, 5] - w * w * ry + alpha * rx - gy)
-                need[link, 0], need[link, 1] = fx, fy
-                need[link, 2] = inertia[d, link] * alpha + rx * fy - ry * fx
+                base, g, m = bases[link], cg[d, link], mass[d, link]
+                for k in range(lanes):
+                    c, s, w, alpha = turn[link, 0, k], turn[link, 1, k], turn[link, 2, k], turn[link, 3, k]
+                    rx, ry = c * g.real - s * g.imag, s * g.real + c * g.imag
+                    fx = m * (x[base, 4, k] - w * w * rx - alpha * ry - gx)
+                    fy = m * (x[base, 5, k] - w * w * ry + alpha * rx - gy)
+                    need[link, 0, k], need[link, 1, k] = fx, fy
+                    need[link, 2, k] = inertia[d, link] * alpha + rx * fy - ry * fx
             for link in range(couples.shape[0]):
-                need[link, 2] -= couples[link, d, at]
+                for k in range(lanes):
+                    need[link, 2, k] -= couples[link, d, start + k]
             for n in range(len(on)):
-                force, which = strengths[n, d, at], on[n, 1]
-                fx, fy = force.real, force.imag
-                if on[n, 0] == ON_JOINT:
-                    pins[which, 0] += fx
-                    pins[which, 1] += fy
-                    continue
-                c, s, arm = turn[which, 0], turn[which, 1], arms[d, n]
-                rx, ry = c * arm.real - s * arm.imag, s * arm.real + c * arm.imag
-                if on[n, 2]:
-                    fx, fy = c * force.real - s * force.imag, s * force.real + c * force.imag
-                need[which, 0] -= fx
-                need[which, 1] -= fy
-                need[which, 2] -= rx * fy - ry * fx
-            _give_back(rows, ratios, bases, carried, driver, normals[d], about[d], x, turn, need, pins, out, d, at)
+                which, arm = on[n, 1], arms[d, n]
+                for k in range(lanes):
+                    force = strengths[n, d, start + k]
+                    fx, fy = force.real, force.imag
+                    if on[n, 0] == ON_JOINT:
+                        pins[which, 0, k] += fx
+                        pins[which, 1, k] += fy
+                        continue
+                    c, s = turn[which, 0, k], turn[which, 1, k]
+                    rx, ry = c * arm.real - s * arm.imag, s * arm.real + c * arm.imag
+                    if on[n, 2]:
+                        fx, fy = c * force.real - s * force.imag, s * force.real + c * force.imag
+                    need[which, 0, k] -= fx
+                    need[which, 1, k] -= fy
+                    need[which, 2, k] -= rx * fy - ry * fx
+            _give_back(rows, ratios, bases, carried, driver, normals[d], about[d], x, turn, need, pins, results, lanes)
+            for k in range(lanes):
+                for n in range(5):
+                    out[n, d, start + k] = results[n, k] if whole[k] else np.nan
 
 
 @njit(**STEP)
@@ -199,17 +230,18 @@ def _reference(rows: Rows, place: Complex, line: Complex, normal: Complex, bases
 
 
 @njit(**OPTIONS)
-def _carry(link: int, pin: int, place: Complex, carried: Rows, turn: Real, x: Real) -> None:
+def _carry(link: int, pin: int, place: Complex, carried: Rows, turn: Real, x: Real, lanes: int) -> None:
     """Places, velocities and accelerations of the joints that a link makes known."""
-    c, s, w, alpha = turn[link, 0], turn[link, 1], turn[link, 2], turn[link, 3]
     for n in range(1, carried[link, 0] + 1):
         joint = carried[link, n]
         arm = place[joint] - place[pin]
-        rx, ry = c * arm.real - s * arm.imag, s * arm.real + c * arm.imag
-        x[joint, 0], x[joint, 1] = x[pin, 0] + rx, x[pin, 1] + ry
-        x[joint, 2], x[joint, 3] = x[pin, 2] - w * ry, x[pin, 3] + w * rx
-        x[joint, 4] = x[pin, 4] - w * w * rx - alpha * ry
-        x[joint, 5] = x[pin, 5] - w * w * ry + alpha * rx
+        for k in range(lanes):
+            c, s, w, alpha = turn[link, 0, k], turn[link, 1, k], turn[link, 2, k], turn[link, 3, k]
+            rx, ry = c * arm.real - s * arm.imag, s * arm.real + c * arm.imag
+            x[joint, 0, k], x[joint, 1, k] = x[pin, 0, k] + rx, x[pin, 1, k] + ry
+            x[joint, 2, k], x[joint, 3, k] = x[pin, 2, k] - w * ry, x[pin, 3, k] + w * rx
+            x[joint, 4, k] = x[pin, 4, k] - w * w * rx - alpha * ry
+            x[joint, 5, k] = x[pin, 5, k] - w * w * ry + alpha * rx
 
 
 @njit(**STEP)
@@ -228,98 +260,102 @@ def _assemble(
     x: Real,
     turn: Real,
     angle: Real,
-) -> bool:
-    """Rotations and rates of all links, and the joints that they carry; False where a closure has none."""
+    whole: NDArray[np.bool_],
+    lanes: int,
+) -> None:
+    """Rotations and rates of all links, and the joints that they carry; not ``whole`` where a closure has none."""
     for row in range(len(rows)):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
         other, slide, sign = rows[row, OTHER], rows[row, SLIDE], float(signs[row, d])
         if kind == RRR:
             far, b2, c2 = rows[row, OTHER_PIN], fixed[row, 2], fixed[row, 6]
-            bx, by = x[far, 0] - x[pin, 0], x[far, 1] - x[pin, 1]
-            square = bx * bx + by * by
-            along = 0.5 * (square + b2 - c2)
-            height = b2 * square - along * along
-            if not height > LEAST_SINE * LEAST_SINE * b2 * c2:
-                return False
-            height = -sign * math.sqrt(height)
-            inverse = 1.0 / square
-            px, py = (bx * along - by * height) * inverse, (by * along + bx * height) * inverse
-            qx, qy = px - bx, py - by
-            inverse = 1.0 / (px * qy - py * qx)
-            ex, ey = x[far, 2] - x[pin, 2], x[far, 3] - x[pin, 3]
-            w, v = (ex * qx + ey * qy) * inverse, (ex * px + ey * py) * inverse
-            ex = x[far, 4] - x[pin, 4] + w * w * px - v * v * qx
-            ey = x[far, 5] - x[pin, 5] + w * w * py - v * v * qy
-            turn[link, 2], turn[link, 3] = w, (ex * qx + ey * qy) * inverse
-            turn[other, 2], turn[other, 3] = v, (ex * px + ey * py) * inverse
-            turn[link, 0] = (px * fixed[row, 0] + py * fixed[row, 1]) * fixed[row, 3]
-            turn[link, 1] = (py * fixed[row, 0] - px * fixed[row, 1]) * fixed[row, 3]
-            turn[other, 0] = (qx * fixed[row, 4] + qy * fixed[row, 5]) * fixed[row, 7]
-            turn[other, 1] = (qy * fixed[row, 4] - qx * fixed[row, 5]) * fixed[row, 7]
-            _carry(other, far, place, carried, turn, x)
+            for k in range(lanes):
+                bx, by = x[far, 0, k] - x[pin, 0, k], x[far, 1, k] - x[pin, 1, k]
+                square = bx * bx + by * by
+                along = 0.5 * (square + b2 - c2)
+                height = b2 * square - along * along
+                whole[k] &= height > LEAST_SINE * LEAST_SINE * b2 * c2
+                height = -sign * math.sqrt(height)
+                inverse = 1.0 / square
+                px, py = (bx * along - by * height) * inverse, (by * along + bx * height) * inverse
+                qx, qy = px - bx, py - by
+                inverse = 1.0 / (px * qy - py * qx)
+                ex, ey = x[far, 2, k] - x[pin, 2, k], x[far, 3, k] - x[pin, 3, k]
+                w, v = (ex * qx + ey * qy) * inverse, (ex * px + ey * py) * inverse
+                ex = x[far, 4, k] - x[pin, 4, k] + w * w * px - v * v * qx
+                ey = x[far, 5, k] - x[pin, 5, k] + w * w * py - v * v * qy
+                turn[link, 2, k], turn[link, 3, k] = w, (ex * qx + ey * qy) * inverse
+                turn[other, 2, k], turn[other, 3, k] = v, (ex * px + ey * py) * inverse
+                turn[link, 0, k] = (px * fixed[row, 0] + py * fixed[row, 1]) * fixed[row, 3]
+                turn[link, 1, k] = (py * fixed[row, 0] - px * fixed[row, 1]) * fixed[row, 3]
+                turn[other, 0, k] = (qx * fixed[row, 4] + qy * fixed[row, 5]) * fixed[row, 7]
+                turn[other, 1, k] = (qy * fixed[row, 4] - qx * fixed[row, 5]) * fixed[row, 7]
+            _carry(other, far, place, carried, turn, x, lanes)
         elif kind == GEAR:
-            if not exact[other]:
-                angle[other] = math.atan2(turn[other, 1], turn[other, 0])
-            angle[link] = ratios[row] * angle[other]
-            turn[link, 0], turn[link, 1] = math.cos(angle[link]), math.sin(angle[link])
-            turn[link, 2], turn[link, 3] = ratios[row] * turn[other, 2], ratios[row] * turn[other, 3]
+            for k in range(lanes):
+                if not exact[other]:
+                    angle[other, k] = math.atan2(turn[other, 1, k], turn[other, 0, k])
+                angle[link, k] = ratios[row] * angle[other, k]
+                turn[link, 0, k], turn[link, 1, k] = math.cos(angle[link, k]), math.sin(angle[link, k])
+                turn[link, 2, k], turn[link, 3, k] = ratios[row] * turn[other, 2, k], ratios[row] * turn[other, 3, k]
         elif kind == RRP:
             n, point, base = normal[slide], line[slide], bases[other]
-            c, s, w, alpha = turn[other, 0], turn[other, 1], turn[other, 2], turn[other, 3]
-            nx, ny = c * n.real - s * n.imag, s * n.real + c * n.imag
-            lx = x[base, 0] + c * point.real - s * point.imag
-            ly = x[base, 1] + s * point.real + c * point.imag
-            h = nx * (lx - x[pin, 0]) + ny * (ly - x[pin, 1])
-            root = fixed[row, 2] - h * h
-            if not root > LEAST_SINE * LEAST_SINE * fixed[row, 2]:
-                return False
-            root = sign * math.sqrt(root)
-            px, py = nx * h + ny * root, ny * h - nx * root
-            # The line's own motion at the joint, and the joint's along it.
-            rx, ry = x[pin, 0] + px - x[base, 0], x[pin, 1] + py - x[base, 1]
-            vx, vy = x[base, 2] - w * ry - x[pin, 2], x[base, 3] + w * rx - x[pin, 3]
-            inverse = 1.0 / root
-            v = (nx * vx + ny * vy) * inverse
-            along = ny * (-v * py - vx) - nx * (v * px - vy)
-            ax = x[base, 4] - w * w * rx - alpha * ry - x[pin, 4] + v * v * px
-            ay = x[base, 5] - w * w * ry + alpha * rx - x[pin, 5] + v * v * py
-            turn[link, 2], turn[link, 3] = v, (nx * ax + ny * ay + 2.0 * w * along) * inverse
-            turn[link, 0] = (px * fixed[row, 0] + py * fixed[row, 1]) * fixed[row, 3]
-            turn[link, 1] = (py * fixed[row, 0] - px * fixed[row, 1]) * fixed[row, 3]
+            for k in range(lanes):
+                c, s, w, alpha = turn[other, 0, k], turn[other, 1, k], turn[other, 2, k], turn[other, 3, k]
+                nx, ny = c * n.real - s * n.imag, s * n.real + c * n.imag
+                lx = x[base, 0, k] + c * point.real - s * point.imag
+                ly = x[base, 1, k] + s * point.real + c * point.imag
+                h = nx * (lx - x[pin, 0, k]) + ny * (ly - x[pin, 1, k])
+                root = fixed[row, 2] - h * h
+                whole[k] &= root > LEAST_SINE * LEAST_SINE * fixed[row, 2]
+                root = sign * math.sqrt(root)
+                px, py = nx * h + ny * root, ny * h - nx * root
+                # The line's own motion at the joint, and the joint's along it.
+                rx, ry = x[pin, 0, k] + px - x[base, 0, k], x[pin, 1, k] + py - x[base, 1, k]
+                vx, vy = x[base, 2, k] - w * ry - x[pin, 2, k], x[base, 3, k] + w * rx - x[pin, 3, k]
+                inverse = 1.0 / root
+                v = (nx * vx + ny * vy) * inverse
+                along = ny * (-v * py - vx) - nx * (v * px - vy)
+                ax = x[base, 4, k] - w * w * rx - alpha * ry - x[pin, 4, k] + v * v * px
+                ay = x[base, 5, k] - w * w * ry + alpha * rx - x[pin, 5, k] + v * v * py
+                turn[link, 2, k], turn[link, 3, k] = v, (nx * ax + ny * ay + 2.0 * w * along) * inverse
+                turn[link, 0, k] = (px * fixed[row, 0] + py * fixed[row, 1]) * fixed[row, 3]
+                turn[link, 1, k] = (py * fixed[row, 0] - px * fixed[row, 1]) * fixed[row, 3]
         else:
             n, h = normal[slide], fixed[row, 0]
-            px, py = x[joint, 0] - x[pin, 0], x[joint, 1] - x[pin, 1]
-            square = px * px + py * py
-            root = square - h * h
-            if not root > LEAST_SINE * LEAST_SINE * square:
-                return False
-            root = sign * math.sqrt(root)
-            inverse = 1.0 / square
-            nx, ny = (px * h + py * root) * inverse, (py * h - px * root) * inverse
-            inverse = 1.0 / root
-            vx, vy = x[joint, 2] - x[pin, 2], x[joint, 3] - x[pin, 3]
-            w = -(nx * vx + ny * vy) * inverse
-            ax, ay = x[joint, 4] - x[pin, 4], x[joint, 5] - x[pin, 5]
-            turn[link, 2] = w
-            turn[link, 3] = (w * w * h - nx * ax - ny * ay - 2.0 * w * (nx * vy - ny * vx)) * inverse
-            turn[link, 0], turn[link, 1] = nx * n.real + ny * n.imag, ny * n.real - nx * n.imag
-        _carry(link, pin, place, carried, turn, x)
-    return True
+            for k in range(lanes):
+                px, py = x[joint, 0, k] - x[pin, 0, k], x[joint, 1, k] - x[pin, 1, k]
+                square = px * px + py * py
+                root = square - h * h
+                whole[k] &= root > LEAST_SINE * LEAST_SINE * square
+                root = sign * math.sqrt(root)
+                inverse = 1.0 / square
+                nx, ny = (px * h + py * root) * inverse, (py * h - px * root) * inverse
+                inverse = 1.0 / root
+                vx, vy = x[joint, 2, k] - x[pin, 2, k], x[joint, 3, k] - x[pin, 3, k]
+                w = -(nx * vx + ny * vy) * inverse
+                ax, ay = x[joint, 4, k] - x[pin, 4, k], x[joint, 5, k] - x[pin, 5, k]
+                turn[link, 2, k] = w
+                turn[link, 3, k] = (w * w * h - nx * ax - ny * ay - 2.0 * w * (nx * vy - ny * vx)) * inverse
+                turn[link, 0, k], turn[link, 1, k] = nx * n.real + ny * n.imag, ny * n.real - nx * n.imag
+        _carry(link, pin, place, carried, turn, x, lanes)
 
 
 @njit(**OPTIONS)
-def _gather(link: int, base: int, but: int, carried: Rows, x: Real, need: Real, pins: Real) -> float:
-    """Take what stands on a link's joints, but for one, from what it needs; the square of the largest force there."""
-    largest = 0.0
+def _gather(
+    link: int, base: int, but: int, carried: Rows, x: Real, need: Real, pins: Real, largest: Real, lanes: int
+) -> None:
+    """Take what stands on a link's joints, but for one, from what it needs."""
     for n in range(1, carried[link, 0] + 1):
         joint = carried[link, n]
-        if joint != but:
-            fx, fy = pins[joint, 0], pins[joint, 1]
-            need[link, 0] -= fx
-            need[link, 1] -= fy
-            need[link, 2] -= (x[joint, 0] - x[base, 0]) * fy - (x[joint, 1] - x[base, 1]) * fx
-            largest = max(largest, fx * fx + fy * fy)
-    return largest
+        if joint == but:
+            continue
+        for k in range(lanes):
+            fx, fy = pins[joint, 0, k], pins[joint, 1, k]
+            need[link, 0, k] -= fx
+            need[link, 1, k] -= fy
+            need[link, 2, k] -= (x[joint, 0, k] - x[base, 0, k]) * fy - (x[joint, 1, k] - x[base, 1, k]) * fx
+            largest[k] = max(largest[k], fx * fx + fy * fy)
 
 
 @njit(**STEP)
@@ -335,93 +371,113 @@ def _give_back(
     turn: Real,
     need: Real,
     pins: Real,
-    out: Real,
-    d: int,
-    at: int,
+    results: Real,
+    lanes: int,
 ) -> None:
     """Reactions, the last closure first; what is left is the drive, and what stands on the ground."""
-    largest = shake_x = shake_y = moment = 0.0
+    results[:] = 0.0
+    drive, largest, moment = results[DRIVE], results[PIN_FORCE], results[MOMENT]
+    shake_x, shake_y = results[SHAKING_X], results[SHAKING_Y]
     for row in range(len(rows) - 1, -1, -1):
         kind, link, pin, joint = rows[row, KIND], rows[row, LINK], rows[row, PIN], rows[row, JOINT]
         other, slide = rows[row, OTHER], rows[row, SLIDE]
         own = joint if kind in (RRR, RRP) else -1
-        largest = max(largest, _gather(link, pin, own, carried, x, need, pins))
-        fx = fy = 0.0
+        _gather(link, pin, own, carried, x, need, pins, largest, lanes)
         if kind == RRR:
             far = rows[row, OTHER_PIN]
-            largest = max(largest, _gather(other, far, -1, carried, x, need, pins))
-            px, py = x[joint, 0] - x[pin, 0], x[joint, 1] - x[pin, 1]
-            qx, qy = x[joint, 0] - x[far, 0], x[joint, 1] - x[far, 1]
-            hx, hy = pins[joint, 0], pins[joint, 1]
-            inverse = 1.0 / (qx * py - qy * px)
-            one = need[other, 2] * inverse
-            two = (need[link, 2] - px * hy + py * hx) * inverse
-            fx, fy = one * px + two * qx, one * py + two * qy
-            largest = max(largest, fx * fx + fy * fy)
-            ex, ey = need[other, 0] - fx, need[other, 1] - fy
-            largest = max(largest, ex * ex + ey * ey)
-            pins[far, 0] -= ex
-            pins[far, 1] -= ey
-            fx, fy = hx - fx, hy - fy
-            largest = max(largest, fx * fx + fy * fy)
-        elif kind == GEAR:
-            torque = need[link, 2]
-            moment -= torque
-            if other > 0:
-                need[other, 2] += ratios[row] * torque
-                moment += ratios[row] * torque
-        else:
-            c, s, n = turn[other, 0], turn[other, 1], normal[slide]
-            if kind != RRP:
-                c, s = turn[link, 0], turn[link, 1]
-            nx, ny = c * n.real - s * n.imag, s * n.real + c * n.imag
-            px, py = x[joint, 0] - x[pin, 0], x[joint, 1] - x[pin, 1]
-            if kind == RRP:
-                fx, fy = pins[joint, 0], pins[joint, 1]
-                push = (need[link, 2] - px * fy + py * fx) / (px * ny - py * nx)
+            _gather(other, far, -1, carried, x, need, pins, largest, lanes)
+            for k in range(lanes):
+                px, py = x[joint, 0, k] - x[pin, 0, k], x[joint, 1, k] - x[pin, 1, k]
+                qx, qy = x[joint, 0, k] - x[far, 0, k], x[joint, 1, k] - x[far, 1, k]
+                hx, hy = pins[joint, 0, k], pins[joint, 1, k]
+                inverse = 1.0 / (qx * py - qy * px)
+                one = need[other, 2, k] * inverse
+                two = (need[link, 2, k] - px * hy + py * hx) * inverse
+                fx, fy = one * px + two * qx, one * py + two * qy
+                ex, ey = need[other, 0, k] - fx, need[other, 1, k] - fy
+                gx, gy = hx - fx, hy - fy
+                dx, dy = need[link, 0, k] - gx, need[link, 1, k] - gy
+                pins[far, 0, k] -= ex
+                pins[far, 1, k] -= ey
+                pins[pin, 0, k] -= dx
+                pins[pin, 1, k] -= dy
+                greatest = max(fx * fx + fy * fy, ex * ex + ey * ey)
+                greatest = max(greatest, max(gx * gx + gy * gy, dx * dx + dy * dy))
+                largest[k] = max(largest[k], greatest)
+            continue
+        if kind == GEAR:
+            for k in range(lanes):
+                torque = need[link, 2, k]
+                if other > 0:
+                    need[other, 2, k] += ratios[row] * torque
+                    torque -= ratios[row] * torque
+                moment[k] -= torque
+        elif kind == RRP:
+            n, base = normal[slide], bases[other]
+            for k in range(lanes):
+                c, s = turn[other, 0, k], turn[other, 1, k]
+                nx, ny = c * n.real - s * n.imag, s * n.real + c * n.imag
+                px, py = x[joint, 0, k] - x[pin, 0, k], x[joint, 1, k] - x[pin, 1, k]
+                fx, fy = pins[joint, 0, k], pins[joint, 1, k]
+                push = (need[link, 2, k] - px * fy + py * fx) / (px * ny - py * nx)
                 nx, ny = push * nx, push * ny
                 fx, fy = fx + nx, fy + ny
-                largest = max(largest, fx * fx + fy * fy)
+                need[link, 0, k] -= fx
+                need[link, 1, k] -= fy
+                largest[k] = max(largest[k], fx * fx + fy * fy)
                 if other > 0:
-                    base = bases[other]
-                    need[other, 0] += nx
-                    need[other, 1] += ny
-                    need[other, 2] += (x[joint, 0] - x[base, 0]) * ny - (x[joint, 1] - x[base, 1]) * nx
+                    need[other, 0, k] += nx
+                    need[other, 1, k] += ny
+                    need[other, 2, k] += (x[joint, 0, k] - x[base, 0, k]) * ny - (x[joint, 1, k] - x[base, 1, k]) * nx
                 else:
-                    shake_x -= nx
-                    shake_y -= ny
-                    moment -= (x[joint, 0] - about.real) * ny - (x[joint, 1] - about.imag) * nx
-            else:
-                push = -need[link, 2] / (px * ny - py * nx)
-                fx, fy = -push * nx, -push * ny
-                pins[joint, 0] -= fx
-                pins[joint, 1] -= fy
-        ex, ey = need[link, 0] - fx, need[link, 1] - fy
-        largest = max(largest, ex * ex + ey * ey)
-        pins[pin, 0] -= ex
-        pins[pin, 1] -= ey
+                    shake_x[k] -= nx
+                    shake_y[k] -= ny
+                    moment[k] -= (x[joint, 0, k] - about.real) * ny - (x[joint, 1, k] - about.imag) * nx
+        else:
+            n = normal[slide]
+            for k in range(lanes):
+                c, s = turn[link, 0, k], turn[link, 1, k]
+                nx, ny = c * n.real - s * n.imag, s * n.real + c * n.imag
+                px, py = x[joint, 0, k] - x[pin, 0, k], x[joint, 1, k] - x[pin, 1, k]
+                push = need[link, 2, k] / (px * ny - py * nx)
+                nx, ny = push * nx, push * ny
+                need[link, 0, k] -= nx
+                need[link, 1, k] -= ny
+                pins[joint, 0, k] -= nx
+                pins[joint, 1, k] -= ny
+        _stand(link, pin, need, pins, largest, lanes)
     first = driver[0]
     if first > 0:
-        base = bases[first]
-        largest = max(largest, _gather(first, base, -1, carried, x, need, pins))
-        largest = max(largest, need[first, 0] ** 2 + need[first, 1] ** 2)
-        pins[base, 0] -= need[first, 0]
-        pins[base, 1] -= need[first, 1]
-        drive = need[first, 2]
-        moment -= drive
+        _gather(first, bases[first], -1, carried, x, need, pins, largest, lanes)
+        _stand(first, bases[first], need, pins, largest, lanes)
+        for k in range(lanes):
+            drive[k] = need[first, 2, k]
+            moment[k] -= drive[k]
     else:
         joint, n = driver[1], normal[driver[2]]
-        fx, fy = pins[joint, 0], pins[joint, 1]
-        drive = n.real * fy - n.imag * fx
-        shake_x += fx
-        shake_y += fy
-        moment += (x[joint, 0] - about.real) * fy - (x[joint, 1] - about.imag) * fx
-    for k in range(1, carried[0, 0] + 1):
-        joint = carried[0, k]
-        fx, fy = pins[joint, 0], pins[joint, 1]
-        largest = max(largest, fx * fx + fy * fy)
-        shake_x += fx
-        shake_y += fy
-        moment += (x[joint, 0] - about.real) * fy - (x[joint, 1] - about.imag) * fx
-    out[DRIVE, d, at], out[PIN_FORCE, d, at] = drive, math.sqrt(largest)
-    out[SHAKING_X, d, at], out[SHAKING_Y, d, at], out[MOMENT, d, at] = shake_x, shake_y, moment
+        for k in range(lanes):
+            fx, fy = pins[joint, 0, k], pins[joint, 1, k]
+            drive[k] = n.real * fy - n.imag * fx
+            shake_x[k] += fx
+            shake_y[k] += fy
+            moment[k] += (x[joint, 0, k] - about.real) * fy - (x[joint, 1, k] - about.imag) * fx
+    for n in range(1, carried[0, 0] + 1):
+        joint = carried[0, n]
+        for k in range(lanes):
+            fx, fy = pins[joint, 0, k], pins[joint, 1, k]
+            largest[k] = max(largest[k], fx * fx + fy * fy)
+            shake_x[k] += fx
+            shake_y[k] += fy
+            moment[k] += (x[joint, 0, k] - about.real) * fy - (x[joint, 1, k] - about.imag) * fx
+    for k in range(lanes):
+        largest[k] = math.sqrt(largest[k])
+
+
+@njit(**OPTIONS)
+def _stand(link: int, pin: int, need: Real, pins: Real, largest: Real, lanes: int) -> None:
+    """Let a link stand on its pin with all that it needs still."""
+    for k in range(lanes):
+        fx, fy = need[link, 0, k], need[link, 1, k]
+        pins[pin, 0, k] -= fx
+        pins[pin, 1, k] -= fy
+        largest[k] = max(largest[k], fx * fx + fy * fy)
