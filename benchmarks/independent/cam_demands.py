@@ -383,6 +383,21 @@ def _loaded(draw: _Draw) -> None:
     if draw.chance(0.4):
         dynamics["preload"] = float(rng.uniform(0.0, 100.0))
     stated["dynamics"] = dynamics
+    if not grooved and stated.get("minimize") != "peak_contact_force":
+        _sprung(draw, dynamics)
+
+
+def _sprung(draw: _Draw, dynamics: Statement) -> None:
+    """A spring that is free, speeds up to which it holds, a frequency that it has; other draws stay what they were."""
+    own = np.random.default_rng(int(1e6 * dynamics["mass"]))
+    if own.random() < 0.3:
+        dynamics["spring_rate"] = "free"
+    elif own.random() < 0.3:
+        dynamics["spring_rate"] = {"min": 1.0, "max": 20.0}
+    if own.random() < 0.4:
+        dynamics["max_rpm"] = round(float(own.uniform(1.0, 1.6)) * draw.stated["speed_rpm"] + 0.01, 2)
+    if own.random() < 0.3 and not isinstance(dynamics.get("spring_rate"), dict):
+        dynamics["min_frequency_ratio"] = round(float(own.uniform(0.2, 3.0)), 3)
 
 
 def in_units(stated: Statement, unit: str) -> Statement:
@@ -404,7 +419,11 @@ def in_units(stated: Statement, unit: str) -> Statement:
     segments = stated["segments"] if swings else [_scaled_segment(segment, scale) for segment in stated["segments"]]
     found = {**stated, "length_unit": unit, "follower": lengths, "limits": limits, "segments": segments}
     if "dynamics" in stated and "spring_rate" in stated["dynamics"]:
-        found["dynamics"] = {**stated["dynamics"], "spring_rate": stated["dynamics"]["spring_rate"] / scale}
+        rate = stated["dynamics"]["spring_rate"]
+        if isinstance(rate, dict):
+            rate = {name: x / scale for name, x in rate.items()}
+        rate = rate / scale if isinstance(rate, float) else rate
+        found["dynamics"] = {**stated["dynamics"], "spring_rate": rate}
     if unit == "in" and "dynamics" in stated:
         # lbf s²/in where kilograms and metres were meant.
         found["dynamics"] = {**found["dynamics"], "mass": found["dynamics"]["mass"] * 1e-3 / scale}

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.independent.cam_curves import compare_curves
 from benchmarks.independent.cam_motion import Move, greatest, least, mean, motion_at, turned
+from benchmarks.independent.cam_springs import Moved, compare_springs
 from benchmarks.independent.cam_verdicts import compare_roller, compare_smallest, compare_verdicts, sound_radius
 from benchmarks.independent.comparison import AGREE, Beside
 from benchmarks.independent.quantities import stated_by
@@ -211,11 +212,15 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
     arm = stated["follower"].get("arm", 1.0)
     speed = stated["speed_rpm"] * math.tau / 60.0
     share = SHARES[stated.get("length_unit", "mm")]
-    mass, rate = share * dynamics["mass"] * arm**2, dynamics.get("spring_rate", 0.0) * arm**2
+    mass, rate = share * dynamics["mass"] * arm**2, forces.spring_rate * arm**2
     damping = 2.0 * dynamics.get("damping_ratio", 0.0) * math.sqrt(mass * rate)
     moved = mass * speed**2 * turn.a + damping * speed * turn.v + rate * turn.s
     lowest = least(moved)
     needed = max(0.0, dynamics.get("least_force", 0.0) * arm - lowest)
+    if forces.over_speeds is not None:
+        still = Moved(turn.s, turn.v, turn.a, mass, dynamics.get("damping_ratio", 0.0), 0.0)
+        top = forces.over_speeds.max_rpm * math.tau / 60.0
+        needed = max(needed, dynamics.get("least_force", 0.0) * arm - still.weakest(rate, top))
     grooved = stated.get("closure") == "form" or stated["follower"]["type"] == "barrel_roller"
     preload = dynamics.get("preload")
     preload = preload * arm if preload is not None else (0.0 if grooved else needed)
@@ -230,7 +235,10 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
     }
     for name, value in found.items():
         beside.add(f"metrics.forces.{name}", getattr(forces, name), value, scale)
-    beside.check("contact_force", found["min_contact_force"], scale)
+    if forces.over_speeds is None:
+        beside.check("contact_force", found["min_contact_force"], scale)
+    moving = Moved(turn.s, turn.v, turn.a, mass, dynamics.get("damping_ratio", 0.0), preload)
+    compare_springs(beside, stated, moving, arm, speed)
     peak = greatest(np.abs(torque))
     beside.add("metrics.forces.min_torque", forces.min_torque, least(torque), peak)
     beside.add("metrics.forces.max_torque", forces.max_torque, greatest(torque), peak)
@@ -244,7 +252,10 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
             at = math.radians(stated_at)
             at += math.tau * round((0.5 * (low + high) - at) / math.tau)
             beside.add("metrics.forces.wall_changes", at, min(max(at, low), high), math.tau)
-    return found["min_contact_force"], found["max_contact_force"]
+    lowest = found["min_contact_force"]
+    if forces.over_speeds is not None:
+        lowest = min(lowest, (preload + still.weakest(rate, top)) / arm)
+    return lowest, found["max_contact_force"]
 
 
 NOTHING = 1e-6

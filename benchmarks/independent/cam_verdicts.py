@@ -61,6 +61,8 @@ def limits_of(stated: dict[str, Any]) -> dict[str, Limit]:
     grooved = stated.get("closure") == "form" or follower["type"] == "barrel_roller"
     if "dynamics" in stated and not grooved:
         found["contact_force"] = Limit(stated["dynamics"].get("least_force", 0.0), -1)
+    if "dynamics" in stated and "min_frequency_ratio" in stated["dynamics"]:
+        found["frequency_ratio"] = Limit(stated["dynamics"]["min_frequency_ratio"], -1)
     return found
 
 

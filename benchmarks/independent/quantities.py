@@ -159,6 +159,10 @@ COMPARED: dict[str, frozenset[str]] = {
             metrics.forces.preload metrics.forces.least_preload metrics.forces.min_contact_force
             metrics.forces.max_contact_force metrics.forces.min_torque metrics.forces.max_torque
             metrics.forces.wall_changes metrics.forces.natural_frequency metrics.forces.frequency_ratio
+            metrics.forces.spring_rate metrics.forces.jump_speed metrics.forces.damped_frequency
+            metrics.forces.over_speeds.max_rpm metrics.forces.over_speeds.min_contact_force
+            metrics.forces.over_speeds.angle metrics.forces.over_speeds.rpm metrics.forces.spring.max_contact_force
+            metrics.forces.spring.bound metrics.forces.spring.gap metrics.forces.spring.binding
             segments.start segments.angle segments.displacement segments.peak_velocity segments.peak_acceleration
             segments.peak_jerk
             joints.angle joints.continuous joints.jump.s joints.jump.v joints.jump.a joints.jump.j
@@ -169,7 +173,8 @@ COMPARED: dict[str, frozenset[str]] = {
             checks.upper_wall_reproduces_program checks.peak_velocity checks.peak_acceleration checks.peak_jerk
             checks.meets_positions checks.meets_velocities checks.meets_accelerations checks.min_radius checks.convex
             checks.face_width checks.clears_pivot checks.pressure_angle checks.pressure_angle_fall
-            checks.curvature_ratio checks.hub_radius checks.size checks.contact_force checks.limit checks.passed
+            checks.curvature_ratio checks.hub_radius checks.size checks.contact_force checks.contact_on_profile
+            checks.frequency_ratio checks.limit checks.passed
             mechanism.program mechanism.conditions mechanism.profile mechanism.outer_wall mechanism.lower_wall
             mechanism.upper_wall mechanism.pitch_curve mechanism.smallest mechanism.roller_radius
             mechanism.best_law

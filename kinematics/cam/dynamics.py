@@ -16,6 +16,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,11 +28,8 @@ from kinematics.errors import DimensionError
 
 Real = NDArray[np.float64]
 
-CONVERGED = 1e-12
-"""Relative change at which an iteration for a spring or a speed has ended."""
-
-STEPS = 500
-"""At most; the iterations end after a dozen, for a speed with damping after about a hundred."""
+APART = 1e-13
+"""Radians below which two angles are one: between closer ones there is nothing but rounding."""
 
 SAME = 1e-10
 """Radians within which joints of several cams are one; share of the lift that is rounding."""
@@ -81,10 +79,27 @@ class FollowerLoad:
         """√(k/m), radians per unit of time; 0 without a spring."""
         return math.sqrt(self.spring_rate / self.mass)
 
-    def force(self, motion: Motion, speed: float) -> Real:
-        """F at a program's s, v, a."""
-        inertia = self.mass * speed**2 * motion.a
-        return np.asarray(inertia + self.damping * speed * motion.v + self.spring_rate * motion.s + self.preload)
+    def weakest_speed(self, motion: Motion, top_speed: float) -> Real:
+        """The speed from 0 to a top speed at which F is least, at a program's s, v, a."""
+        curving = 2.0 * self.mass * motion.a
+        vertex = -self.damping * motion.v / np.where(curving > 0.0, curving, 1.0)
+        at_end = self.damping * motion.v + self.mass * top_speed * motion.a < 0.0
+        end = np.where(at_end, top_speed, 0.0)
+        return np.asarray(np.where(curving > 0.0, np.clip(vertex, 0.0, top_speed), end))
+
+    def force(self, motion: Motion, speed: ArrayLike) -> Real:
+        """F at a program's s, v, a and at a speed, or at one for each."""
+        w = np.asarray(speed, dtype=np.float64)
+        inertia = self.mass * w**2 * motion.a
+        return np.asarray(inertia + self.damping * w * motion.v + self.spring_rate * motion.s + self.preload)
+
+
+class WeakestContact(NamedTuple):
+    """Where the contact force is least over angles and speeds: the force, the cam angle and the speed."""
+
+    force: float
+    angle: float
+    speed: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,46 +163,75 @@ class RunningCam:
         """The preload with which F is nowhere below a floor, the rest of the load as it is; 0 where none is needed."""
         return max(0.0, floor + self.load.preload - self.force_extremes.least)
 
+    def weakest_contact(self, top_speed: float) -> WeakestContact:
+        """The least F at all cam angles and all speeds from 0 to a top speed; the given speed does not matter.
+
+        At one angle F is a parabola in the speed: least at its vertex where a > 0 and the vertex is between, else at an
+        end.
+        """
+        load, motion = self.load, self.program.motion
+        c, m = load.damping, load.mass
+
+        def turning(angle: Real) -> Real:
+            now = motion(angle)
+            return np.asarray(c * now.v + 2.0 * m * top_speed * now.a)
+
+        def changing(angle: Real) -> Real:
+            now = motion(angle)
+            return np.asarray(c * now.v + m * top_speed * now.a)
+
+        switches = [lambda angle: motion(angle).a]
+        if c > 0.0:
+            switches += [lambda angle: motion(angle).v, turning, changing]
+        breaks = self.program.breaks
+        breaks = np.unique(np.concatenate([breaks, *(roots(switch, breaks) for switch in switches)]))
+        apart = np.append(True, np.diff(breaks) > APART)
+
+        def least(angle: Real) -> Real:
+            now = motion(angle)
+            return load.force(now, load.weakest_speed(now, top_speed))
+
+        found = extremes(least, breaks[apart])
+        sides = [motion(found.at_least, before=side) for side in (False, True)]
+        speeds = [float(load.weakest_speed(now, top_speed)) for now in sides]
+        forces = [float(load.force(now, speed)) for now, speed in zip(sides, speeds, strict=True)]
+        return WeakestContact(found.least, found.at_least, speeds[int(np.argmin(forces))])
+
     def jump_speed(self, floor: float = 0.0) -> float:
         """The speed at which F first falls to a floor; the given speed does not matter.
 
-        Between speeds ω and ω + δ the least F falls by at most c δ max|v| + m (2 ω δ + δ²) max(−a), so that steps of
-        that size never pass the first fall. 0 where the follower does not even rest on the cam, infinite where nothing
-        throws it off.
+        With q = k s + F0 − floor > 0 and u = 1/ω the force falls to it at one angle where q u² + c v u + m a = 0, first
+        at the greater root; the answer is the greatest u of all angles that have a positive one. 0 where the follower
+        does not even rest on the cam, infinite where nothing throws it off.
         """
-        load, (s, v, a) = self.load, self.program.peaks[:3]
-        push, drag = load.mass * max(-a.least, 0.0), load.damping * v.largest
-        if push + drag <= 0.0:
-            return math.inf if load.spring_rate * s.least + load.preload >= floor else 0.0
-        if load.damping == 0.0:
-            return self._jump_speed_without_damping(floor)
-        speed = 0.0
-        for _ in range(STEPS):
-            spare = self._least_force(speed) - floor
-            if spare <= 0.0:
-                return speed
-            # push δ² + (drag + 2 push ω) δ = spare
-            half = 0.5 * drag + push * speed
-            step = spare / (half + math.sqrt(half * half + push * spare))
-            speed += step
-            if step <= CONVERGED * speed:
-                return speed
-        return speed
-
-    def _least_force(self, speed: float) -> float:
-        return extremes(lambda angle: self.load.force(self.program.motion(angle), speed), self.program.breaks).least
-
-    def _jump_speed_without_damping(self, floor: float) -> float:
-        """m ω² (−a) = k s + F0 − floor where that asks for the least ω: 1/ω² is the greatest of m (−a)/(k s + ...)."""
         load, motion = self.load, self.program.motion
+        c, m, breaks = load.damping, load.mass, self.program.breaks
 
         def spare(angle: Real) -> Real:
             return np.asarray(load.spring_rate * motion(angle).s + load.preload - floor)
 
-        if extremes(spare, self.program.breaks).least <= 0.0:
+        _, v, a = self.program.peaks[:3]
+        resting = extremes(spare, breaks).least
+        if m * max(-a.least, 0.0) + c * v.largest <= 0.0:
+            return math.inf if resting >= 0.0 else 0.0
+        if resting <= 0.0:
             return 0.0
-        square = extremes(lambda angle: -load.mass * motion(angle).a / spare(angle), self.program.breaks).greatest
-        return 1.0 / math.sqrt(square)
+        if c == 0.0:
+            square = extremes(lambda angle: -m * motion(angle).a / spare(angle), breaks).greatest
+            return 1.0 / math.sqrt(square)
+
+        def inner(angle: Real) -> Real:
+            now = motion(angle)
+            return np.asarray((c * now.v) ** 2 - 4.0 * m * now.a * spare(angle))
+
+        def slowness(angle: Real) -> Real:
+            square = inner(angle)
+            root = (np.sqrt(np.maximum(square, 0.0)) - c * motion(angle).v) / (2.0 * spare(angle))
+            return np.where(square >= 0.0, np.maximum(root, 0.0), 0.0)
+
+        breaks = np.unique(np.concatenate([breaks, roots(inner, breaks)]))
+        u = extremes(slowness, breaks[np.append(True, np.diff(breaks) > APART)]).greatest
+        return 1.0 / u if u > 0.0 else math.inf
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ PURE = {
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
     "ExactDesign": {"rms_residual"},
-    "FollowerDynamics": {"damping_ratio"},
+    "FollowerDynamics": {"damping_ratio", "min_frequency_ratio"},
     "ForceCourse": {"table"},  # columns of several units
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
     "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
@@ -78,6 +78,7 @@ PURE = {
     "RoundingCost": {"rms_residual"},
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
+    "SpringChoice": {"gap"},
     "StageRatio": {"min", "max"},
     "StatedSpring": {"damping"},  # by the sort of spring
     "SteeringMetrics": {"link_ratio"},

@@ -11,9 +11,11 @@ import numpy as np
 from kinematics.cam.dynamics import RunningCam
 from kinematics.cam.extremes import extremes
 from kinematics.cam.program import Program
-from synthesis.kinds.cam.composition import Composition, arm_length, follower_load, root_mean_square
+from kinematics.cam.springs import Spring
+from synthesis.kinds.cam.composition import Composition, root_mean_square
 from synthesis.kinds.cam.design import (
     BarrelCamDesign,
+    Binding,
     CamDesign,
     CamForces,
     CamJoint,
@@ -21,18 +23,34 @@ from synthesis.kinds.cam.design import (
     CamResult,
     CamSearch,
     CamSegment,
+    ContactOverSpeeds,
     Optimality,
+    SpringChoice,
 )
 from synthesis.kinds.cam.excesses import warning_of
+from synthesis.kinds.cam.followers import RateRange
+from synthesis.kinds.cam.loads import (
+    arm_length,
+    follower_load,
+    greatest_rpm,
+    least_rate,
+    radians_a_second,
+    weakest_contact,
+    with_spring,
+)
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
 from synthesis.model.answer import Check
 from synthesis.model.dimension import FORCE
 from synthesis.outcome.sifting import Sifting
+from synthesis.proof.checks import at_least
 
 FORCE_SLACK = 1e-9
 """Relative slack of the least contact force: the least preload gives exactly that, but for rounding."""
+
+BINDS = 1e-6
+"""Relative distance to a demand within which it is met with nothing to spare."""
 
 SLOW = 10.0
 """Natural frequency over cam speed below which the follower's own vibration is worth a warning (Norton §15.4)."""
@@ -101,23 +119,32 @@ def optimality_of(problem: CamProblem, composed: Composition, size: float) -> Op
 
 
 def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
-    """Contact force and torque of the follower, with the least preload where the client leaves it free."""
-    dynamics = problem.dynamics
-    if dynamics is None:
+    """Contact force and torque of the follower, with spring and least preload where the client leaves them free."""
+    if problem.dynamics is None:
         return None
+    stated = problem
+    problem, spring = with_spring(problem, program)
+    dynamics = problem.dynamics
+    assert dynamics is not None
     load, speed = follower_load(problem)
     arm = arm_length(problem)
-    least = RunningCam(program, replace(load, preload=0.0), speed).least_preload(dynamics.least_force * arm)
-    groove = problem.grooved
+    groove, floor = problem.grooved, dynamics.least_force * arm
+    top_rpm = greatest_rpm(stated)
+    alone = RunningCam(program, replace(load, preload=0.0), speed)
+    least = alone.least_preload(floor)
+    if top_rpm is not None:
+        least = max(least, floor - weakest_contact(program, alone.load, top_rpm).force)
     preload = least if dynamics.preload is None and not groove else load.preload
     running = RunningCam(program, replace(load, preload=preload), speed)
     force, torque = running.force_extremes, running.torque_extremes
+    over_speeds = None if top_rpm is None else _over_speeds(running, top_rpm, arm)
     warnings, changes = [], None
     if groove:
         changes = np.unique(np.degrees(running.reversals()).round(9)).tolist()
     ratio = load.natural_frequency / speed
     if 0.0 < ratio < SLOW:
         warnings.append(f"the natural frequency is only {ratio:.3g} times the cam's speed; the follower will vibrate")
+    damping = dynamics.damping_ratio
     return CamForces(
         preload=preload / arm,
         least_preload=least / arm,
@@ -126,10 +153,57 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         min_torque=torque.least,
         max_torque=torque.greatest,
         wall_changes=changes,
+        spring_rate=load.spring_rate / arm**2,
+        jump_speed=None if groove else _jump_rpm(running),
         natural_frequency=load.natural_frequency,
+        damped_frequency=load.natural_frequency * math.sqrt(1.0 - damping**2) if damping < 1.0 else None,
         frequency_ratio=ratio,
+        over_speeds=over_speeds,
+        spring=None if spring is None or over_speeds is None else _choice(stated, spring, over_speeds, arm),
         warning="; ".join(warnings) or None,
     )
+
+
+def _jump_rpm(running: RunningCam) -> float | None:
+    """The speed at which the follower first leaves the cam; where it rests without any force it has not left it."""
+    speed = running.jump_speed(-FORCE_SLACK * running.force_extremes.largest)
+    return None if math.isinf(speed) else speed * 30.0 / math.pi
+
+
+def _over_speeds(running: RunningCam, top_rpm: float, arm: float) -> ContactOverSpeeds:
+    """Where the follower is pressed to the cam least, at any speed up to the greatest."""
+    weakest = weakest_contact(running.program, running.load, top_rpm)
+    return ContactOverSpeeds(
+        max_rpm=top_rpm,
+        min_contact_force=weakest.force / arm,
+        angle=math.degrees(weakest.angle),
+        rpm=weakest.speed * 30.0 / math.pi,
+    )
+
+
+def _choice(problem: CamProblem, spring: Spring, over_speeds: ContactOverSpeeds, arm: float) -> SpringChoice:
+    """The chosen spring with its bound, and the demands that are met with nothing to spare."""
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    assert problem.speed_rpm is not None
+    force, rate, stated = spring.greatest_force / arm, spring.rate / arm**2, dynamics.spring_rate
+    binding: list[Binding] = []
+    if over_speeds.min_contact_force <= dynamics.least_force + BINDS * abs(force):
+        binding.append("least_force")
+    low, high = (stated.min, stated.max) if isinstance(stated, RateRange) else (0.0, math.inf)
+    if dynamics.min_frequency_ratio is not None:
+        speed = radians_a_second(problem.speed_rpm)
+        needed = least_rate(dynamics, problem.length_unit, speed)
+        if low < needed and rate <= needed * (1.0 + BINDS):
+            binding.append("min_frequency_ratio")
+            low = -1.0
+    if rate <= low * (1.0 + BINDS):
+        binding.append("spring_rate/min")
+    if rate >= high * (1.0 - BINDS):
+        binding.append("spring_rate/max")
+    bound = None if spring.bound is None else spring.bound / arm
+    gap = force / bound - 1.0 if bound else None
+    return SpringChoice(max_contact_force=force, bound=bound, gap=gap, binding=binding)
 
 
 def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
@@ -137,12 +211,21 @@ def force_checks(problem: CamProblem, forces: CamForces | None) -> list[Check]:
 
     Between two walls the force may have either sign.
     """
-    if forces is None or problem.dynamics is None or forces.wall_changes is not None:
+    if forces is None or problem.dynamics is None:
         return []
-    least = problem.dynamics.least_force
-    rounding = FORCE_SLACK * max(abs(forces.min_contact_force), abs(forces.max_contact_force), least)
-    passed = forces.min_contact_force >= least - rounding
-    return [Check(name="contact_force", passed=passed, value=forces.min_contact_force, limit=least, dimension=FORCE)]
+    checks, demanded = [], problem.dynamics
+    if demanded.min_frequency_ratio is not None:
+        checks.append(at_least("frequency_ratio", forces.frequency_ratio, demanded.min_frequency_ratio))
+    if forces.wall_changes is not None:
+        return checks
+    least, found = demanded.least_force, forces.min_contact_force
+    if forces.over_speeds is not None:
+        found = min(found, forces.over_speeds.min_contact_force)
+    rounding = FORCE_SLACK * max(abs(found), abs(forces.max_contact_force), least)
+    return [
+        Check(name="contact_force", passed=found >= least - rounding, value=found, limit=least, dimension=FORCE),
+        *checks,
+    ]
 
 
 def motion_metrics(problem: CamProblem, program: Program) -> dict[str, Any]:

@@ -15,7 +15,6 @@ from typing import Literal
 
 import numpy as np
 
-from kinematics.cam.dynamics import FollowerLoad
 from kinematics.cam.extremes import extremes
 from kinematics.cam.motion_laws import LAWS
 from kinematics.cam.pieces import Motion, Pieces
@@ -26,6 +25,7 @@ from synthesis.kinds.cam.followers import BarrelRoller, LengthRange, Translating
 from synthesis.kinds.cam.joints import END_RATES, State, law_ends
 from synthesis.kinds.cam.knots import KnotMotion
 from synthesis.kinds.cam.limits import CamLimits
+from synthesis.kinds.cam.loads import arm_length, follower_load, greatest_rpm, weakest_contact, with_spring
 from synthesis.kinds.cam.motion_program import Condition, Demand, Limit
 from synthesis.kinds.cam.optimal import (
     STEPS,
@@ -158,9 +158,14 @@ def criterion(problem: CamProblem, program: Program) -> float:
     if name == "size":
         return math.nan
     if name == "peak_contact_force":
+        top_rpm = greatest_rpm(problem)
+        problem, _ = with_spring(problem, program)
         load, speed = follower_load(problem)
         force = extremes(lambda at: load.force(program.pieces.motion(at), speed), program.breaks)
-        return force.greatest + _added_preload(problem, force.least)
+        least = force.least
+        if top_rpm is not None:
+            least = min(least, weakest_contact(program, load, top_rpm).force)
+        return force.greatest + _added_preload(problem, least)
     if kind == "peak":
         if of == "torque":
             return extremes(lambda at: _product(program.pieces.motion(at)), program.breaks).largest
@@ -181,31 +186,6 @@ def _integrated_square(pieces: Pieces, function: Callable[[Motion], np.ndarray])
     half = 0.5 * np.diff(pieces.start)
     values = function(pieces.motion(pieces.start[:-1, None] + half[:, None] * (nodes + 1.0)))
     return max(float(half @ (values**2 @ weights)), 0.0)
-
-
-def follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
-    """What the cam moves, in a consistent set of units, and the speed in rad/s.
-
-    With newtons and kilograms lengths must be metres for F = m a; in millimetres the mass counts a thousandth. For an
-    oscillating follower mass and spring at the arm's end become moments about the pivot. A free preload is left at
-    zero.
-    """
-    dynamics = problem.dynamics
-    assert dynamics is not None
-    assert problem.speed_rpm is not None
-    share = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}[problem.length_unit]
-    square = arm_length(problem) ** 2
-    load = FollowerLoad(
-        dynamics.mass * share * square,
-        dynamics.spring_rate * square,
-        (dynamics.preload or 0.0) * arm_length(problem),
-    )
-    return load.damped(dynamics.damping_ratio), problem.speed_rpm * math.pi / 30.0
-
-
-def arm_length(problem: CamProblem) -> float:
-    """From an oscillating roller's pivot to its centre; 1 for the followers that are pushed straight."""
-    return getattr(problem.follower, "arm", 1.0)
 
 
 def _floor(problem: CamProblem) -> float:

@@ -20,6 +20,8 @@ from synthesis.model.dimension import (
     Jerk,
     Length,
     RadianFrequency,
+    RotationalSpeed,
+    Stiffness,
     Torque,
     Velocity,
 )
@@ -139,6 +141,31 @@ class Optimality(Answer):
     warning: str | None = optional("Peaks that are many times those of a plain law, where the criterion costs them.")
 
 
+Binding = Literal["least_force", "min_frequency_ratio", "spring_rate/min", "spring_rate/max"]
+
+
+class ContactOverSpeeds(Answer):
+    """The least contact force at all cam angles and all speeds up to the greatest."""
+
+    max_rpm: RotationalSpeed
+    min_contact_force: Force
+    angle: Angle = Field(description="At which it is, degrees.")
+    rpm: RotationalSpeed = Field(description="At which it is.")
+
+
+class SpringChoice(Answer):
+    """The return spring that was chosen, by its greatest contact force at the stated speed.
+
+    ``bound``: no spring that keeps the demands has a smaller one; left out where none keeps them, and this is the one
+    that comes nearest. ``binding`` are the demands that are met with nothing to spare.
+    """
+
+    max_contact_force: Force
+    bound: Force | None = optional()
+    gap: float | None = optional()
+    binding: list[Binding]
+
+
 class CamForces(Answer):
     """The follower as one mass on a spring, at the stated speed."""
 
@@ -152,8 +179,17 @@ class CamForces(Answer):
         "Cam angles at which a roller in a groove changes walls: where the force along its motion begins to have the "
         "other sign than the last one that it had. Without spring and preload it is zero in a rest."
     )
+    spring_rate: Stiffness = Field(description="Of the return spring, stated or chosen.")
+    jump_speed: RotationalSpeed | None = Field(
+        description="At which the follower first leaves the cam; null where it does at none, and in a groove."
+    )
     natural_frequency: RadianFrequency = Field(description="Of mass and spring, rad/s.")
+    damped_frequency: RadianFrequency | None = Field(
+        description="Likewise with the damping; null where it is critical."
+    )
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
+    over_speeds: ContactOverSpeeds | None = optional("Where a greatest speed is stated, or the spring is chosen.")
+    spring: SpringChoice | None = optional("Where the spring's rate is free.")
     warning: str | None = optional()
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from synthesis.model.dimension import FORCE, MASS, STIFFNESS
+from synthesis.model.dimension import FORCE, MASS, ROTATIONAL_SPEED, STIFFNESS
 from synthesis.model.statement import (
     Contradiction,
     Coordinate,
@@ -22,6 +22,13 @@ class LengthRange(Statement):
 
     min: PositiveLength
     max: PositiveLength
+
+
+class RateRange(Statement):
+    """A spring rate that is free between two."""
+
+    min: Annotated[NonNegative, STIFFNESS]
+    max: Annotated[PositiveNumber, STIFFNESS]
 
 
 class TranslatingRoller(Statement):
@@ -94,13 +101,25 @@ class FollowerDynamics(Statement):
     """
 
     mass: Annotated[PositiveNumber, MASS]
-    spring_rate: Annotated[NonNegative, STIFFNESS] = Field(default=0.0, description="Force per length unit.")
+    spring_rate: Annotated[NonNegative, STIFFNESS] | RateRange | Literal["free"] = Field(
+        default=0.0,
+        description="Force per length unit. Free, or in a range: that spring is taken whose greatest contact force is "
+        "least, of all that hold the follower to the cam at every speed up to `max_rpm`.",
+    )
     damping_ratio: NonNegative = Field(default=0.0, description="Share of critical damping of mass and spring.")
     preload: Annotated[NonNegative, FORCE] | None = Field(
         default=None, description="Spring force at zero displacement; null: the least."
     )
     least_force: Annotated[NonNegative, FORCE] = Field(
         default=0.0, description="Contact force that must always be left."
+    )
+    max_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
+        default=None,
+        description="The contact force is kept at all speeds of the cam from 0 to so many revolutions a minute; null: "
+        "at its stated speed, and for a spring that is chosen at all speeds up to it.",
+    )
+    min_frequency_ratio: NonNegative | None = Field(
+        default=None, description="Least natural frequency of mass and spring over the cam's stated speed."
     )
 
 

@@ -12,6 +12,7 @@ from synthesis.kinds.cam.followers import (
     Follower,
     FollowerDynamics,
     OscillatingFlat,
+    RateRange,
     TranslatingFlat,
     follower_contradictions,
 )
@@ -20,6 +21,9 @@ from synthesis.kinds.cam.segments import Move, Segment
 from synthesis.kinds.cam.stated_program import StatedProgram
 from synthesis.model.dimension import ROTATIONAL_SPEED
 from synthesis.model.statement import Contradiction, Count, Flag, PositiveNumber, StatedProblem
+
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 1.0}
+"""With newtons and kilograms lengths must be metres for F = m a; in millimetres the mass counts a thousandth."""
 
 Criterion = Literal[
     "size",
@@ -183,6 +187,47 @@ class CamProblem(StatedProblem):
             return [Contradiction("/closure", detail)]
         return []
 
+    def _spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
+        """A spring that is chosen, and the speeds up to which it holds."""
+        contradictions, rate, speed = [], dynamics.spring_rate, self.speed_rpm
+        assert speed is not None
+        free, sought = (
+            not isinstance(rate, float),
+            any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments),
+        )
+        if isinstance(rate, RateRange) and rate.min >= rate.max:
+            contradictions.append(Contradiction("/dynamics/spring_rate/max", "must be above min"))
+        elif isinstance(rate, RateRange) and dynamics.min_frequency_ratio is not None:
+            least = (
+                dynamics.mass * METRES[self.length_unit] * (dynamics.min_frequency_ratio * speed * math.pi / 30.0) ** 2
+            )
+            if least > rate.max:
+                detail = f"the spring would need a rate of {least:.6g}, more than the range has"
+                contradictions.append(Contradiction("/dynamics/min_frequency_ratio", detail))
+        if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
+            contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least the stated speed"))
+        if self.grooved:
+            detail = "in a groove no spring holds the follower; state a rate, or take the closure by force"
+            if free:
+                contradictions.append(Contradiction("/dynamics/spring_rate", detail))
+            if dynamics.max_rpm is not None:
+                contradictions.append(
+                    Contradiction("/dynamics/max_rpm", "in a groove no contact is lost; leave it out")
+                )
+        if self.minimize == "peak_contact_force" and sought:
+            if free:
+                detail = (
+                    "force times displacement is not convex where both are sought: motions of least contact force are "
+                    "found for a stated rate, springs for motions by another criterion or by law"
+                )
+                contradictions.append(Contradiction("/dynamics/spring_rate", detail))
+            if dynamics.max_rpm is not None:
+                detail = (
+                    "motions of least contact force are found for one speed; choose another criterion or leave it out"
+                )
+                contradictions.append(Contradiction("/dynamics/max_rpm", detail))
+        return contradictions
+
     def _limits(self) -> list[Contradiction]:
         """Limits on the motion have a motion to choose."""
         if any(isinstance(segment, Move) and segment.follows_criterion for segment in self.segments):
@@ -209,6 +254,8 @@ class CamProblem(StatedProblem):
             contradictions.append(Contradiction("/dynamics/least_force", detail))
         if self.dynamics is not None and self.speed_rpm is None:
             contradictions.append(Contradiction("/speed_rpm", "forces need the cam's speed"))
+        elif self.dynamics is not None:
+            contradictions += self._spring(self.dynamics)
         optimal = any(isinstance(segment, Move) and segment.law == "optimal" for segment in self.segments)
         if optimal and self.minimize == "size" and self.oscillating:
             detail = "optimal motions of least size are found for translating followers; choose another criterion"

@@ -26,7 +26,6 @@ from synthesis.kinds.cam.barrel import solve_barrel
 from synthesis.kinds.cam.composition import (
     Composition,
     NoProgram,
-    arm_length,
     compose,
     least_face_radius,
     least_pitch_radius,
@@ -41,6 +40,8 @@ from synthesis.kinds.cam.followers import (
     TranslatingFlat,
     TranslatingRoller,
 )
+from synthesis.kinds.cam.loads import arm_length
+from synthesis.kinds.cam.measured_forces import measured_contact
 from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles, refined
 from synthesis.kinds.cam.optimal import STEPS
 from synthesis.kinds.cam.problem import CamProblem
@@ -124,7 +125,8 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     if measured is None:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
     metrics = _metrics(problem, cam, measured)
-    verification = Verification.of([*verification.checks, *force_checks(problem, metrics.forces)])
+    held = [*force_checks(problem, metrics.forces), *measured_contact(problem, mechanism, metrics.forces)]
+    verification = Verification.of([*verification.checks, *held])
     design = CamDesign(
         mechanism=mechanism,
         segments=segments_of(problem, composed),

@@ -66,6 +66,7 @@ FLAT = {"follower": {"type": "translating_flat"}}
 FLAT_ARM = {"follower": {"type": "oscillating_flat", "pivot_distance": 200.0}, "segments[1].lift": 10.0}
 BARREL = {"follower": {"type": "barrel_roller", "roller_radius": 8.0}}
 LOADED = {"dynamics": {"mass": 0.5, "spring_rate": 20.0, "preload": 100.0}, "speed_rpm": 200.0}
+SPRUNG = {"dynamics": {"mass": 0.5, "spring_rate": {"min": 2.0, "max": 4.0}}, "speed_rpm": 600.0}
 AUTO = {"segments[1].law": "auto"}
 WHERE = "segments[1]"
 
@@ -159,6 +160,10 @@ CAM_ROWS: dict[str, Any] = {
     "dynamics": Row({"mass": 0.6, "spring_rate": 20.0, "preload": 100.0}, LOADED),
     "dynamics.mass": Row(0.6, LOADED),
     "dynamics.spring_rate": Row(25.0, LOADED),
+    "dynamics.spring_rate.min": Row(10.0, {**SPRUNG, "dynamics.spring_rate": {"min": 2.0, "max": 14.0}}),
+    "dynamics.spring_rate.max": Row(3.5, SPRUNG),
+    "dynamics.max_rpm": Row(800.0, SPRUNG),
+    "dynamics.min_frequency_ratio": Row(3.0, {**SPRUNG, "dynamics.spring_rate": "free"}),
     "dynamics.damping_ratio": Row(0.2, LOADED),
     "dynamics.preload": Row(120.0, LOADED),
     "dynamics.least_force": Row(5.0, {"dynamics": {"mass": 0.5, "spring_rate": 20.0}, "speed_rpm": 200.0}),

@@ -1,0 +1,252 @@
+"""The return spring with which a follower is pressed to its cam least, of all that keep it there at every speed.
+
+With rate k = x², preload F0 and the damping c = 2 ζ √(k m) of a ratio ζ, the force at cam angle θ and speed w is
+
+    F(θ, w) = m w² a + 2 ζ √m w v x + s x² + F0
+
+(Norton, *Design of Machinery*, §15.2). At the working speed ω its greatest value over θ is to be least; at every θ and
+every w from 0 to a top speed it must not fall below a floor. Every θ alone says
+
+    greatest force − F0 ≥ m ω² a + 2 ζ √m ω v x + s x²          (an *upper* cut)
+    F0 ≥ floor − m w² a − 2 ζ √m w v x − s x²                   (a *need*, with any one w)
+
+for every x: parabolas in x with known coefficients, straight lines in k without damping, where the problem is convex in
+k and F0. The greatest upper cut and the greatest need found so far make a model that lies nowhere above the truth. It
+is made least exactly, among ends, vertices and crossings of its parabolas; the truth at that x gives the next cuts
+(exchange; Kelley, *J. SIAM* 8, 1960). The least of the model bounds every spring there is, with damping or without.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.dynamics import FollowerLoad, RunningCam
+from kinematics.cam.program import Program
+from kinematics.errors import DimensionError
+
+Real = NDArray[np.float64]
+
+ROUNDS = 80
+"""Springs that are tried at most; a dozen is usual."""
+
+CLOSE = 1e-10
+"""Share of the force by which the value may exceed its bound, and by which a stated preload may miss a need."""
+
+STIFFEST = 1e4
+"""Spring force over the lift, in units of all other forces, up to which springs are looked for."""
+
+
+@dataclass(frozen=True)
+class SpringDemands:
+    """What a spring has to keep, and between which rates it may be.
+
+    Parameters
+    ----------
+    floor : float
+        Least contact force.
+    speed, top_speed : float
+        Of the camshaft, radians per unit of time: at which the greatest force counts, and up to which contact is kept.
+    least_rate, greatest_rate : float
+        Of the spring; the greatest may be infinite.
+    preload : float or None
+        None: free, at least 0.
+    """
+
+    floor: float
+    speed: float
+    top_speed: float
+    least_rate: float = 0.0
+    greatest_rate: float = math.inf
+    preload: float | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.speed <= self.top_speed < math.inf:
+            raise DimensionError("top speed", f"at least the speed {self.speed}, which is positive", self.top_speed)
+        if not 0.0 <= self.least_rate <= self.greatest_rate or math.isinf(self.least_rate):
+            raise DimensionError("greatest rate", f"at least the least rate {self.least_rate}", self.greatest_rate)
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A return spring.
+
+    Attributes
+    ----------
+    rate, preload : float
+    greatest_force : float
+        Of the contact at the speed.
+    bound : float or None
+        No spring within the demands has a smaller greatest force; None where none was found that holds contact, and
+        this is the one that comes nearest to it.
+    """
+
+    rate: float
+    preload: float
+    greatest_force: float
+    bound: float | None
+
+
+def best_spring(program: Program, mass: float, damping_ratio: float, demands: SpringDemands) -> Spring:
+    """The spring of least greatest contact force that keeps the demands, or the one that fails them least.
+
+    Parameters
+    ----------
+    program : Program
+    mass : float
+        Of the follower, or its moment of inertia.
+    damping_ratio : float
+        ζ of mass and spring.
+    demands : SpringDemands
+    """
+    search = _Search(program, mass, damping_ratio, demands)
+    found = search.least_force()
+    return search.nearest() if found is None else found
+
+
+class _Search:
+    """One exchange: the cuts found so far, and the springs tried."""
+
+    def __init__(self, program: Program, mass: float, ratio: float, demands: SpringDemands) -> None:
+        self.program, self.mass, self.ratio, self.demands = program, mass, ratio, demands
+        lift = program.lift
+        others = mass * demands.top_speed**2 * program.peaks[2].largest + demands.floor + (demands.preload or 0.0)
+        cap = STIFFEST * others / lift if lift > 0.0 else 0.0
+        self.ends = (
+            math.sqrt(demands.least_rate),
+            math.sqrt(min(demands.greatest_rate, max(cap, STIFFEST * demands.least_rate))),
+        )
+        self.scale = others
+        self.upper = np.empty((0, 3))
+        self.needs = np.zeros((1, 3)) if demands.preload is None else np.empty((0, 3))
+        for x in self.ends:
+            self.tried(x)
+
+    def tried(self, x: float) -> tuple[float, float]:
+        """Greatest force without preload and needed preload at a spring; its worst places become cuts."""
+        demands, root = self.demands, 2.0 * self.ratio * math.sqrt(self.mass)
+        load = FollowerLoad(self.mass, x * x).damped(self.ratio)
+        running = RunningCam(self.program, load, demands.speed)
+        force = running.force_extremes
+        speed = demands.speed
+        rows = [
+            [self.mass * speed**2 * a, root * speed * v, s] for s, v, a in _both_sides(self.program, force.at_greatest)
+        ]
+        self.upper = np.vstack([self.upper, rows])
+        weakest = running.weakest_contact(demands.top_speed)
+        w = weakest.speed
+        rows = [
+            [demands.floor - self.mass * w**2 * a, -root * w * v, -s]
+            for s, v, a in _both_sides(self.program, weakest.angle)
+        ]
+        self.needs = np.vstack([self.needs, rows])
+        return force.greatest, max(0.0, demands.floor - weakest.force)
+
+    def _rate(self, x: float) -> float:
+        """k = x², within the demands to the last digit."""
+        if x <= self.ends[0]:
+            return self.demands.least_rate
+        rate = max(x * x, self.demands.least_rate)
+        return self.demands.greatest_rate if rate >= self.demands.greatest_rate * (1.0 - CLOSE) else rate
+
+    def least_force(self) -> Spring | None:
+        """Exchange until value and bound meet; None where no spring was found that keeps the demands."""
+        best: Spring | None = None
+        bound = -math.inf
+        stated = self.demands.preload
+        for _ in range(ROUNDS):
+            least = self._least_of_model()
+            if least is None:
+                return None
+            x, bound = least
+            greatest, needed = self.tried(x)
+            preload = needed if stated is None else stated
+            if needed <= preload + CLOSE * self.scale and (best is None or greatest + preload < best.greatest_force):
+                best = Spring(self._rate(x), preload, greatest + preload, None)
+            if best is not None and best.greatest_force - bound <= CLOSE * abs(best.greatest_force):
+                break
+        if best is None:
+            return None
+        return Spring(best.rate, best.preload, best.greatest_force, min(bound, best.greatest_force))
+
+    def nearest(self) -> Spring:
+        """The spring of a stated preload that needs least more of it."""
+        stated = self.demands.preload
+        assert stated is not None, "a free preload meets every need"
+        best: tuple[float, float, float] | None = None
+        for _ in range(ROUNDS):
+            x, bound = _least(lambda at: _greatest(self.needs, at), _turning(self.needs), self.ends)
+            greatest, needed = self.tried(x)
+            if best is None or needed < best[0]:
+                best = needed, x, greatest
+            if best[0] - bound <= CLOSE * self.scale:
+                break
+        assert best is not None
+        return Spring(self._rate(best[1]), stated, best[2] + stated, None)
+
+    def _least_of_model(self) -> tuple[float, float] | None:
+        """x at which the model is least, and its value; None where its needs exceed a stated preload everywhere."""
+        stated = self.demands.preload
+        candidates = [_turning(self.upper), _turning(self.needs)]
+        if stated is None:
+            together = (self.upper[:, None] + self.needs[None]).reshape(-1, 3)
+            candidates.append(_vertices(together))
+
+            def model(x: Real) -> Real:
+                return _greatest(self.upper, x) + _greatest(self.needs, x)
+        else:
+            candidates.append(_crossings(self.needs - np.array([stated, 0.0, 0.0])))
+            allowed = stated + 0.5 * CLOSE * self.scale
+
+            def model(x: Real) -> Real:
+                return np.where(_greatest(self.needs, x) <= allowed, _greatest(self.upper, x) + stated, math.inf)
+
+        x, value = _least(model, np.concatenate(candidates), self.ends)
+        return (x, value) if math.isfinite(value) else None
+
+
+def _both_sides(program: Program, angle: float) -> Real:
+    """s, v, a at an angle, on either side of it where the motion jumps there; shape (2, 3)."""
+    return np.array([[float(x) for x in program.motion(angle, before=side)[:3]] for side in (False, True)])
+
+
+def _greatest(rows: Real, x: Real) -> Real:
+    """The greatest of parabolas at places."""
+    at = np.asarray(x)
+    return np.asarray((rows[:, 0, None] + rows[:, 1, None] * at + rows[:, 2, None] * at**2).max(axis=0))
+
+
+def _turning(rows: Real) -> Real:
+    """Where the greatest of parabolas may change over or turn."""
+    first, second = np.triu_indices(len(rows), 1)
+    return np.concatenate([_vertices(rows), _crossings(rows[first] - rows[second])])
+
+
+def _vertices(rows: Real) -> Real:
+    curved = rows[:, 2] != 0.0
+    return np.asarray(-0.5 * rows[curved, 1] / rows[curved, 2])
+
+
+def _crossings(rows: Real) -> Real:
+    """Real roots of c + b x + a x², without cancellation."""
+    c, b, a = rows.T
+    square = b * b - 4.0 * a * c
+    some = square >= 0.0
+    c, b, a = c[some], b[some], a[some]
+    q = -0.5 * (b + np.copysign(np.sqrt(square[some]), b))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.concatenate([q / a, c / q])
+    return np.asarray(found[np.isfinite(found)])
+
+
+def _least(model: Callable[[Real], Real], candidates: Real, ends: tuple[float, float]) -> tuple[float, float]:
+    """The best of candidates between two ends, the ends among them."""
+    inside = candidates[(candidates > ends[0]) & (candidates < ends[1])]
+    x = np.unique(np.concatenate([inside, ends]))
+    values = model(x)
+    k = int(values.argmin())
+    return float(x[k]), float(values[k])

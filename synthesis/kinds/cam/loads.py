@@ -1,0 +1,87 @@
+"""What a cam moves, in one consistent set of units, and the spring that is chosen where the client leaves it free."""
+
+from __future__ import annotations
+
+import math
+
+from kinematics.cam.dynamics import FollowerLoad, RunningCam, WeakestContact
+from kinematics.cam.program import Program
+from kinematics.cam.springs import Spring, SpringDemands, best_spring
+from synthesis.kinds.cam.followers import FollowerDynamics, RateRange
+from synthesis.kinds.cam.problem import METRES, CamProblem
+
+
+def arm_length(problem: CamProblem) -> float:
+    """From an oscillating roller's pivot to its centre; 1 for the followers that are pushed straight."""
+    return getattr(problem.follower, "arm", 1.0)
+
+
+def follower_load(problem: CamProblem) -> tuple[FollowerLoad, float]:
+    """What the cam moves, in a consistent set of units, and the speed in rad/s.
+
+    For an oscillating follower mass and spring at the arm's end become moments about the pivot. A free preload is left
+    at zero; the spring's rate is a number (:func:`with_spring`).
+    """
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    assert problem.speed_rpm is not None
+    assert isinstance(dynamics.spring_rate, float)
+    square = arm_length(problem) ** 2
+    load = FollowerLoad(
+        dynamics.mass * METRES[problem.length_unit] * square,
+        dynamics.spring_rate * square,
+        (dynamics.preload or 0.0) * arm_length(problem),
+    )
+    return load.damped(dynamics.damping_ratio), radians_a_second(problem.speed_rpm)
+
+
+def radians_a_second(rpm: float) -> float:
+    """Of revolutions a minute."""
+    return rpm * math.pi / 30.0
+
+
+def greatest_rpm(problem: CamProblem) -> float | None:
+    """The speed up to which contact is kept from rest; None where it is kept at the stated speed alone."""
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    if dynamics.max_rpm is not None:
+        return dynamics.max_rpm
+    return None if isinstance(dynamics.spring_rate, float) else problem.speed_rpm
+
+
+def weakest_contact(program: Program, load: FollowerLoad, top_rpm: float) -> WeakestContact:
+    """The least contact force of a load from rest to a speed."""
+    top = radians_a_second(top_rpm)
+    return RunningCam(program, load, top).weakest_contact(top)
+
+
+def least_rate(dynamics: FollowerDynamics, length_unit: str, speed: float) -> float:
+    """The spring rate, as the client states it, that the least natural frequency asks for at a speed in rad/s."""
+    return dynamics.mass * METRES[length_unit] * ((dynamics.min_frequency_ratio or 0.0) * speed) ** 2
+
+
+def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spring | None]:
+    """The problem with a number for its spring rate, and the spring where it was free.
+
+    Chosen is the spring of least greatest contact force at the stated speed among those that keep the least force at
+    all speeds from 0 to the greatest, and the natural frequency; in the units of :func:`follower_load`.
+    """
+    dynamics = problem.dynamics
+    if dynamics is None or isinstance(dynamics.spring_rate, float):
+        return problem, None
+    assert problem.speed_rpm is not None
+    stated = dynamics.spring_rate
+    arm, mass = arm_length(problem), dynamics.mass * METRES[problem.length_unit]
+    least, greatest = (stated.min, stated.max) if isinstance(stated, RateRange) else (0.0, math.inf)
+    speed = radians_a_second(problem.speed_rpm)
+    demands = SpringDemands(
+        floor=dynamics.least_force * arm,
+        speed=speed,
+        top_speed=radians_a_second(dynamics.max_rpm or problem.speed_rpm),
+        least_rate=max(least, least_rate(dynamics, problem.length_unit, speed)) * arm**2,
+        greatest_rate=greatest * arm**2,
+        preload=None if dynamics.preload is None else dynamics.preload * arm,
+    )
+    spring = best_spring(program, mass * arm**2, dynamics.damping_ratio, demands)
+    chosen = dynamics.model_copy(update={"spring_rate": spring.rate / arm**2})
+    return problem.model_copy(update={"dynamics": chosen}), spring
