@@ -398,6 +398,9 @@ def _sprung(draw: _Draw, dynamics: Statement) -> None:
         dynamics["max_rpm"] = round(float(own.uniform(1.0, 1.6)) * draw.stated["speed_rpm"] + 0.01, 2)
     if own.random() < 0.3 and not isinstance(dynamics.get("spring_rate"), dict):
         dynamics["min_frequency_ratio"] = round(float(own.uniform(0.2, 3.0)), 3)
+    if own.random() < 0.4:
+        dynamics["train_stiffness"] = round(float(own.uniform(100.0, 9000.0)), 1)
+        dynamics["train_damping_ratio"] = round(float(own.uniform(0.0, 0.3)), 3)
 
 
 def in_units(stated: Statement, unit: str) -> Statement:

@@ -26,6 +26,9 @@ CONTINUOUS = 1e-6
 WINDOWS = {"acceleration": (2, 4), "jerk": (3, 8)}
 """Orders of the differences that a check of a peak takes, and their strides, in steps of which a segment has 320."""
 
+ROUNDED = 1e-10
+"""Share of the greatest force that is rounding."""
+
 STEPS = 320
 
 STILL = 1e-10
@@ -255,6 +258,9 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
     lowest = found["min_contact_force"]
     if forces.over_speeds is not None:
         lowest = min(lowest, (preload + still.weakest(rate, top)) / arm)
+    floor = dynamics.get("least_force", 0.0)
+    # A chosen spring leaves exactly the least force, of which rounding is no more and no less.
+    lowest = floor if abs(lowest - floor) <= ROUNDED * scale else lowest
     return lowest, found["max_contact_force"]
 
 

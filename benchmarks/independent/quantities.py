@@ -163,6 +163,10 @@ COMPARED: dict[str, frozenset[str]] = {
             metrics.forces.over_speeds.max_rpm metrics.forces.over_speeds.min_contact_force
             metrics.forces.over_speeds.angle metrics.forces.over_speeds.rpm metrics.forces.spring.max_contact_force
             metrics.forces.spring.bound metrics.forces.spring.gap metrics.forces.spring.binding
+            metrics.forces.train.natural_frequency metrics.forces.train.damped_frequency
+            metrics.forces.train.frequency_ratio metrics.forces.train.period_ratio
+            metrics.forces.train.residual_amplitude metrics.forces.train.min_contact_force
+            metrics.forces.train.max_contact_force
             segments.start segments.angle segments.displacement segments.peak_velocity segments.peak_acceleration
             segments.peak_jerk
             joints.angle joints.continuous joints.jump.s joints.jump.v joints.jump.a joints.jump.j

@@ -25,7 +25,7 @@ PURE = {
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
     "ExactDesign": {"rms_residual"},
-    "FollowerDynamics": {"damping_ratio", "min_frequency_ratio"},
+    "FollowerDynamics": {"damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
     "ForceCourse": {"table"},  # columns of several units
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
     "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
@@ -89,6 +89,7 @@ PURE = {
     "Sweep": {"from", "to", "speed", "acceleration"},  # of an input that turns or slides
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units
+    "TrainVibration": {"frequency_ratio", "period_ratio"},
     "Yield": {"value", "low", "high"},
 }
 

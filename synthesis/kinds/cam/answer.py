@@ -41,6 +41,7 @@ from synthesis.kinds.cam.loads import (
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
 from synthesis.kinds.cam.sizing import Size
+from synthesis.kinds.cam.vibration import train_vibration
 from synthesis.model.answer import Check
 from synthesis.model.dimension import FORCE
 from synthesis.outcome.sifting import Sifting
@@ -51,9 +52,6 @@ FORCE_SLACK = 1e-9
 
 BINDS = 1e-6
 """Relative distance to a demand within which it is met with nothing to spare."""
-
-SLOW = 10.0
-"""Natural frequency over cam speed below which the follower's own vibration is worth a warning (Norton §15.4)."""
 
 
 def segments_of(problem: CamProblem, composed: Composition) -> list[CamSegment]:
@@ -138,13 +136,9 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     running = RunningCam(program, replace(load, preload=preload), speed)
     force, torque = running.force_extremes, running.torque_extremes
     over_speeds = None if top_rpm is None else _over_speeds(running, top_rpm, arm)
-    warnings, changes = [], None
-    if groove:
-        changes = np.unique(np.degrees(running.reversals()).round(9)).tolist()
-    ratio = load.natural_frequency / speed
-    if 0.0 < ratio < SLOW:
-        warnings.append(f"the natural frequency is only {ratio:.3g} times the cam's speed; the follower will vibrate")
+    changes = np.unique(np.degrees(running.reversals()).round(9)).tolist() if groove else None
     damping = dynamics.damping_ratio
+    train, warning = train_vibration(problem, running)
     return CamForces(
         preload=preload / arm,
         least_preload=least / arm,
@@ -157,10 +151,11 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         jump_speed=None if groove else _jump_rpm(running),
         natural_frequency=load.natural_frequency,
         damped_frequency=load.natural_frequency * math.sqrt(1.0 - damping**2) if damping < 1.0 else None,
-        frequency_ratio=ratio,
+        frequency_ratio=load.natural_frequency / speed,
         over_speeds=over_speeds,
         spring=None if spring is None or over_speeds is None else _choice(stated, spring, over_speeds, arm),
-        warning="; ".join(warnings) or None,
+        train=train,
+        warning=warning,
     )
 
 

@@ -166,6 +166,21 @@ class SpringChoice(Answer):
     binding: list[Binding]
 
 
+class TrainVibration(Answer):
+    """The follower as a mass behind an elastic train, with its return spring, in steady state at the cam's speed."""
+
+    natural_frequency: RadianFrequency = Field(description="Of the mass on train and spring, rad/s.")
+    damped_frequency: RadianFrequency
+    frequency_ratio: float = Field(description="Natural frequency over cam speed.")
+    period_ratio: float = Field(description="τ: natural period over the time of the shortest move.")
+    residual_amplitude: Displacement | None = optional(
+        "Greatest amplitude of the free vibration at the start of a dwell; left out without a dwell, at a resonance, "
+        "and where the mass hardly follows."
+    )
+    min_contact_force: Force | None = optional("Of the cam on the vibrating train.")
+    max_contact_force: Force | None = optional()
+
+
 class CamForces(Answer):
     """The follower as one mass on a spring, at the stated speed."""
 
@@ -190,6 +205,7 @@ class CamForces(Answer):
     frequency_ratio: float = Field(description="Natural frequency over cam speed.")
     over_speeds: ContactOverSpeeds | None = optional("Where a greatest speed is stated, or the spring is chosen.")
     spring: SpringChoice | None = optional("Where the spring's rate is free.")
+    train: TrainVibration | None = optional("Where the stiffness of the train is stated.")
     warning: str | None = optional()
 
 

@@ -118,6 +118,14 @@ class FollowerDynamics(Statement):
         description="The contact force is kept at all speeds of the cam from 0 to so many revolutions a minute; null: "
         "at its stated speed, and for a spring that is chosen at all speeds up to it.",
     )
+    train_stiffness: Annotated[PositiveNumber, STIFFNESS] | None = Field(
+        default=None,
+        description="Force per length unit of the train between cam and mass, which is what vibrates; null: unknown, "
+        "and nothing is said of vibrations.",
+    )
+    train_damping_ratio: Annotated[NonNegative, Field(lt=1.0)] = Field(
+        default=0.0, description="Share of critical damping of the mass on its train."
+    )
     min_frequency_ratio: NonNegative | None = Field(
         default=None, description="Least natural frequency of mass and spring over the cam's stated speed."
     )

@@ -204,6 +204,9 @@ class CamProblem(StatedProblem):
             if least > rate.max:
                 detail = f"the spring would need a rate of {least:.6g}, more than the range has"
                 contradictions.append(Contradiction("/dynamics/min_frequency_ratio", detail))
+        if dynamics.train_damping_ratio > 0.0 and dynamics.train_stiffness is None:
+            detail = "what is damped is a train; state its stiffness"
+            contradictions.append(Contradiction("/dynamics/train_damping_ratio", detail))
         if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
             contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least the stated speed"))
         if self.grooved:

@@ -162,6 +162,8 @@ CAM_ROWS: dict[str, Any] = {
     "dynamics.spring_rate": Row(25.0, LOADED),
     "dynamics.spring_rate.min": Row(10.0, {**SPRUNG, "dynamics.spring_rate": {"min": 2.0, "max": 14.0}}),
     "dynamics.spring_rate.max": Row(3.5, SPRUNG),
+    "dynamics.train_stiffness": Row(4000.0, LOADED),
+    "dynamics.train_damping_ratio": Row(0.1, {**LOADED, "dynamics.train_stiffness": 4000.0}),
     "dynamics.max_rpm": Row(800.0, SPRUNG),
     "dynamics.min_frequency_ratio": Row(3.0, {**SPRUNG, "dynamics.spring_rate": "free"}),
     "dynamics.damping_ratio": Row(0.2, LOADED),

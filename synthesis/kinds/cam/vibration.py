@@ -1,0 +1,69 @@
+"""Whether a follower vibrates: the mass on the elastic train that the cam drives it through.
+
+The return spring only adds to the train's stiffness; it is the train between cam and mass that swings, at
+ω_n = √((k + k_s)/m). Where ω_n is less than ten times the cam's speed, the program's harmonics excite it markedly. τ,
+the natural period over the time of a move, says how much of it is left in the dwell after the move (Norton §15.4;
+Koster, *Vibrations of Cam Mechanisms*, 1974).
+"""
+
+from __future__ import annotations
+
+import math
+
+from kinematics.cam.dynamics import RunningCam
+from kinematics.cam.program import TURN
+from kinematics.cam.response import FollowerTrain, Response
+from kinematics.cam.segments import Segment
+from synthesis.kinds.cam.design import TrainVibration
+from synthesis.kinds.cam.loads import arm_length
+from synthesis.kinds.cam.problem import CamProblem
+from synthesis.kinds.cam.segments import Dwell
+
+SOFTEST = 1.0
+"""Natural frequency over cam speed below which the mass hardly follows the cam, and no motion of it is told."""
+
+
+def train_vibration(problem: CamProblem, running: RunningCam) -> tuple[TrainVibration | None, str | None]:
+    """The vibration of the stated train under the load of a running cam, and a warning; none without a train."""
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    if dynamics.train_stiffness is None:
+        return None, None
+    load, arm = running.load, arm_length(problem)
+    stiffness, ratio = dynamics.train_stiffness * arm**2, dynamics.train_damping_ratio
+    natural = math.sqrt((stiffness + load.spring_rate) / load.mass)
+    train = FollowerTrain(load.mass, stiffness, 2.0 * ratio * load.mass * natural, load.spring_rate, load.preload)
+    response = Response(running.program, train, running.speed)
+    moves = [segment.angle for segment, rests in _segments(problem, running) if not rests]
+    tau = TURN / natural * running.speed / min(moves, default=TURN)
+    amplitude = least = greatest = None
+    steady = response.frequency_ratio >= SOFTEST and not response.resonant
+    if steady:
+        force = response.contact_force
+        least, greatest = float(force.min()) / arm, float(force.max()) / arm
+        at_rest = [x for x, (_, rests) in zip(response.residual(), _segments(problem, running), strict=True) if rests]
+        amplitude = float(max(at_rest)) / problem.displacement_unit if at_rest else None
+    found = TrainVibration(
+        natural_frequency=natural,
+        damped_frequency=natural * math.sqrt(1.0 - ratio**2),
+        frequency_ratio=response.frequency_ratio,
+        period_ratio=tau,
+        residual_amplitude=amplitude,
+        min_contact_force=least,
+        max_contact_force=greatest,
+    )
+    warning = None
+    if response.too_slow:
+        warning = (
+            f"the natural frequency of the follower train is only {response.frequency_ratio:.3g} times the cam's speed "
+            f"(period over the shortest move's time: {tau:.3g}); the follower will vibrate"
+        )
+    if response.frequency_ratio >= SOFTEST and response.resonant:
+        warning = "a harmonic of the cam's speed meets the natural frequency of the follower train: it resonates"
+    return found, warning
+
+
+def _segments(problem: CamProblem, running: RunningCam) -> list[tuple[Segment, bool]]:
+    """Every segment of the program, and whether it is a dwell."""
+    rests = [isinstance(stated, Dwell) for stated in problem.segments]
+    return list(zip(running.program.segments, rests, strict=True))
