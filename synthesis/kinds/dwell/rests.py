@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 from scipy.optimize import brentq
 
@@ -35,6 +37,9 @@ CANDIDATES = 3
 
 WIDER = 5.0
 """Steps of the grid by which a width may differ from that by the grid: one at each end, and where the middle lies."""
+
+KNOTS = 4
+"""Knots in each step of the grid of the spline by which a width is found."""
 
 EXACT = 1e-7
 """Share of a step of the grid to which the width is found, far below what any output can be measured to."""
@@ -84,6 +89,16 @@ class Turn:
             return found
         near = self.values[np.rint((inputs - self.first) / self.step).astype(np.int64) % len(self.values)]
         return np.asarray(found - self._whole * np.round((found - near) / self._whole))
+
+    def between(self, first: float, last: float) -> Turn:
+        """The same turn with its output between two inputs by a cubic spline, which a root is found on in less time.
+
+        Its knots lie a quarter of a step apart; it errs by (step/4)⁴/384 of the output's fourth derivative.
+        """
+        knots = np.linspace(first, last, KNOTS * math.ceil((last - first) / self.step) + 1)
+        alike = copy(self)
+        alike._output, alike._whole = CubicSpline(knots, self.at(knots)), math.inf
+        return alike
 
     def _extremes(self, places: Real, upward: Real) -> tuple[Real, Real]:
         """Where the output turns back, and the output there, from places of the grid."""
@@ -203,13 +218,14 @@ def _width(turn: Turn, middle: float, allowed: float) -> float:
     low = max((shortest - 1 - WIDER) * turn.step, 0.0)
     high = min((shortest - 1 + WIDER) * turn.step, 2.0 * math.pi)
     aside = 1.5 * WIDER * turn.step * np.linspace(-1.0, 1.0, 2 * PLACES - 1)
+    about = turn.between(begin + 1.2 * aside[0], begin + high + 1.2 * aside[-1])
 
     def beyond(wide: float) -> float:
         begins = np.unique(np.clip(begin + aside, middle - wide, middle))
-        spreads = turn.spread(begins, wide)
+        spreads = about.spread(begins, wide)
         if len(begins) == 1:
             return float(spreads[0]) - allowed
-        return least_near(partial(turn.spread, wide=wide), begins, spreads)[1] - allowed
+        return least_near(partial(about.spread, wide=wide), begins, spreads)[1] - allowed
 
     # What is wider moves no less.
     if beyond(high) <= 0.0:
