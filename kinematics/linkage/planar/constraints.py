@@ -36,15 +36,15 @@ DEPENDENT = 1e-5
 FAR_ENOUGH = 0.2
 """Move of the input from the reference, radians or shares of the size, by which a mechanism has shown that it moves."""
 
-LEAST_STEP = 1e-6
+LEAST_STEP = 1e-9
 """Step of the input below which the way from the reference has an end."""
 
-TRIALS = 60
+TRIALS = 100
 """Steps at most, with those that were too long."""
 
 AT_A_LIMIT = 0.1
-"""Least singular value, as a share of that in the reference, at an end of the way that is a limit of the motion: there
-it goes with the root of the distance. At an end where constraints disagree it is what it was."""
+"""Least singular value, as a share of its greatest on the way, at an end that is a limit of the motion: there it goes
+with the root of the distance. At an end where constraints disagree it is what it was."""
 
 MOST_TURN = 0.5
 """Rotation of a link in one step, radians, beyond which another assembly might have been come upon."""
@@ -196,7 +196,7 @@ class Constraints:
         count = at.shape[1]
         rates = np.concatenate([at, np.full((1, count), way)])
         poses, _, least = self.settled(self.reference, rates)
-        begun, done = least.copy(), np.zeros(count)
+        most, done = least.copy(), np.zeros(count)
         step = np.full(count, 0.25 * FAR_ENOUGH)
         for _ in range(TRIALS):
             if not ((done < FAR_ENOUGH) & (step > LEAST_STEP)).any():
@@ -207,9 +207,10 @@ class Constraints:
             met = (misfit <= CONSISTENT) & (turned <= MOST_TURN) & (smallest > SINGULAR) & (done < FAR_ENOUGH)
             poses.put(met, tried.take(met))
             least = np.where(met, smallest, least)
+            most = np.maximum(most, least)
             done = np.where(met, done + step, done)
             step = np.where(met, 1.5 * step, 0.5 * step)
-        return (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * begun))
+        return (done >= FAR_ENOUGH) | ((done > 0.0) & (least < AT_A_LIMIT * most))
 
     def misfit(self, poses: Poses, input: Real) -> Real:
         """The largest residual of poses of shape (1, links, M) at inputs (1, M); NaN where they are, shape (M,)."""
