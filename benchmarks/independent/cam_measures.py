@@ -242,6 +242,12 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
         beside.check("contact_force", found["min_contact_force"], scale)
     moving = Moved(turn.s, turn.v, turn.a, mass, dynamics.get("damping_ratio", 0.0), preload)
     compare_springs(beside, stated, moving, arm, speed)
+    lever = _slide_lever(stated, beside.design.mechanism, turn)
+    if lever is not None:
+        moment = greatest(np.abs(force * lever))
+        beside.metric("overturning_moment", moment, moment)
+        beside.check("overturning_moment", moment, moment)
+        beside.check("overturning_on_profile", moment, 1e3 * moment)
     peak = greatest(np.abs(torque))
     beside.add("metrics.forces.min_torque", forces.min_torque, least(torque), peak)
     beside.add("metrics.forces.max_torque", forces.max_torque, greatest(torque), peak)
@@ -262,6 +268,18 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
     # A chosen spring leaves exactly the least force, of which rounding is no more and no less.
     lowest = floor if abs(lowest - floor) <= ROUNDED * scale else lowest
     return lowest, found["max_contact_force"]
+
+
+def _slide_lever(stated: dict[str, Any], mechanism: Any, turn: Turn) -> Real | None:
+    """The moment on a slide by the force along it; None where there is no slide, or no overhang."""
+    follower = stated["follower"]
+    if follower["type"] == "translating_flat":
+        return turn.v - (mechanism.follower.offset or 0.0)
+    if follower["type"] != "translating_roller" or follower.get("overhang") is None:
+        return None
+    offset = mechanism.follower.offset
+    d = math.sqrt(mechanism.prime_radius**2 - offset**2)
+    return (turn.v - offset) / (d + turn.s) * (follower["overhang"] - turn.s)
 
 
 NOTHING = 1e-6

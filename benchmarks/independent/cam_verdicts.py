@@ -63,6 +63,8 @@ def limits_of(stated: dict[str, Any]) -> dict[str, Limit]:
         found["contact_force"] = Limit(stated["dynamics"].get("least_force", 0.0), -1)
     if "dynamics" in stated and "min_frequency_ratio" in stated["dynamics"]:
         found["frequency_ratio"] = Limit(stated["dynamics"]["min_frequency_ratio"], -1)
+    if "overturning_moment" in limits:
+        found["overturning_moment"] = Limit(limits["overturning_moment"], 1)
     return found
 
 

@@ -154,8 +154,8 @@ COMPARED: dict[str, frozenset[str]] = {
             """
             metrics.size metrics.lift metrics.max_pressure_angle_rise metrics.max_pressure_angle_fall
             metrics.min_convex_radius metrics.min_concave_radius metrics.min_radius metrics.curvature_ratio
-            metrics.face_width metrics.groove_width metrics.length metrics.peak_velocity metrics.peak_acceleration
-            metrics.peak_jerk metrics.rms_acceleration metrics.peak_inertia_torque
+            metrics.overturning_moment metrics.face_width metrics.groove_width metrics.length metrics.peak_velocity
+            metrics.peak_acceleration metrics.peak_jerk metrics.rms_acceleration metrics.peak_inertia_torque
             metrics.forces.preload metrics.forces.least_preload metrics.forces.min_contact_force
             metrics.forces.max_contact_force metrics.forces.min_torque metrics.forces.max_torque
             metrics.forces.wall_changes metrics.forces.natural_frequency metrics.forces.frequency_ratio
@@ -178,7 +178,7 @@ COMPARED: dict[str, frozenset[str]] = {
             checks.meets_positions checks.meets_velocities checks.meets_accelerations checks.min_radius checks.convex
             checks.face_width checks.clears_pivot checks.pressure_angle checks.pressure_angle_fall
             checks.curvature_ratio checks.hub_radius checks.size checks.contact_force checks.contact_on_profile
-            checks.frequency_ratio checks.limit checks.passed
+            checks.frequency_ratio checks.overturning_moment checks.overturning_on_profile checks.limit checks.passed
             mechanism.program mechanism.conditions mechanism.profile mechanism.outer_wall mechanism.lower_wall
             mechanism.upper_wall mechanism.pitch_curve mechanism.smallest mechanism.roller_radius
             mechanism.best_law

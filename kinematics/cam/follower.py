@@ -184,12 +184,17 @@ class TranslatingFlat:
     ----------
     base_radius : float
         Of the circle that the face touches at s = 0.
+    offset : float
+        Distance of the slide's axis from the cam's centre; positive to the side on which a rise touches the face.
     """
 
     base_radius: float
+    offset: float = 0.0
 
     def __post_init__(self) -> None:
         _check_base(self.base_radius)
+        if not math.isfinite(self.offset):
+            raise DimensionError("offset", "finite", self.offset)
 
     @property
     def span(self) -> tuple[float, float]:

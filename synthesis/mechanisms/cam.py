@@ -68,7 +68,7 @@ class GivenFollower(Statement):
 
     type: FollowerType
     roller_radius: Annotated[NonNegative, LENGTH] | None = Field(default=None, description="0 for a knife edge.")
-    offset: Coordinate | None = Field(default=None, description="Of a translating roller's slide; 0 if left out.")
+    offset: Coordinate | None = Field(default=None, description="Of a translating follower's slide; 0 if left out.")
     arm: PositiveLength | None = None
     pivot_distance: PositiveLength | None = None
     face_offset: Coordinate | None = Field(default=None, description="0 if left out.")

@@ -105,7 +105,8 @@ def _holder(scene: CamScene, touching: complex, centre: complex, reach: float) -
     foot = complex(touching.real)
     half = max(HALF_FACE * scene.base_radius, BEYOND_CONTACT * abs(touching.imag))
     face = np.array([foot - 1j * half, foot + 1j * half])
-    return [Stroke(face, COUPLER, 3.0), Stroke(np.array([foot, foot + reach]), COUPLER, 3.0)]
+    stem = foot + 1j * scene.stem
+    return [Stroke(face, COUPLER, 3.0), Stroke(np.array([stem, stem + reach]), COUPLER, 3.0)]
 
 
 def barrel_animation(design: BarrelCamDesign, problem: CamProblem, title: str) -> bytes:

@@ -97,6 +97,12 @@ class CamScene:
         follower = self.follower
         return complex(follower.pivot_distance) if isinstance(follower, OscillatingRoller | OscillatingFlat) else None
 
+    @property
+    def stem(self) -> float:
+        """Height of a face's stem over the cam's centre, at cam angle 0."""
+        follower = self.follower
+        return -self.sense * follower.offset if isinstance(follower, TranslatingFlat) else 0.0
+
     @cached_property
     def held(self) -> list[tuple[complex, complex]]:
         """What carries the contact at cam angle 0, as lines: an arm, or a flat face and its arm; none for a stem."""

@@ -165,7 +165,7 @@ def _follower(scene: CamScene, viewport: Viewport) -> Element:
         group.add(circle(viewport.point(centre), radius, fill="#fff", fill_opacity=0.7))
         group.add(circle(viewport.point(centre), 2.5, fill=COUPLER))
     elif scene.pivot is None:
-        foot = complex(scene.profile[0].real)
+        foot = complex(scene.profile[0].real, scene.stem)
         group.add(*_stem(viewport, foot, foot + reach))
     if scene.pivot is not None:
         at = viewport.point(scene.pivot)

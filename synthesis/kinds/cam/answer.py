@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -31,12 +30,10 @@ from synthesis.kinds.cam.excesses import warning_of
 from synthesis.kinds.cam.followers import RateRange
 from synthesis.kinds.cam.loads import (
     arm_length,
-    follower_load,
-    greatest_rpm,
+    held,
     least_rate,
     radians_a_second,
     weakest_contact,
-    with_spring,
 )
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.segments import Move
@@ -120,28 +117,19 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
     """Contact force and torque of the follower, with spring and least preload where the client leaves them free."""
     if problem.dynamics is None:
         return None
-    stated = problem
-    problem, spring = with_spring(problem, program)
-    dynamics = problem.dynamics
+    stated, pressed = problem, held(problem, program)
+    problem, running, spring, top_rpm = pressed.problem, pressed.running, pressed.spring, pressed.top_rpm
+    dynamics, load, arm = problem.dynamics, running.load, arm_length(problem)
     assert dynamics is not None
-    load, speed = follower_load(problem)
-    arm = arm_length(problem)
-    groove, floor = problem.grooved, dynamics.least_force * arm
-    top_rpm = greatest_rpm(stated)
-    alone = RunningCam(program, replace(load, preload=0.0), speed)
-    least = alone.least_preload(floor)
-    if top_rpm is not None:
-        least = max(least, floor - weakest_contact(program, alone.load, top_rpm).force)
-    preload = least if dynamics.preload is None and not groove else load.preload
-    running = RunningCam(program, replace(load, preload=preload), speed)
+    groove = problem.grooved
     force, torque = running.force_extremes, running.torque_extremes
     over_speeds = None if top_rpm is None else _over_speeds(running, top_rpm, arm)
     changes = np.unique(np.degrees(running.reversals()).round(9)).tolist() if groove else None
     damping = dynamics.damping_ratio
     train, warning = train_vibration(problem, running)
     return CamForces(
-        preload=preload / arm,
-        least_preload=least / arm,
+        preload=load.preload / arm,
+        least_preload=pressed.least_preload / arm,
         min_contact_force=force.least / arm,
         max_contact_force=force.greatest / arm,
         min_torque=torque.least,
@@ -151,7 +139,7 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         jump_speed=None if groove else _jump_rpm(running),
         natural_frequency=load.natural_frequency,
         damped_frequency=load.natural_frequency * math.sqrt(1.0 - damping**2) if damping < 1.0 else None,
-        frequency_ratio=load.natural_frequency / speed,
+        frequency_ratio=load.natural_frequency / running.speed,
         over_speeds=over_speeds,
         spring=None if spring is None or over_speeds is None else _choice(stated, spring, over_speeds, arm),
         train=train,

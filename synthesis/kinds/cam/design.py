@@ -32,7 +32,7 @@ class CamFollower(Answer):
 
     type: Literal["translating_roller", "oscillating_roller", "translating_flat", "oscillating_flat"]
     roller_radius: Length | None = optional()
-    offset: Length | None = optional("Of a translating roller's slide.")
+    offset: Length | None = optional("Of a translating follower's slide; of a face only where it is not 0.")
     arm: Length | None = optional()
     pivot_distance: Length | None = optional()
     face_offset: Length | None = optional()
@@ -220,6 +220,9 @@ class CamMetrics(Answer):
     min_concave_radius: Length | None = optional("None where it is convex.")
     curvature_ratio: float | None = optional("Pitch curve over roller.")
     face_width: Length | None = optional("Length that the contact sweeps.")
+    overturning_moment: Torque | None = optional(
+        "Greatest on the slide of a translating follower, where its forces and the lever are known."
+    )
     peak_velocity: Velocity
     peak_acceleration: Acceleration
     peak_jerk: Jerk | None = Field(description="Null where the acceleration jumps: the jerk has no bound there.")

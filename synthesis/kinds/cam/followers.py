@@ -43,6 +43,11 @@ class TranslatingRoller(Statement):
         description="Distance of the slide from the cam's centre; positive lowers the rise's pressure angle.",
     )
     prime_radius: PositiveLength | None = None
+    overhang: PositiveLength | None = Field(
+        default=None,
+        description="From the roller's centre at zero displacement to the near end of the slide's guide: the lever of "
+        "the lateral force, which shrinks with the displacement.",
+    )
 
 
 class OscillatingRoller(Statement):
@@ -65,6 +70,11 @@ class TranslatingFlat(Statement):
 
     type: Literal["translating_flat"]
     base_radius: PositiveLength | None = None
+    offset: Coordinate | Literal["free"] = Field(
+        default=0.0,
+        description="Distance of the slide's axis from the cam's centre, positive to the side on which a rise touches "
+        "the face; free: that of the least overturning moment.",
+    )
 
 
 class OscillatingFlat(Statement):

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, VELOCITY
+from synthesis.model.dimension import ACCELERATION, ANGLE, JERK, LENGTH, TORQUE, VELOCITY
 from synthesis.model.statement import NonNegative, PositiveLength, PositiveNumber, Sizable, Statement
 
 LimitAngle = Annotated[float, ANGLE, Field(strict=True, gt=0.0, le=85.0), Sizable]
@@ -32,6 +32,11 @@ class CamLimits(Statement):
     hub_radius: Annotated[NonNegative, LENGTH] = Field(default=0.0, description="The base circle is at least as large.")
     size: PositiveLength | None = Field(
         default=None, description="Greatest prime radius (roller) or base radius (face)."
+    )
+    overturning_moment: Annotated[PositiveNumber, TORQUE] | None = Field(
+        default=None,
+        description="Greatest moment on the slide of a translating follower: contact force times the distance from the "
+        "slide's axis under a face, lateral force times its lever to the guide of a roller.",
     )
     velocity: Annotated[PositiveNumber, VELOCITY] | None = Field(
         default=None,

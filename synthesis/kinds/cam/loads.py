@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 from kinematics.cam.dynamics import FollowerLoad, RunningCam, WeakestContact
 from kinematics.cam.program import Program
@@ -85,3 +86,32 @@ def with_spring(problem: CamProblem, program: Program) -> tuple[CamProblem, Spri
     spring = best_spring(program, mass * arm**2, dynamics.damping_ratio, demands)
     chosen = dynamics.model_copy(update={"spring_rate": spring.rate / arm**2})
     return problem.model_copy(update={"dynamics": chosen}), spring
+
+
+@dataclass(frozen=True)
+class Held:
+    """A follower that is pressed to its cam: the problem with a number for its spring, and what runs.
+
+    ``least_preload`` keeps the least force, up to ``top_rpm`` where that is a number; ``spring`` is the chosen one.
+    """
+
+    problem: CamProblem
+    running: RunningCam
+    least_preload: float
+    top_rpm: float | None
+    spring: Spring | None
+
+
+def held(stated: CamProblem, program: Program) -> Held:
+    """The follower with its spring, and the least preload where the client leaves it free."""
+    problem, spring = with_spring(stated, program)
+    dynamics = problem.dynamics
+    assert dynamics is not None
+    load, speed = follower_load(problem)
+    floor, top_rpm = dynamics.least_force * arm_length(problem), greatest_rpm(stated)
+    alone = RunningCam(program, replace(load, preload=0.0), speed)
+    least = alone.least_preload(floor)
+    if top_rpm is not None:
+        least = max(least, floor - weakest_contact(program, alone.load, top_rpm).force)
+    preload = least if dynamics.preload is None and not problem.grooved else load.preload
+    return Held(problem, RunningCam(program, replace(load, preload=preload), speed), least, top_rpm, spring)

@@ -180,7 +180,7 @@ def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
     return CamMechanism(
         follower=CamFollower(
             type=follower_type(cam.follower),
-            **{name: getattr(cam.follower, name) for name in dimensions_of(type(cam.follower))},
+            **_dimensions(cam.follower),
         ),
         prime_radius=cam.size if roller else None,
         base_radius=None if roller else cam.size,
@@ -190,6 +190,14 @@ def cam_mechanism(cam: Cam, angle: Real, groove: bool = False) -> CamMechanism:
         pitch_curve=_curve(degrees, cam.pitch_curve(angle)),
         program=_table(cam.program, angle, unit),
     )
+
+
+def _dimensions(follower: core.Follower) -> dict[str, float]:
+    """A follower's own dimensions; the offset of a face changes nothing on the cam, and is told where there is one."""
+    own = {name: getattr(follower, name) for name in dimensions_of(type(follower))}
+    if isinstance(follower, core.TranslatingFlat) and follower.offset == 0.0:
+        del own["offset"]
+    return own
 
 
 def barrel_mechanism(barrel: BarrelCam, rotation: Literal["ccw", "cw"], angle: Real) -> BarrelCamMechanism:

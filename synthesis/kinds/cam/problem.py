@@ -14,6 +14,7 @@ from synthesis.kinds.cam.followers import (
     OscillatingFlat,
     RateRange,
     TranslatingFlat,
+    TranslatingRoller,
     follower_contradictions,
 )
 from synthesis.kinds.cam.limits import CamLimits
@@ -172,6 +173,7 @@ class CamProblem(StatedProblem):
             *follower_contradictions(self.follower),
             *self._inputs(),
             *self._limits(),
+            *self._overturning(),
         ]
         return contradictions or self.program.joint_contradictions(self.accept_discontinuity, self.grooved)
 
@@ -229,6 +231,31 @@ class CamProblem(StatedProblem):
                     "motions of least contact force are found for one speed; choose another criterion or leave it out"
                 )
                 contradictions.append(Contradiction("/dynamics/max_rpm", detail))
+        return contradictions
+
+    def _overturning(self) -> list[Contradiction]:
+        """A moment needs forces, and a slide whose lever is known."""
+        follower, contradictions = self.follower, []
+        forces = self.dynamics is not None
+        if isinstance(follower, TranslatingRoller) and follower.overhang is not None:
+            if not forces:
+                detail = "it is the lever of a force; state dynamics, or leave it out"
+                contradictions.append(Contradiction("/follower/overhang", detail))
+            elif follower.overhang <= max(max(pair) for pair in self.program.heights()):
+                detail = "must be more than the highest displacement, or the roller would run into the guide"
+                contradictions.append(Contradiction("/follower/overhang", detail))
+        if isinstance(follower, TranslatingFlat) and follower.offset == "free" and not forces:
+            detail = "it is found by the overturning moment; state dynamics, or the offset"
+            contradictions.append(Contradiction("/follower/offset", detail))
+        if self.limits.overturning_moment is None:
+            return contradictions
+        place = "/limits/overturning_moment"
+        if not isinstance(follower, TranslatingRoller | TranslatingFlat):
+            contradictions.append(Contradiction(place, "only a slide on a radial cam is overturned; leave it out"))
+        elif not forces:
+            contradictions.append(Contradiction(place, "a moment needs the follower's mass and spring: state dynamics"))
+        elif isinstance(follower, TranslatingRoller) and follower.overhang is None:
+            contradictions.append(Contradiction("/follower/overhang", "the lever of the moment that is limited"))
         return contradictions
 
     def _limits(self) -> list[Contradiction]:

@@ -68,13 +68,15 @@ class RollerLimits:
 
     ``rise`` and ``fall`` are the greatest pressure angles (radians) for v ≥ 0 and v ≤ 0; ``pitch_radius`` is the
     least |radius of curvature| of the pitch curve, 0 without a limit; ``least`` is the smallest prime radius that
-    hub and roller leave room for.
+    hub and roller leave room for. ``moment`` is the share of the greatest overturning moment of a slide that the
+    tangent of the pressure angle is multiplied with, with its sign.
     """
 
     rise: float
     fall: float
     pitch_radius: float
     least: float
+    moment: Callable[[Motion], Real] | None = None
 
     @property
     def angles(self) -> tuple[tuple[int, float], ...]:
@@ -123,6 +125,8 @@ def free_offset(program: Program, limits: RollerLimits, range_of_offset: tuple[f
     motion = critical_motion(program, *_angle_functions(limits))
 
     def radius(offset: float) -> float:
+        if limits.moment is not None:
+            return math.hypot(_least_height(program, offset, by_angle), offset)
         return math.hypot(_least_height_at(motion, offset, by_angle, program), offset)
 
     best = _minimized(radius, low, high)
@@ -150,7 +154,15 @@ def _needed_height(share: float) -> Callable[[Motion], Real]:
 
 
 def _least_height(program: Program, offset: float, limits: RollerLimits) -> float:
-    return _least_height_at(critical_motion(program, *_angle_functions(limits)), offset, limits, program)
+    functions = _angle_functions(limits)
+    if limits.moment is not None:
+        functions += [_needed_by_moment(sign, offset, limits.moment) for sign in (1.0, -1.0)]
+    return _least_height_at(critical_motion(program, *functions), offset, limits, program)
+
+
+def _needed_by_moment(sign: float, offset: float, moment: Callable[[Motion], Real]) -> Callable[[Motion], Real]:
+    """±share · (v − e) − s."""
+    return lambda motion: sign * moment(motion) * (motion.v - offset) - motion.s
 
 
 def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, program: Program) -> float:
@@ -161,6 +173,8 @@ def _least_height_at(motion: Motion, offset: float, limits: RollerLimits, progra
         on = _on(sign, motion.v)
         if on.any():
             needed.append(float((np.abs(motion.v - offset) / math.tan(angle) - motion.s)[on].max()))
+    if limits.moment is not None:
+        needed.append(float((np.abs(limits.moment(motion) * (motion.v - offset)) - motion.s).max()))
     return max(needed)
 
 

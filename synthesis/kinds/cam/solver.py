@@ -41,9 +41,10 @@ from synthesis.kinds.cam.followers import (
     TranslatingRoller,
 )
 from synthesis.kinds.cam.loads import arm_length
-from synthesis.kinds.cam.measured_forces import measured_contact
+from synthesis.kinds.cam.measured_forces import measured_contact, overturning_checks
 from synthesis.kinds.cam.mechanism import cam_mechanism, profile_angles, refined
 from synthesis.kinds.cam.optimal import STEPS
+from synthesis.kinds.cam.overturning import face_offset, moment_share, overturning_moment
 from synthesis.kinds.cam.problem import CamProblem
 from synthesis.kinds.cam.reproduction import REPRODUCED
 from synthesis.kinds.cam.resolution import resolved
@@ -126,6 +127,7 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
     metrics = _metrics(problem, cam, measured)
     held = [*force_checks(problem, metrics.forces), *measured_contact(problem, mechanism, metrics.forces)]
+    held += overturning_checks(problem, mechanism, metrics)
     verification = Verification.of([*verification.checks, *held])
     design = CamDesign(
         mechanism=mechanism,
@@ -241,6 +243,7 @@ def _sized(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
         rise = math.radians(limits.pressure_angle)
         fall = math.radians(limits.falling_pressure_angle)
         roller_limits = RollerLimits(rise, fall, least_pitch_radius(limits, rollers[0]), least)
+        roller_limits = replace(roller_limits, moment=moment_share(problem, program))
         size: Size | None
         core_follower: core.Roller
         if isinstance(follower, TranslatingRoller):
@@ -295,7 +298,8 @@ def _flat_cam(problem: CamProblem, program: Program) -> tuple[Cam, Size] | None:
     if isinstance(follower, TranslatingFlat):
         size = Size(follower.base_radius, True) if follower.base_radius else None
         size = size or translating_flat(program, least_face_radius(problem), least)
-        core_follower = core.TranslatingFlat(size.radius)
+        offset = face_offset(problem, program) if follower.offset == "free" else float(follower.offset)
+        core_follower = core.TranslatingFlat(size.radius, offset)
     else:
         assert isinstance(follower, OscillatingFlat)
         pivot, face, sense = follower.pivot_distance, follower.face_offset, follower.sense
@@ -335,5 +339,6 @@ def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
         min_concave_radius=None if math.isinf(measured.concave_radius) else measured.concave_radius,
         curvature_ratio=measured.curvature_ratio if roller else None,
         face_width=None if roller else measured.sweep,
+        overturning_moment=overturning_moment(problem, cam),
         **motion_metrics(problem, program),
     )

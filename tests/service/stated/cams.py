@@ -114,6 +114,7 @@ CAM_ROWS: dict[str, Any] = {
     "follower<TranslatingRoller>.roller_radius.max": Row(7.0, {"follower.roller_radius": {"min": 5.0, "max": 8.0}}),
     "follower<TranslatingRoller>.offset": 3.0,
     "follower<TranslatingRoller>.prime_radius": 60.0,
+    "follower<TranslatingRoller>.overhang": Row(70.0, {**LOADED, "follower.overhang": 60.0}),
     "follower<OscillatingRoller>.type": Row("translating_roller", ARM),
     "follower<OscillatingRoller>.roller_radius": Row(6.0, ARM),
     "follower<OscillatingRoller>.roller_radius.min": Row(
@@ -134,6 +135,7 @@ CAM_ROWS: dict[str, Any] = {
     "follower<OscillatingRoller>.prime_radius": Row(70.0, ARM),
     "follower<TranslatingFlat>.type": Row("translating_roller", FLAT),
     "follower<TranslatingFlat>.base_radius": Row(90.0, FLAT),
+    "follower<TranslatingFlat>.offset": Row(3.0, FLAT),
     "follower<OscillatingFlat>.type": Row("translating_flat", FLAT_ARM),
     "follower<OscillatingFlat>.pivot_distance": Row(210.0, FLAT_ARM),
     "follower<OscillatingFlat>.face_offset": Row(5.0, FLAT_ARM),
@@ -150,6 +152,7 @@ CAM_ROWS: dict[str, Any] = {
     "limits.face_width": Row(100.0, FLAT),
     "limits.hub_radius": 20.0,
     "limits.size": 60.0,
+    "limits.overturning_moment": Row(1500.0, {**LOADED, "follower.overhang": 60.0}),
     "limits.velocity": Row(100.0, AUTO),
     "limits.acceleration": Row(200.0, AUTO),
     "limits.jerk": Row(2000.0, AUTO),

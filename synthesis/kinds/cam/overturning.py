@@ -1,0 +1,73 @@
+"""The moment that tilts a translating follower in its guide, and the offset of the slide that it steers.
+
+Under a flat face the contact force F acts beside the slide's axis, at the distance v − e: the moment is F (v − e). A
+roller is pushed sideways with F tan φ = F (v − e)/(d + s), and the lever of that to the guide shrinks with the
+displacement: F (v − e)(l − s)/(d + s), l the overhang at s = 0. F acts along the motion and depends neither on the
+offset e nor on the size of the cam. So the moment of a face is convex in e, and a limit M on that of a roller asks for
+d ≥ |v − e| |F| (l − s)/M − s, as a pressure angle does whose tangent is M/(|F| (l − s)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from kinematics.cam import follower as core
+from kinematics.cam.extremes import extremes
+from kinematics.cam.pieces import Motion
+from kinematics.cam.profile import Cam
+from kinematics.cam.program import Program
+from synthesis.kinds.cam.followers import TranslatingRoller
+from synthesis.kinds.cam.loads import held
+from synthesis.kinds.cam.problem import CamProblem
+
+Real = NDArray[np.float64]
+
+FOUND = 1e-11
+"""Accuracy of the offset of a face, as a share of the range of its contact."""
+
+
+def overturning_moment(problem: CamProblem, cam: Cam) -> float | None:
+    """The greatest moment on the slide of a finished cam's follower; None where it has no slide, lever or forces."""
+    if problem.dynamics is None:
+        return None
+    running, follower, program = held(problem, cam.program).running, cam.follower, cam.program
+    overhang = getattr(problem.follower, "overhang", None)
+    if isinstance(follower, core.TranslatingFlat):
+        face = follower
+
+        def moment(at: Real) -> Real:
+            return running.force(at) * (face.face(program.motion(at)).h1 - face.offset)
+    elif isinstance(follower, core.TranslatingRoller) and overhang is not None:
+        roller = follower
+
+        def moment(at: Real) -> Real:
+            motion = program.motion(at)
+            return np.asarray(running.force(at) * np.tan(roller.pressure_angle(motion)) * (overhang - motion.s))
+    else:
+        return None
+    return extremes(moment, program.breaks).largest
+
+
+def moment_share(problem: CamProblem, program: Program) -> Callable[[Motion], Real] | None:
+    """F (l − s)/M of a roller whose moment is limited: what |v − e|/(d + s) may not exceed the inverse of."""
+    limit, follower = problem.limits.overturning_moment, problem.follower
+    if limit is None or not isinstance(follower, TranslatingRoller) or follower.overhang is None:
+        return None
+    running, overhang = held(problem, program).running, follower.overhang
+    return lambda motion: running.load.force(motion, running.speed) * (overhang - motion.s) / limit
+
+
+def face_offset(problem: CamProblem, program: Program) -> float:
+    """The offset of a face of least overturning moment, which is a greatest value of straight lines in it: global."""
+    running, v = held(problem, program).running, program.peaks[1]
+
+    def moment(offset: float) -> float:
+        return extremes(lambda at: running.force(at) * (program.motion(at).v - offset), program.breaks).largest
+
+    span = v.greatest - v.least
+    best = minimize_scalar(moment, bounds=(v.least, v.greatest), method="bounded", options={"xatol": FOUND * span})
+    return float(best.x)
