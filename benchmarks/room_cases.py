@@ -115,6 +115,13 @@ ANSWERED: dict[str, Callable[[float], Room]] = {
     "50 circles in the way": lambda s: obstacles(
         *[((k % 10 - 5) * s, (k // 10 - 2) * s, 0.05 * s) for k in range(50)], link_width=0.01 * s
     ),
+    "6000 corners in the way": lambda s: obstacles(
+        *[star((k % 3 - 1) * 3 * s, (k // 3) * 3 * s, 0.3 * s, 490) for k in range(6)]
+    ),
+    "6000 corners beside the cycle": lambda s: obstacles(
+        *[comb((k % 3 - 1) * 4 * s, (k // 3) * 9 * s - 6 * s, 1.5 * s, 240) for k in range(6)], over="cycle",
+    ),
+    "zones of 3000 corners": lambda s: pivots(*[star(x, y, 3 * s, 499) for x, y in ((0.0, 0.0), (s, 0.0), (0.0, s))]),
     "a tiny box": lambda s: {"box": [[0, 0], [1e-9, 1e-9]]},
     "a box far away": lambda s: {"box": [[9e8, 9e8], [1e9, 1e9]]},
     "a box of the world": lambda s: {"box": [[-1e9, -1e9], [1e9, 1e9]]},
@@ -132,8 +139,7 @@ ANSWERED: dict[str, Callable[[float], Room]] = {
         "box": [[-6 * s, -6 * s], [6 * s, 6 * s]], "over": "cycle", "link_width": 1e-9,
     },
 }  # fmt: skip
-"""Rooms that a statement may have, and that leave most linkages no place. None has more than 1000
-corners: with 6000, all that the body of a request holds, the sweeps of a search can take minutes."""
+"""Rooms that a statement may have, and that leave most linkages no place; of as many corners as a request holds."""
 
 
 def size_of(problem: dict[str, Any]) -> float:

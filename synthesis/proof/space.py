@@ -182,7 +182,7 @@ def _kept(
 ) -> tuple[float, bool]:
     """The least distance of moving parts from fixed ones, and whether it is as much as is wanted."""
     pairs = [(n, len(moving) + k) for n in range(len(moving)) for k in range(len(fixed))]
-    found = swept(mechanism, [*moving, *fixed], pairs, *span, wanted)
+    found = swept(mechanism, [*moving, *fixed], pairs, *span, wanted, nearest="all")
     return min(pair.least for pair in found), all(pair.keeps for pair in found)
 
 

@@ -7,7 +7,7 @@ import shapely
 from kinematics.errors import DimensionError
 from kinematics.linkage import Fourbar, catalogue
 from kinematics.linkage.clearance import Part, free_inputs, free_ranges, swept
-from kinematics.linkage.clearance.outlines import distance
+from kinematics.linkage.clearance.outlines import distance, distances, stretches_of
 from kinematics.linkage.clearance.scene import Scene
 from kinematics.linkage.planar.drive import drive
 from tests.campaign import further
@@ -174,6 +174,42 @@ def test_distances_of_cores_are_those_of_shapely():
     assert seen == {(True, False), (False, False), (False, True)}
 
 
+def outline(rng, corners):
+    """A point, a bar, or a polygon with teeth, some of them as long as it is."""
+    spread = 10.0 ** rng.uniform(-2.0, 1.0)
+    if corners < 3:
+        return spread * (rng.normal(size=corners) + 1j * rng.normal(size=corners))
+    angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, corners))
+    return spread * rng.uniform(0.3, 1.0, corners) ** rng.integers(0, 3) * np.exp(1j * angles)
+
+
+def test_many_edges_are_as_far_apart_as_every_edge_says():
+    """Outlines of up to a thousand edges: the same number as of all pairs of edges, also where they meet or touch."""
+    rng = np.random.default_rng(8)
+    met = touched = 0
+    for _ in range(300):
+        cores = [outline(rng, int(count)) for count in 10.0 ** rng.uniform(0.0, 2.5, 2)]
+        cores[1] = cores[1] + rng.normal() * 3.0 + 1j * rng.normal()
+        if rng.random() < 0.2 and len(cores[1]) > 2:
+            cores[0] = cores[0] - cores[0][0] + cores[1][rng.integers(len(cores[1]))]  # a corner on a corner
+        vertices = np.concatenate(cores)
+        starts = np.array([0, len(cores[0]), len(vertices)])
+        # Quarter turns, since these leave nothing to rounding.
+        turn = 1j ** rng.integers(0, 4, (2, 1)) if rng.random() < 0.5 else np.ones((2, 1), np.complex128)
+        turn = turn.real.round() + 1j * turn.imag.round()
+        shift = rng.normal(size=(2, 1)) * (turn != 1.0) + 0j
+        parts, every = np.arange(2), np.zeros((1, 2), np.int64)
+        tree = stretches_of(vertices, starts)
+        found = distances(vertices, starts, parts, parts[None], every, turn, shift, tree)[0]
+        first, second = (turn[n, 0] * cores[n] + shift[n, 0] for n in range(2))
+        assert found == max(distance(first, second), -1e-6)
+        met += found == -1e-6
+        touched += found == 0.0
+    assert met > 50
+    assert touched > 0
+    assert met + touched < 250
+
+
 @pytest.mark.parametrize("name", EVERY)
 def test_least_distances_agree_with_a_dense_drive(name):
     rng, mechanism = one(name, 4)
@@ -195,6 +231,28 @@ def test_least_distances_agree_with_a_dense_drive(name):
         assert found.least == pytest.approx(dense, abs=5e-3 * scene.size)
         assert found.keeps == (found.least >= -1e-9 * scene.size)
         assert low <= found.at <= high
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_the_nearest_of_all_pairs_is_that_of_each(name):
+    """The same least distance, and the same word on whether all keep one that most, some or none of them keep."""
+    rng, mechanism = one(name, 6)
+    size = Scene(mechanism, bars(mechanism), [(0, 0)]).size
+    start = float(mechanism.reference_input)
+    reach = 0.05 * Scene(mechanism, bars(mechanism), [(0, 0)]).unit
+    posts = [Part("ground", size * (rng.normal(size=1) + 1j * rng.normal(size=1)), 0.02 * size) for _ in range(4)]
+    parts = [*bars(mechanism), *posts]
+    pairs = [(n, m) for n in range(len(parts) - 4) for m in range(len(parts) - 4, len(parts))]
+    each = swept(mechanism, parts, pairs, start, start + reach, 0.0)
+    distances = sorted(pair.least for pair in each)
+    for wanted in (distances[0] - 0.01 * size, distances[0] + 1e-6 * size, distances[len(pairs) // 2], 9.0 * size):
+        each = swept(mechanism, parts, pairs, start, start + reach, wanted)
+        every = swept(mechanism, parts, pairs, start, start + reach, wanted, nearest="all")
+        assert min(pair.least for pair in every) == pytest.approx(distances[0], abs=1e-7 * size)
+        assert all(pair.keeps for pair in every) == all(pair.keeps for pair in each)
+        for alone, together in zip(each, every, strict=True):
+            assert alone.keeps or not together.keeps
+            assert together.least >= alone.least - 1e-9 * size
 
 
 def test_a_crank_passes_a_point_at_a_distance_that_is_known():

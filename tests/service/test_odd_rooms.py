@@ -19,6 +19,7 @@ QUICK = [
     ("motion", "everything in the way"),
     ("motion", "tiny zones for all pivots"),
     ("motion", "a clearance larger than the box"),
+    ("dwell", "6000 corners in the way"),
 ]
 
 

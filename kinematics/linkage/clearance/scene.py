@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from kinematics.errors import DimensionError
 from kinematics.linkage.clearance.enclosures import approaches, by_closures, by_theorem
-from kinematics.linkage.clearance.outlines import MEETING, Complex, Indices, Part, Real, distances
+from kinematics.linkage.clearance.outlines import MEETING, Complex, Indices, Part, Real, distances, stretches_of
 from kinematics.linkage.planar.drive import drive
 from kinematics.linkage.planar.mechanism import Mechanism
 from kinematics.linkage.planar.program import program_of, unit_frame
@@ -71,6 +71,7 @@ class Scene:
         points = [(np.asarray(part.points, np.complex128) - self._origin) / self.size for part in parts]
         self._vertices = np.concatenate(points)
         self._starts = np.concatenate([[0], np.cumsum([len(own) for own in points])])
+        self._stretches = stretches_of(self._vertices, self._starts)
         # How far the vertices of a part are from each joint: a rotation about that joint moves them.
         self._reach = np.array([[np.abs(own - joint).max() for joint in place] for own in points])
         # A disc about a joint of its link is carried by every link of that joint.
@@ -114,10 +115,15 @@ class Scene:
         shift = pose.places[self._pins] - pose.turn * self._program.code.joints[0][self._pins, None]
         shift[0] = 0.0
         items = np.stack([pair, item], axis=1)
-        apart = distances(self._vertices, self._starts, self._links, self.pairs, items, pose.turn, shift)
+        cores = self._vertices, self._starts, self._links, self.pairs
+        apart = distances(*cores, items, pose.turn, shift, self._stretches)
         apart[~pose.valid[item]] = np.nan
         nearer = approaches(self._on, self._carries, self._reach, self.pairs, items, *self._moves(pose, halves))
         return self.size * apart - self._radii[pair], self.size * nearer
+
+    def reached(self, inputs: Real) -> NDArray[np.bool_]:
+        """Whether there is a position at each input."""
+        return self._pose(inputs).valid
 
     def _pose(self, inputs: Real) -> _Pose:
         code, links = self._program.code, self._program.links

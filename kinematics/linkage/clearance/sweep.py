@@ -8,7 +8,7 @@ is followed to its minimum. A part of the range that is still undecided at the l
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from kinematics.linkage.planar.mechanism import Mechanism
 FINEST = 1e-10
 """Half of a part at the limit of refinement, as :data:`scene.FIRST`: parts move by less in it than :data:`SURE` allows,
 so that what begins or ends at just the wanted distance is decided."""
+
+ENDS = 1e-7
+"""How far from its ends a range has positions, in the same units: an end may be a toggle, to rounding."""
 
 MOST = 400_000
 """Distances of pairs that are looked at in a sweep at most; what is undecided then stays so."""
@@ -36,6 +39,8 @@ bracket, where a minimum is known to rounding. Each time costs hardly more than 
 
 Interval = tuple[float, float]
 
+Nearest = Literal["each", "all", "none"]
+
 
 class Swept(NamedTuple):
     """What a pair of parts does over a range.
@@ -50,7 +55,7 @@ class Swept(NamedTuple):
     keeps : bool
         Whether the distance is at least the wanted one at every input of the range. A proof but for rounding.
     decided : bool
-        Whether that could be decided; undecided pairs do not keep it.
+        Whether that could be decided; undecided pairs do not keep it. Where there is no position at an end none is.
     """
 
     least: float
@@ -67,7 +72,7 @@ def swept(
     high: float,
     wanted: float,
     *,
-    nearest: bool = True,
+    nearest: Nearest = "each",
 ) -> list[Swept]:
     """How near pairs of parts come over a range of the input, and whether they keep a distance everywhere in it.
 
@@ -82,9 +87,10 @@ def swept(
         The range, absolute: radians, or positions along the input slide. On the reference's branch.
     wanted : float
         The distance that is to be kept, in length units; less than nothing allows outlines to overlap by as much.
-    nearest : bool
-        Whether the least distance is looked for. Without it that of the places that were looked at is told, no more of
-        them than it takes to decide.
+    nearest : str
+        Of which pairs the least distance is looked for: of ``each``, of the one that comes nearest of ``all``, or of
+        ``none``. Of the others that of the places that were looked at is told, no more of them than it takes to decide.
+        With ``all`` no more is decided than whether all of them keep the distance.
 
     Returns
     -------
@@ -105,7 +111,8 @@ def swept(
     pair = np.repeat(np.arange(count), len(centre))
     centre, half = np.tile(centre, count), np.tile(half, count)
     best, at = np.full(count, np.inf), np.full(count, np.nan)
-    decided = np.ones(count, np.bool_)
+    inside = min(ENDS * scene.unit, 0.5 * (high - low))
+    decided = np.full(count, scene.reached(np.array([low + inside, high - inside])).all())
     near: list[tuple[Indices, Real, Real]] = []
     looked = 0
     while len(pair):
@@ -116,18 +123,21 @@ def swept(
         order = order[known[order] & (here[order] < best[pair[order]])]
         best[pair[order]], at[pair[order]] = here[order], centre[order]
         least = np.where(known, np.maximum(here - bound, scene.overlaps[pair]), -np.inf)
-        open_to_nearest = least < best[pair] - COARSE * scene.size
+        open_to_nearest = least < _nearer_than(nearest, best)[pair] - COARSE * scene.size
         open_to_wanted = (least < wanted - slack) & (best[pair] >= wanted - slack)
+        if nearest == "all" and best.min() < wanted - slack:
+            decided[pair[open_to_wanted]] = False
+            open_to_wanted[:] = False
         near.append((pair[known], centre[known], here[known]))
-        more = (nearest & open_to_nearest) | open_to_wanted | ~known
+        more = open_to_nearest | open_to_wanted | ~known
         if looked + 2 * np.count_nonzero(more) > MOST:
             decided[pair[open_to_wanted | ~known]] = False
             break
         lost = more & (half <= FINEST * scene.unit)
         decided[pair[lost & (open_to_wanted | ~known)]] = False
         pair, centre, half = _halved(pair[more & ~lost], centre[more & ~lost], half[more & ~lost])
-    if nearest:
-        values, places = _nearest(scene, near, low, high)
+    if nearest != "none":
+        values, places = _nearest(scene, near, low, high, _nearer_than(nearest, best))
         nearer = values < best
         best[nearer], at[nearer] = values[nearer], places[nearer]
     keeps = decided & (best >= wanted - slack)
@@ -198,8 +208,20 @@ def _halved(pair: Indices, centre: Real, half: Real) -> tuple[Indices, Real, Rea
     return np.tile(pair, 2), np.concatenate([centre - quarter, centre + quarter]), np.tile(quarter, 2)
 
 
-def _nearest(scene: Scene, near: list[tuple[Indices, Real, Real]], low: float, high: float) -> tuple[Real, Real]:
-    """The least distance of each pair, from where it is least among the places that were looked at; and its input."""
+def _nearer_than(nearest: Nearest, best: Real) -> Real:
+    """The distance of each pair below which it is looked for."""
+    if nearest == "each":
+        return best
+    return np.full(len(best), best.min() if nearest == "all" else -np.inf)
+
+
+def _nearest(
+    scene: Scene, near: list[tuple[Indices, Real, Real]], low: float, high: float, than: Real
+) -> tuple[Real, Real]:
+    """The least distance of each pair, from where it is least among the places that were looked at; and its input.
+
+    Only from places hardly farther than ``than``, shape (pairs,).
+    """
     pair, centre, here = (np.concatenate(columns) for columns in zip(*near, strict=True))
     best, at = np.full(len(scene.pairs), np.inf), np.full(len(scene.pairs), np.nan)
     begins: list[tuple[int, float, float]] = []
@@ -209,8 +231,9 @@ def _nearest(scene: Scene, near: list[tuple[Indices, Real, Real]], low: float, h
         values = np.concatenate([[np.inf], here[own], [np.inf]])
         # Of equal ones the first: a corner that stands still is as near all the time.
         valley = (values[1:-1] < values[:-2]) & (values[1:-1] <= values[2:])
-        close = here[own] <= here[own].min(initial=np.inf) + COARSE * scene.size
-        lowest = valley & close & (here[own] > scene.overlaps[n])
+        close = here[own] <= than[n] + COARSE * scene.size
+        # Nothing is nearer than where cores meet.
+        lowest = valley & close & (here[own] > scene.overlaps[n]) & (than[n] > scene.overlaps[n])
         # The neighbours that were looked at bracket the minimum, and the ends of the range.
         ends = np.concatenate([[low], centre[own], [high]])
         begins += [(n, ends[k], ends[k + 2]) for k in np.flatnonzero(lowest)]

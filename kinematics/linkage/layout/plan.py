@@ -254,7 +254,7 @@ class _Scene:
         ]
         names = [plate.name for plate in plates] + [pin.name for pin in pins]
         numbers = [self._numbers(*pair) for pair in pairs]
-        results = swept(self._mechanism, self._outlines, numbers, self._low, self._high, self._gap, nearest=False)
+        results = swept(self._mechanism, self._outlines, numbers, self._low, self._high, self._gap, nearest="none")
         return [
             _Pair((names[one], names[other]), result.at, *pair)
             for pair, (one, other), result in zip(pairs, numbers, results, strict=True)
