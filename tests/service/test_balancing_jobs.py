@@ -289,6 +289,25 @@ OF_LINKAGES: dict[str, Statement] = {
     "/counterweights/links/1": {"counterweights": {"links": ["input", "ground"]}},
     "/counterweights": {"counterweights": {"radius": 10.0, "mass": 1.0}},
     "/counterweights/radius": {"counterweights": {"radius": -10.0}},
+    "/counterweights/reach": {"counterweights": {"reach": 10.0}},
+    "/counterweights/total_mass": {"goal": "minimize", "counterweights": {"reach": 10.0}},
+    "/objective": {"goal": "minimize", "objective": {}, "counterweights": {"total_mass": 1.0}},
+    "/caps": {"caps": {"drive": 1.0}},
+    "/objective/joint_forces/Q": {
+        "goal": "minimize",
+        "objective": {"joint_forces": {"Q": 1.0}},
+        "counterweights": {"total_mass": 1.0},
+    },
+    "/caps/joint_forces/Q": {
+        "goal": "minimize",
+        "caps": {"joint_forces": {"Q": 1.0}},
+        "counterweights": {"total_mass": 1.0},
+    },
+    "/dynamics/friction": {
+        "goal": "minimize",
+        "counterweights": {"total_mass": 1.0},
+        "dynamics": {**LINKAGE["dynamics"], "friction": {"pins": {"A": {"mu": 0.1, "radius": 5.0}}}},
+    },
 }
 
 
@@ -297,3 +316,42 @@ def test_what_contradicts_itself_of_a_linkage_is_refused_by_its_field(client: ht
     answer = client.post("/v1/jobs", json={"problem": {**LINKAGE, **OF_LINKAGES[path]}})
     assert answer.status_code == 422, answer.text
     assert {error["path"] for error in answer.json()["errors"]} == {f"/problem{path}"}
+
+
+def test_the_best_weights_are_measured_as_they_are_promised(client: httpx.Client) -> None:
+    """Peaks of an analysis of the answer, before and after, weighed as the objective says, are its value."""
+    problem = examples("balancing")[4]
+    job = finished(client, problem)
+    design = job["result"]["designs"][0]
+    metrics = design["metrics"]
+    assert design["verification"]["passed"]
+    assert metrics["bound"] <= metrics["value"]
+    assert metrics["gap"] <= 0.005
+    body = {"mechanism": design["mechanism"], "motion": {**problem["motion"], "steps": 2880}}
+    after = client.post("/v1/analyses", json={**body, "dynamics": design["dynamics"]}).raise_for_status().json()
+    before = client.post("/v1/analyses", json={**body, "dynamics": problem["dynamics"]}).raise_for_status().json()
+    first, last = (one["dynamics"]["extremes"] for one in (before, after))
+
+    def ratio(name: str) -> float:
+        peaks = [max(abs(one[name]["max"]), abs(one[name].get("min", 0.0))) for one in (last, first)]
+        return peaks[0] / peaks[1]
+
+    value = sum(weight * ratio(name) for name, weight in problem["objective"].items())
+    assert value == pytest.approx(metrics["value"], rel=1e-5)
+    assert ratio("drive") <= problem["caps"]["drive"] * 1.001
+    assert sum(weight["mass"] for weight in design["counterweights"]) <= problem["counterweights"]["total_mass"] * (
+        1.0 + 1e-9
+    )
+    root = ET.fromstring(client.get(f"/v1/jobs/{job['id']}/designs/0.svg").raise_for_status().text)
+    assert [mark for mark in root.iter() if mark.get("data-counterweight")]
+    told = client.get(f"/v1/jobs/{job['id']}/designs/0/forces").raise_for_status().json()["dynamics"]["extremes"]
+    assert told["shaking_force"]["max"] == pytest.approx(metrics["shaking_force"], rel=1e-3)
+
+
+def test_caps_that_cannot_be_kept_are_named(client: httpx.Client) -> None:
+    problem = {**examples("balancing")[4], "caps": {"shaking_moment": 0.05, "drive": 0.3}}
+    result = finished(client, problem)["result"]
+    assert result["designs"] == []
+    assert result["search"]["complete"]
+    assert "None exists" in result["summary"]
+    assert "shaking moment" in result["summary"]

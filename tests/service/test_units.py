@@ -11,7 +11,7 @@ CARRIED = {"body_travel_ratio", "body_turn_ratio"}
 PURE = {
     "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
     "Allocation": {"cost"},
-    "BalanceMetrics": {"value", "bound"},  # shares of what was before
+    "BalanceMetrics": {"value", "bound", "gap"},  # shares of what was before
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
     "CamLimits": {"curvature_ratio"},
@@ -26,7 +26,10 @@ PURE = {
     "ErrorExtreme": {"input"},
     "ExactDesign": {"rms_residual"},
     "FollowerDynamics": {"damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
+    "ForceCaps": {"shaking_force", "shaking_moment", "drive", "joint_forces"},  # over what they were
     "ForceCourse": {"table"},  # columns of several units
+    "ForceLevel": {"weight", "cap", "ratio"},
+    "ForceWeights": {"shaking_force", "shaking_moment", "drive", "joint_forces"},
     "FunctionConstraints": {"max_link_ratio", "max_joint_force_index"},
     "FunctionMetrics": {"link_ratio", "reach", "rms_residual", "quality", *CARRIED},
     "FunctionProblem": {"scale_limits"},  # of input and output alike

@@ -124,14 +124,27 @@ class GearedInertia(Answer):
     inertia: Inertia
 
 
+class ForceLevel(Answer):
+    """A quantity that counts in the objective or has a cap."""
+
+    name: str
+    norm: Literal["max", "rms"]
+    weight: float
+    cap: float | None = optional("Left out where it has none.")
+    ratio: float = Field(description="What it is with the counterweights over what it was.")
+
+
 class BalanceMetrics(Answer):
     """What shakes the frame before and after, and what that takes.
 
-    Peaks over the motion, of the inertia of the links alone.
+    Peaks over the motion: of what is balanced exactly, of the inertia of the links alone; of what is minimized, of all
+    that acts.
     """
 
-    value: float = Field(description="What is left, as a share of what was before.")
+    value: float = Field(description="What is left, as a share of what was before; of several, with their weights.")
     bound: float = Field(description="No counterweights that are allowed leave less.")
+    gap: float | None = optional("How far the value is above the bound, as a share of it, where it is minimized.")
+    levels: list[ForceLevel] = Field(description="What counts where it is minimized; empty otherwise.")
     shaking_force: Force
     unbalanced_shaking_force: Force
     shaking_moment: Torque

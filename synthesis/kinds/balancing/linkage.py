@@ -1,4 +1,4 @@
-"""Linkages: exact counterweights for force, or for force and moment, each verified by driving what is answered."""
+"""Linkages: counterweights, exact or the best there are, each verified by driving what is answered."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from functools import partial
 from synthesis.kinds.balancing.design import BalancedDesign, BalancingResult
 from synthesis.kinds.balancing.driven import Task, placed, task_of
 from synthesis.kinds.balancing.force_balance import Weight, balanceable, force_balances, unpinned
+from synthesis.kinds.balancing.minimize import NothingToReduce, minimum, setting_of
 from synthesis.kinds.balancing.moment_balance import NoMomentBalance, moment_balance
 from synthesis.kinds.balancing.problem import BalancingProblem
 from synthesis.kinds.balancing.verify_linkage import verify_linkage
+from synthesis.kinds.balancing.verify_minimum import verify_minimum
 from synthesis.model.kind import Progress
 from synthesis.outcome.sifting import Sifting
 
@@ -23,6 +25,8 @@ def solve_linkage(problem: BalancingProblem, progress: Progress) -> BalancingRes
     sifting = Sifting[BalancedDesign](problem)
     if placed(task.machine, task.positions(72)).smooth.sum() < LEAST_POSITIONS:
         return _answer(problem, sifting, "The mechanism cannot be assembled over this motion.", complete=False)
+    if problem.goal == "minimize":
+        return _least(problem, task, sifting, progress)
     if problem.goal == "force_and_moment":
         return _without_moment(problem, task, sifting)
     progress(0.2, "finding sets of links")
@@ -51,6 +55,34 @@ def _without_moment(problem: BalancingProblem, task: Task, sifting: Sifting[Bala
     )
     summary = f"{done}inertia against each crank." if sifting.passed else "No design was found."
     return _answer(problem, sifting, summary + sifting.reasons(), complete=False)
+
+
+def _least(
+    problem: BalancingProblem, task: Task, sifting: Sifting[BalancedDesign], progress: Progress
+) -> BalancingResult:
+    progress(0.1, "measuring the linkage")
+    try:
+        setting = setting_of(problem, task)
+    except NothingToReduce as error:
+        return _answer(problem, sifting, f"The {error} is zero without counterweights; leave it out.", complete=False)
+    progress(0.4, "solving the conic programs")
+    found = minimum(setting, task)
+    if found.violated:
+        share = 100.0 * next(iter(found.violated.values()))
+        caps = _listed([name.replace("_", " ") for name in found.violated])
+        summary = f"None exists: the caps cannot be kept together. With all raised by {share:.3g} % they could; {caps} "
+        return _answer(problem, sifting, summary + "would stand at theirs.", complete=True)
+    if not found.solved:
+        return _answer(problem, sifting, "No design was found: the program was not solved.", complete=False)
+    progress(0.8, "verifying")
+    sifting.sift([found], partial(verify_minimum, problem, task))
+    if not sifting.passed:
+        return _answer(problem, sifting, f"No design was found.{sifting.reasons()}", complete=False)
+    metrics = sifting.passed[0].metrics
+    summary = (
+        f"What counts is brought to {metrics.value:.4g}, and no counterweights bring it below {metrics.bound:.4g}."
+    )
+    return _answer(problem, sifting, summary, complete=True)
 
 
 def _answer(

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from kinematics.linkage.planar.mechanism import GROUND
 from synthesis.analyses.weighed import weighed_faults, weighed_request
 from synthesis.kinds.balancing.stated_weights import Counterweights
+from synthesis.mechanisms.link_bodies import token
 from synthesis.mechanisms.machine import machine_of
 from synthesis.model.dynamics import DynamicsBlock, LengthUnit
 from synthesis.model.motions import Sweep
 
 
 def linkage_faults(
-    stated: dict[str, Any], dynamics: DynamicsBlock, unit: LengthUnit, motion: Sweep, weights: Counterweights
+    stated: dict[str, Any],
+    dynamics: DynamicsBlock,
+    unit: LengthUnit,
+    motion: Sweep,
+    weights: Counterweights,
+    joints: Mapping[str, Iterable[str]],
 ) -> list[tuple[str, str]]:
-    """Faults of a mechanism, its masses, its motion and its counterweights, by their fields."""
+    """Faults of a mechanism, its masses, its motion and its counterweights, by their fields.
+
+    ``joints`` are names of joints by the fields that have them.
+    """
     faults = weighed_faults(stated, dynamics, unit)
     if faults:
         return faults
@@ -30,4 +40,9 @@ def linkage_faults(
     for n, link in enumerate(weights.links or []):
         if link not in moving:
             faults.append((f"/counterweights/links/{n}", f"no link in motion; they are {', '.join(moving)}"))
+    known = [joint for joint in mechanism.joints if sum(joint in listed for listed in mechanism.links.values()) > 1]
+    for path, named in joints.items():
+        for joint in named:
+            if joint not in known:
+                faults.append((f"{path}/{token(joint)}", f"no joint of two links; they are {', '.join(known)}"))
     return faults

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 
 from synthesis.kinds.balancing.stated_rotor import StatedRotor
-from synthesis.kinds.balancing.stated_weights import Counterweights
+from synthesis.kinds.balancing.stated_weights import Counterweights, ForceCaps, ForceWeights
 from synthesis.model.dynamics import DynamicsBlock
 from synthesis.model.motions import Sweep
 from synthesis.model.statement import Contradiction
@@ -30,7 +30,9 @@ FOURBAR: dict[str, Any] = {
 """A fourbar with masses, of the examples."""
 
 OF_ROTORS = ("masses", "bearing_readings", "influence", "rpm", "bearings", "rotor_mass", "max_grade", "correction")
-OF_LINKAGES = ("mechanism", "dynamics", "counterweights")
+OF_LINKAGES = ("mechanism", "dynamics", "counterweights", "objective", "caps")
+OF_EXACT = ("radius", "mass")
+OF_MINIMIZED = ("reach", "max_mass", "total_mass", "max_gyration", "max_disc_radius")
 
 
 class BalancingProblem(StatedRotor):
@@ -107,16 +109,26 @@ class BalancingProblem(StatedRotor):
                     },
                     "counterweights": {"density": 7800.0, "thickness": 25.0},
                 },
+                {
+                    "kind": "balancing",
+                    "object": "linkage",
+                    "goal": "minimize",
+                    **FOURBAR,
+                    "objective": {"shaking_force": 1.0, "shaking_moment": 0.5, "drive": 0.25},
+                    "caps": {"drive": 1.0},
+                    "counterweights": {"total_mass": 4.0, "reach": 150.0, "density": 7800.0, "thickness": 20.0},
+                },
             ]
         },
     )
 
     kind: Literal["balancing"]
     object: Literal["rotor", "linkage"]
-    goal: Literal["force", "force_and_moment"] = Field(
+    goal: Literal["force", "force_and_moment", "minimize"] = Field(
         default="force",
         description="Of a linkage. force: nothing shakes it but a moment. force_and_moment: neither, by gears on the "
-        "cranks of a fourbar whose coupler's centre of gravity is on the line of its pins.",
+        "cranks of a fourbar whose coupler's centre of gravity is on the line of its pins. minimize: what counts in "
+        "`objective` as little as the counterweights allow, with a proven bound.",
     )
     mechanism: dict[str, Any] | None = Field(default=None, description="A linkage, as in `POST /v1/analyses`.")
     motion: Sweep = Field(
@@ -129,6 +141,9 @@ class BalancingProblem(StatedRotor):
     counterweights: Counterweights = Field(
         default=Counterweights(), description="Of a linkage: which links may have one, and of what size."
     )
+
+    objective: ForceWeights = Field(default=ForceWeights(shaking_force=1.0), description="What is minimized.")
+    caps: ForceCaps = Field(default=ForceCaps(), description="What must be kept while the objective is minimized.")
 
     @property
     def force_units(self) -> Literal["si", "consistent"]:
@@ -160,7 +175,35 @@ class BalancingProblem(StatedRotor):
         # It brings the analysis core, for which the parsing of problems does not wait.
         from synthesis.kinds.balancing.linkage_faults import linkage_faults
 
+        joints = {
+            "/objective/joint_forces": self.objective.joint_forces,
+            "/caps/joint_forces": self.caps.joint_forces,
+        }
         faults = self.motion.faults() or linkage_faults(
-            self.mechanism, self.dynamics, self.length_unit, self.motion, self.counterweights
+            self.mechanism, self.dynamics, self.length_unit, self.motion, self.counterweights, joints
         )
-        return [Contradiction(path, detail) for path, detail in faults]
+        found = [Contradiction(path, detail) for path, detail in faults]
+        return found or self._goal_faults()
+
+    def _goal_faults(self) -> list[Contradiction]:
+        """Fields of another goal, and what a minimum needs."""
+        minimized, weights = self.goal == "minimize", self.counterweights
+        found = [
+            Contradiction(f"/counterweights/{name}", f"the goal {self.goal} has none; leave it out")
+            for name in (OF_EXACT if minimized else OF_MINIMIZED)
+            if getattr(weights, name) is not None
+        ]
+        if not minimized:
+            return found + [
+                Contradiction(f"/{name}", f"the goal {self.goal} has none; leave it out")
+                for name in ("objective", "caps")
+                if getattr(self, name) != type(self).model_fields[name].default
+            ]
+        if weights.total_mass is None and weights.max_mass is None:
+            detail = "unbounded: the more mass the less shakes; limit the mass of each weight, or of all"
+            found.append(Contradiction("/counterweights/total_mass", detail))
+        assert self.dynamics is not None
+        if self.dynamics.friction is not None:
+            detail = "the best weights are known without friction only; leave it out"
+            found.append(Contradiction("/dynamics/friction", detail))
+        return found

@@ -3,13 +3,40 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from synthesis.model.bodies import Name
 from synthesis.model.dimension import DENSITY, MASS
-from synthesis.model.statement import PositiveLength, PositiveNumber, Statement
+from synthesis.model.statement import NonNegative, PositiveLength, PositiveNumber, Statement
+
+
+class ForceWeights(Statement):
+    """How much each quantity counts, over what it is without weights."""
+
+    shaking_force: NonNegative = 0.0
+    shaking_moment: NonNegative = 0.0
+    drive: NonNegative = 0.0
+    joint_forces: dict[Name, NonNegative] = Field(default={}, max_length=20, description="By joint.")
+    norm: Literal["max", "rms"] = Field(
+        default="max", description="Whether a quantity is its peak, or the root of its mean square over the motion."
+    )
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not any([self.shaking_force, self.shaking_moment, self.drive, *self.joint_forces.values()]):
+            raise ValueError("something must count: give shaking_force, shaking_moment, drive or joint_forces a weight")
+        return self
+
+
+class ForceCaps(Statement):
+    """The greatest peak of each quantity, over what it is without weights."""
+
+    shaking_force: PositiveNumber | None = None
+    shaking_moment: PositiveNumber | None = None
+    drive: PositiveNumber | None = None
+    joint_forces: dict[Name, PositiveNumber] = Field(default={}, max_length=20, description="By joint.")
 
 
 class Counterweights(Statement):
@@ -32,6 +59,25 @@ class Counterweights(Statement):
     mass: Annotated[PositiveNumber, MASS] | None = Field(default=None, description="Of each weight; the radii follow.")
     density: Annotated[PositiveNumber, DENSITY] | None = None
     thickness: PositiveLength | None = None
+    reach: PositiveLength | None = Field(
+        default=None,
+        description="Where they are minimized: the greatest distance of a weight from the joint about which it is "
+        "told, by default the size of the linkage.",
+    )
+    max_mass: Annotated[PositiveNumber, MASS] | None = Field(
+        default=None, description="Where they are minimized: of each weight."
+    )
+    total_mass: Annotated[PositiveNumber, MASS] | None = Field(
+        default=None, description="Where they are minimized: of all weights together."
+    )
+    max_gyration: PositiveLength | None = Field(
+        default=None,
+        description="Where they are minimized: the greatest radius of gyration of a weight about the joint about which "
+        "it is told. Without it a weight may have as much inertia as serves, as a wide ring has.",
+    )
+    max_disc_radius: PositiveLength | None = Field(
+        default=None, description="Where they are minimized: the greatest radius of a disc."
+    )
 
     @model_validator(mode="after")
     def _one_size(self) -> Self:
@@ -39,6 +85,8 @@ class Counterweights(Statement):
             raise ValueError("give the radius or the mass; the other follows")
         if (self.density is None) != (self.thickness is None):
             raise ValueError("a disc has a density and a thickness; give both or none")
+        if self.max_disc_radius is not None and self.density is None:
+            raise ValueError("a disc has a density and a thickness; state them")
         if self.links is not None and len(set(self.links)) < len(self.links):
             raise ValueError("name each link once")
         return self

@@ -74,9 +74,7 @@ def verify_linkage(
     inertias: dict[str, float],
 ) -> BalancedDesign:
     """A linkage with its counterweights, measured; ``inertias`` are those of the geared links by name."""
-    assert problem.dynamics is not None
-    block = with_inertias(weighted(task.machine, problem.dynamics, weights), inertias)
-    answer = BalancedLinkage(skeleton=Skeleton.model_validate(skeleton_of(mechanism)))
+    answer, block = answer_of(problem, task, mechanism, weights, inertias)
     machine = machine_of_answer(problem, answer, block)
     count = max(POSITIONS, problem.motion.steps)
     # Also with an acceleration that matters as much as the speed.
@@ -97,6 +95,7 @@ def verify_linkage(
     metrics = BalanceMetrics(
         value=value,
         bound=0.0,
+        levels=[],
         shaking_force=last.force,
         unbalanced_shaking_force=first.force,
         shaking_moment=last.moment,
@@ -108,7 +107,7 @@ def verify_linkage(
     return BalancedDesign(
         mechanism=answer,
         dynamics=block,
-        counterweights=[_told(problem, task.machine, weight) for weight in weights],
+        counterweights=[told(problem, task.machine, weight) for weight in weights],
         geared=[
             GearedInertia(link=gear.second, against=gear.first, ratio=gear.ratio, inertia=inertias[gear.second])
             for gear in mechanism.gears
@@ -117,6 +116,19 @@ def verify_linkage(
         verification=Verification.of(checks),
         metrics=metrics,
     )
+
+
+def answer_of(
+    problem: BalancingProblem,
+    task: Task,
+    mechanism: Mechanism,
+    weights: Sequence[Weight],
+    inertias: dict[str, float],
+) -> tuple[BalancedLinkage, dict[str, Any]]:
+    """Mechanism and block of an answer."""
+    assert problem.dynamics is not None
+    block = with_inertias(weighted(task.machine, problem.dynamics, weights), inertias)
+    return BalancedLinkage(skeleton=Skeleton.model_validate(skeleton_of(mechanism))), block
 
 
 def machine_of_answer(problem: BalancingProblem, mechanism: BalancedLinkage, block: dict[str, Any]) -> Machine:
@@ -140,7 +152,7 @@ def _share(part: float, whole: float) -> float:
     return part / whole if whole > 0.0 else part
 
 
-def _told(problem: BalancingProblem, machine: Machine, weight: Weight) -> Counterweight:
+def told(problem: BalancingProblem, machine: Machine, weight: Weight) -> Counterweight:
     """A weight in the units of the answer."""
     assert problem.dynamics is not None
     mechanism, scale, stated = machine.mechanism, machine.scale, problem.counterweights

@@ -64,7 +64,30 @@ LINKAGE: dict[str, Any] = {
 }
 DISCS = {**LINKAGE, "counterweights": {"density": 7800.0, "thickness": 20.0}}
 
+LEAST = {
+    **LINKAGE,
+    "goal": "minimize",
+    "objective": {"shaking_force": 1.0, "shaking_moment": 0.5, "joint_forces": {"A": 0.2}},
+    "counterweights": {"total_mass": 2.0, "reach": 150.0, "density": 7800.0, "thickness": 20.0},
+}
+
 ROTOR_ROWS: dict[str, Any] = {
+    "objective": Row({"shaking_force": 1.0}, LEAST),
+    "objective.shaking_force": Row(0.5, LEAST),
+    "objective.shaking_moment": Row(1.0, LEAST),
+    "objective.drive": Row(1.0, LEAST),
+    "objective.joint_forces": Row({"B": 0.2}, LEAST),
+    "objective.norm": Row("rms", LEAST),
+    "caps": Row({"drive": 0.95}, LEAST),
+    "caps.shaking_force": Row(0.3, LEAST),
+    "caps.shaking_moment": Row(0.8, LEAST),
+    "caps.drive": Row(0.95, LEAST),
+    "caps.joint_forces": Row({"A": 0.9}, LEAST),
+    "counterweights.reach": Row(100.0, LEAST),
+    "counterweights.max_mass": Row(0.3, LEAST),
+    "counterweights.total_mass": Row(1.0, LEAST),
+    "counterweights.max_gyration": Row(160.0, LEAST),
+    "counterweights.max_disc_radius": Row(20.0, LEAST),
     "goal": Row("force_and_moment", LINKAGE),
     "mechanism": Row({**LINKAGE["mechanism"], "assembly": "crossed"}, LINKAGE),
     "motion": Row({"speed_rpm": 70.0}, LINKAGE),

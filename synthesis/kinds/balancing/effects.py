@@ -1,0 +1,103 @@
+"""What a counterweight does to the shaking force, the shaking moment, the drive and the joints: all of it is linear.
+
+A weight of mass μ, first moment s and moment of inertia J about a joint O of its link, S = s e^{iφ}, adds
+
+    to the force on the frame      −(μ a_O + S'') + μ g,                          S'' = (i α − ω²) S,
+    to its moment about c          −((O − c) × (μ a_O + S'') + S × a_O + J α) + (μ (O − c) + S) × g,
+    to the power of the drive      μ a_O·v_O + a_O·S' + v_O·S'' + J ω α − g·(μ v_O + S'),   S' = i ω S,
+
+by momentum and energy, and to the forces in the joints what the reactions to a unit of each say. So the quantities are
+sums of four numbers for each weight, whatever they are divided by (Demeulenaere, Verschuure, Swevers and De Schutter,
+A general and numerically efficient framework to design sector-type and cylindrical counterweights for balancing of
+planar linkages, J. Mech. Des. 132, 2010).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.bodies import body
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places, cross, dot
+from kinematics.dynamics.reactions import Reactions, reactions
+from synthesis.kinds.balancing.driven import pivot
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+PARAMETERS = 4
+"""Of a weight: mass, both components of the first moment, and the moment of inertia."""
+
+
+class Linear(NamedTuple):
+    """A quantity over positions: what it is without weights, shape (N,), and its change by each parameter, (K, N).
+
+    A force is complex; the others are real.
+    """
+
+    fixed: Complex
+    by: Complex
+
+    def at(self, parameters: Real) -> Complex:
+        """The quantity with weights, (..., N) for parameters of shape (..., K)."""
+        return np.asarray(self.fixed + parameters @ self.by)
+
+
+def quantities(machine: Machine, now: Places, links: Sequence[str], joints: Sequence[str]) -> dict[str, list[Linear]]:
+    """Shaking force and moment, the drive, and the forces in joints (on each link of the joint) by their names."""
+    found = reactions(machine, now)
+    force, moment, drive = [], [], []
+    gravity = np.asarray(machine.gravity)
+    rate = now.input[1]
+    for link in links:
+        place, velocity, acceleration = now.joints[pivot(machine.mechanism, link)]
+        arm = place - machine.about
+        _, omega, alpha = now.spins[link]
+        turn = now.turns[link][0]
+        none = np.zeros(len(rate))
+        rows = [(np.ones(len(rate)), 0j * turn, none), (none, turn, none), (none, 1j * turn, none)]
+        for mass, moved, inertia in [*rows, (none, 0j * turn, np.ones(len(rate)))]:
+            first, second = 1j * omega * moved, (1j * alpha - omega**2) * moved
+            forced = mass * acceleration + second
+            force.append(mass * gravity - forced)
+            moment.append(
+                cross(mass * arm + moved, gravity) - cross(arm, forced) - cross(moved, acceleration) - inertia * alpha
+            )
+            power = mass * dot(acceleration, velocity) + dot(acceleration, first) + dot(velocity, second)
+            power = power + inertia * omega * alpha - dot(gravity, mass * velocity + first)
+            drive.append(power / rate)
+    listed = {
+        "shaking_force": [Linear(found.shaking_force, np.array(force))],
+        "shaking_moment": [Linear(found.shaking_moment.astype(np.complex128), np.array(moment, np.complex128))],
+        "drive": [Linear(found.drive.astype(np.complex128), np.array(drive, np.complex128))],
+    }
+    if joints:
+        units = [unit for link in links for unit in _units(machine, now, link)]
+        for joint in joints:
+            listed[f"joint {joint}"] = [
+                Linear(on, np.array([unit.joints[joint][link] for unit in units]))
+                for link, on in found.joints[joint].items()
+            ]
+            for changed in listed[f"joint {joint}"]:
+                _as_parameters(changed.by)
+    return listed
+
+
+def _units(machine: Machine, now: Places, link: str) -> list[Reactions]:
+    """Reactions to a unit mass at O, to ones a unit beside it along x and y, and to a unit of inertia."""
+    about = complex(now.reference(pivot(machine.mechanism, link)))
+    bare = replace(machine, loads=(), pin_masses={}, bodies={})
+    parts = [body(1.0, about), body(1.0, about + 1.0), body(1.0, about + 1j), body(0.0, about, 1.0)]
+    return [reactions(replace(bare, bodies={link: part}), now) for part in parts]
+
+
+def _as_parameters(by: Complex) -> None:
+    """A mass beside O has a first moment and an inertia of 1 besides its mass: these are taken off, in place."""
+    for n in range(0, len(by), PARAMETERS):
+        by[n + 1] -= by[n] + by[n + 3]
+        by[n + 2] -= by[n] + by[n + 3]

@@ -1,0 +1,204 @@
+"""The conic program of the best counterweights on some positions of the motion.
+
+Variables are, in units of the linkage's mass and size, mass μ, first moment s and inertia J of each weight, and for
+each quantity that counts the level t that it reaches. The set of what can be built is convex:
+
+    J ≥ |s|²/μ + μ²/(2πρt)    a disc of density ρ and thickness t; with more inertia, a ring of the same mass,
+    |s| ≤ R μ                 its centre within reach,
+
+two rotated second-order cones and one. So is every goal: a largest magnitude over positions, or a root of the mean
+square. The dual value of the program bounds what any weights can reach, as more positions only raise it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.balancing.effects import PARAMETERS, Linear
+from synthesis.numerics.conic import Rows, Solution, minimized
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Level:
+    """A quantity that counts: its values over its unbalanced one, its weight in the cost, and its cap.
+
+    ``mean`` tells whether its root mean square is meant and not its largest magnitude.
+    """
+
+    name: str
+    values: Sequence[Linear]
+    weight: float
+    cap: float | None
+    mean: bool = False
+
+    def of(self, parameters: Real) -> Real:
+        """The level that weights reach, by positions: shape (..., N); of a mean, the same at all of them."""
+        reached = np.stack([np.abs(part.at(parameters)) for part in self.values])
+        if self.mean:
+            return np.asarray(np.sqrt((reached**2).mean(axis=-1, keepdims=True)).max(axis=0))
+        return np.asarray(reached.max(axis=0))
+
+    def reached(self, parameters: Real) -> Real:
+        """The level, shape (...)."""
+        return np.asarray(self.of(parameters).max(axis=-1))
+
+
+class Limits(NamedTuple):
+    """Of each weight: the greatest mass, the reach, 2πρt (infinite of a point mass), and the radius of gyration.
+
+    Of all: the total mass.
+
+    ``turning`` and ``carried`` tell of which weights the inertia and the mass count.
+    """
+
+    mass: Real
+    reach: Real
+    disc: Real
+    gyration: Real
+    total: float
+    turning: NDArray[np.bool_]
+    carried: NDArray[np.bool_]
+
+
+class Answer(NamedTuple):
+    """Parameters of all weights, the levels by the place of the quantity, and the solution of the program."""
+
+    parameters: Real
+    levels: Real
+    solution: Solution
+    excess: float
+
+
+def best_weights(levels: Sequence[Level], limits: Limits, at: Mapping[str, Sequence[int]], *, relaxed: bool) -> Answer:
+    """The best weights on the positions ``at`` of each quantity.
+
+    With ``relaxed`` all caps may be exceeded by one share, and the least such share is found instead.
+    """
+    links = len(limits.mass)
+    count = PARAMETERS * links
+    discs = [n for n in range(links) if limits.turning[n] and np.isfinite(limits.disc[n])]
+    total = count + len(levels) + len(discs) + 1
+    excess = total - 1
+    rows = [
+        *_sizes(limits, total),
+        *_inertias(limits, total, {n: count + len(levels) + k for k, n in enumerate(discs)}),
+    ]
+    for k, level in enumerate(levels):
+        column = count + k
+        if level.mean:
+            rows += [_mean(part, total, column) for part in level.values]
+        else:
+            rows += _largest(level, total, column, at[level.name])
+        if level.cap is not None:
+            matrix = np.zeros((1, total))
+            matrix[0, column] = 1.0
+            matrix[0, excess] = -level.cap
+            rows.append(Rows("nonnegative", matrix, np.array([level.cap])))
+    cost = np.zeros(total)
+    ends = np.zeros((1, total))
+    ends[0, excess] = -1.0
+    if relaxed:
+        cost[excess] = 1.0
+        rows.append(Rows("nonnegative", ends, np.zeros(1)))
+    else:
+        cost[count : count + len(levels)] = [level.weight for level in levels]
+        rows.append(Rows("zero", ends, np.zeros(1)))
+    solution = minimized(cost, rows)
+    x = solution.x
+    return Answer(x[:count], x[count : count + len(levels)], solution, float(x[excess]))
+
+
+def _sizes(limits: Limits, total: int) -> list[Rows]:
+    """Masses within their bounds, centres within reach."""
+    links = len(limits.mass)
+    bounds, offsets = [], []
+    for n in range(links):
+        for sign, bound in ((-1.0, 0.0), (1.0, float(limits.mass[n]))):
+            if math.isfinite(bound):
+                row = np.zeros(total)
+                row[PARAMETERS * n] = sign
+                bounds.append(row)
+                offsets.append(bound)
+    if math.isfinite(limits.total):
+        row = np.zeros(total)
+        row[0 : PARAMETERS * links : PARAMETERS] = 1.0
+        bounds.append(row)
+        offsets.append(limits.total)
+    reach = np.zeros((3 * links, total))
+    for n in range(links):
+        reach[3 * n, PARAMETERS * n] = -limits.reach[n]
+        reach[3 * n + 1, PARAMETERS * n + 1] = reach[3 * n + 2, PARAMETERS * n + 2] = -1.0
+    return [
+        Rows("nonnegative", np.array(bounds), np.array(offsets)),
+        Rows("second_order", reach, np.zeros(3 * links), 3),
+    ]
+
+
+def _inertias(limits: Limits, total: int, own: Mapping[int, int]) -> list[Rows]:
+    """J − j ≥ |s|²/μ and j ≥ μ²/(2πρt), j the disc's about its centre in columns ``own``; J = 0 where it is nothing."""
+    rows = []
+    for n in range(len(limits.mass)):
+        mass, inertia = PARAMETERS * n, PARAMETERS * n + 3
+        if not limits.turning[n]:
+            matrix = np.zeros((1, total))
+            matrix[0, inertia] = 1.0
+            rows.append(Rows("zero", matrix, np.zeros(1)))
+            continue
+        if math.isfinite(limits.gyration[n]):
+            matrix = np.zeros((1, total))
+            matrix[0, mass], matrix[0, inertia] = -(limits.gyration[n] ** 2), 1.0
+            rows.append(Rows("nonnegative", matrix, np.zeros(1)))
+        # |2 s|² + (J − j − μ)² ≤ (J − j + μ)²
+        cone = np.zeros((4, total))
+        cone[0, [inertia, mass]] = -1.0
+        cone[1, mass + 1] = cone[2, mass + 2] = -2.0
+        cone[3, inertia], cone[3, mass] = -1.0, 1.0
+        if n in own:
+            cone[0, own[n]] = cone[3, own[n]] = 1.0
+            disc = np.zeros((3, total))
+            disc[0, own[n]] = disc[2, own[n]] = -limits.disc[n]
+            disc[1, mass] = -2.0
+            rows.append(Rows("second_order", disc, np.array([1.0, 0.0, -1.0]), 3))
+        rows.append(Rows("second_order", cone, np.zeros(4), 4))
+    return rows
+
+
+def _largest(level: Level, total: int, column: int, at: Sequence[int]) -> list[Rows]:
+    """|q| ≤ t at positions: cones of a force, pairs of inequalities of what is a number."""
+    rows = []
+    listed = list(at)
+    for part in level.values:
+        fixed, by = np.take(part.fixed, listed), np.take(part.by, listed, axis=1)
+        if np.any(part.by.imag) or np.any(part.fixed.imag):
+            matrix = np.zeros((3 * len(listed), total))
+            offset = np.zeros(3 * len(listed))
+            matrix[0::3, column] = -1.0
+            matrix[1::3, : len(by)], offset[1::3] = -by.real.T, fixed.real
+            matrix[2::3, : len(by)], offset[2::3] = -by.imag.T, fixed.imag
+            rows.append(Rows("second_order", matrix, offset, 3))
+        else:
+            matrix = np.zeros((2 * len(listed), total))
+            matrix[:, column] = -1.0
+            matrix[: len(listed), : len(by)], matrix[len(listed) :, : len(by)] = by.real.T, -by.real.T
+            rows.append(Rows("nonnegative", matrix, np.concatenate([-fixed.real, fixed.real])))
+    return rows
+
+
+def _mean(part: Linear, total: int, column: int) -> Rows:
+    """The root mean square ≤ t: one cone, of the triangle of what the positions add up to."""
+    count = len(part.fixed)
+    stacked = np.concatenate([part.by, part.fixed[None]]).T
+    triangle = np.asarray(np.linalg.qr(np.concatenate([stacked.real, stacked.imag]) / math.sqrt(count), mode="r"))
+    matrix = np.zeros((1 + len(triangle), total))
+    matrix[0, column] = -1.0
+    matrix[1:, : len(part.by)] = -triangle[:, :-1]
+    return Rows("second_order", matrix, np.concatenate([[0.0], triangle[:, -1]]), 1 + len(triangle))

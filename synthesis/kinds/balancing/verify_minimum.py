@@ -1,0 +1,175 @@
+"""The proof of counterweights that minimize: the answer driven over the grid, its value above the bound and near it.
+
+The forces are the reactions of the answer's own linkage, solved joint by joint; the program had them from momentum and
+energy. What the weights are is measured on the answer as well.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.dynamics.balance import balance
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.reactions import Reactions, reactions
+from synthesis.kinds.balancing.design import BalancedDesign, BalanceMetrics, ForceLevel
+from synthesis.kinds.balancing.driven import Task, placed
+from synthesis.kinds.balancing.minimize import GRID, Minimum
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.verify_linkage import answer_of, machine_of_answer, told
+from synthesis.model.answer import Verification
+from synthesis.model.dimension import LENGTH, MASS
+from synthesis.proof.checks import at_least, at_most, tolerated
+
+Real = NDArray[np.float64]
+
+GAP = 5e-3
+"""Share of the value that the bound may be below it."""
+
+KEPT = 1e-3
+"""Share of a cap by which a peak may be above it."""
+
+NEARLY_NOTHING = 1e-6
+"""Value, as a share of the sum of the weights of the objective, that is nothing: a share of it means nothing."""
+
+AGREEMENT = 1e-6
+"""Share of the peak by which two routes to a force may differ."""
+
+BUILT = 1e-9
+"""Share by which masses and places may be beyond their limits: rounding."""
+
+
+class Measured(NamedTuple):
+    """Reactions over the grid; peaks of shaking force and moment and of the drive, and differences to a balance."""
+
+    found: Reactions
+    peaks: list[float]
+    differences: list[float]
+
+    def series(self, name: str) -> list[Real]:
+        """The magnitudes of a quantity where it is known."""
+        known = self.found.solved
+        if name == "shaking_force":
+            return [np.abs(self.found.shaking_force[known])]
+        if name == "shaking_moment":
+            return [np.abs(self.found.shaking_moment[known])]
+        if name == "drive":
+            return [np.abs(self.found.drive[known])]
+        return [np.abs(force[known]) for force in self.found.joints[name.removeprefix("joint ")].values()]
+
+    def level(self, name: str, norm: str) -> float:
+        """The peak of a quantity, or the root of its mean square."""
+        series = self.series(name)
+        if norm == "max":
+            return max(float(one.max()) for one in series)
+        return max(float(np.sqrt((one**2).mean())) for one in series)
+
+
+def verify_minimum(problem: BalancingProblem, task: Task, found: Minimum) -> BalancedDesign:
+    """A linkage with its best counterweights, measured."""
+    mechanism = task.machine.mechanism
+    answer, block = answer_of(problem, task, mechanism, found.weights, {})
+    grid = task.positions(max(GRID, problem.motion.steps))
+    before = _measured(task.machine, task, grid)
+    after = _measured(machine_of_answer(problem, answer, block), task, grid)
+    difference = max(
+        _share(off, max(first, last))
+        for one in (before, after)
+        for off, first, last in zip(one.differences, before.peaks, after.peaks, strict=True)
+    )
+    levels = _levels(problem, before, after)
+    value = math.fsum(level.weight * level.ratio for level in levels)
+    weighed = math.fsum(level.weight for level in levels)
+    gap = (value - found.bound) / value if value > NEARLY_NOTHING * weighed else 0.0
+    weights = [told(problem, task.machine, weight) for weight in found.weights]
+    stated, scale = problem.counterweights, task.machine.scale
+    checks = [
+        at_least("bound", value, found.bound),
+        tolerated("gap", gap, GAP),
+        tolerated("routes_agree", difference, AGREEMENT),
+    ]
+    for level in levels:
+        if level.cap is not None:
+            checks.append(at_most(f"max_{level.name.replace(' ', '_')}", level.ratio, level.cap, slack=KEPT))
+    masses = [weight.mass for weight in weights]
+    if stated.total_mass is not None:
+        checks.append(at_most("total_mass", math.fsum(masses), stated.total_mass, MASS, BUILT))
+    if stated.max_mass is not None and masses:
+        checks.append(at_most("mass", max(masses), stated.max_mass, MASS, BUILT))
+    if stated.reach is not None and weights:
+        checks.append(at_most("reach", max(weight.radius for weight in weights), stated.reach, LENGTH, BUILT))
+    if stated.max_gyration is not None and weights:
+        about = [(weight.mass, weight.inertia / scale**2 + weight.mass * weight.radius**2) for weight in weights]
+        gyration = max(math.sqrt(inertia / mass) if mass > 0.0 else math.inf for mass, inertia in about)
+        checks.append(at_most("gyration", gyration, stated.max_gyration, LENGTH, KEPT))
+    if stated.max_disc_radius is not None and weights:
+        radius = max(weight.disc_radius or 0.0 for weight in weights)
+        checks.append(at_most("disc_radius", radius, stated.max_disc_radius, LENGTH, BUILT))
+    discs = [(weight.inertia, stated.inertia(weight.mass, scale)) for weight in found.weights if weight.mass > 0.0]
+    if stated.density is not None and discs:
+        checks.append(at_least("inertia_over_disc", min(own / disc for own, disc in discs), 1.0, slack=BUILT))
+    metrics = BalanceMetrics(
+        value=value,
+        bound=found.bound,
+        gap=gap,
+        levels=levels,
+        shaking_force=after.level("shaking_force", "max"),
+        unbalanced_shaking_force=before.level("shaking_force", "max"),
+        shaking_moment=after.level("shaking_moment", "max"),
+        unbalanced_shaking_moment=before.level("shaking_moment", "max"),
+        drive=after.level("drive", "max"),
+        unbalanced_drive=before.level("drive", "max"),
+        added_mass=math.fsum(masses),
+    )
+    return BalancedDesign(
+        mechanism=answer,
+        dynamics=block,
+        counterweights=weights,
+        geared=[],
+        verification=Verification.of(checks),
+        metrics=metrics,
+    )
+
+
+def _levels(problem: BalancingProblem, before: Measured, after: Measured) -> list[ForceLevel]:
+    """Each quantity that counts or has a cap; a cap is of the peak, also where means count."""
+    objective, caps = problem.objective, problem.caps
+    names = ["shaking_force", "shaking_moment", "drive"]
+    listed = [(name, getattr(objective, name), getattr(caps, name)) for name in names]
+    for joint in {**objective.joint_forces, **caps.joint_forces}:
+        listed.append((f"joint {joint}", objective.joint_forces.get(joint, 0.0), caps.joint_forces.get(joint)))
+    levels = []
+    for name, weight, cap in listed:
+        together = objective.norm == "max"
+        if weight > 0.0:
+            ratio = after.level(name, objective.norm) / before.level(name, objective.norm)
+            own = cap if together else None
+            levels.append(ForceLevel(name=name, norm=objective.norm, weight=weight, cap=own, ratio=ratio))
+        if cap is not None and not (weight > 0.0 and together):
+            ratio = after.level(name, "max") / before.level(name, "max")
+            levels.append(ForceLevel(name=name, norm="max", weight=0.0, cap=cap, ratio=ratio))
+    return levels
+
+
+def _measured(machine: Machine, task: Task, grid: Real) -> Measured:
+    """A machine over the grid, by both routes."""
+    now = placed(machine, grid, task.speed, task.acceleration)
+    unit = 1.0 if not machine.mechanism.driven_by_slide else 1.0 / machine.scale
+    paced = placed(machine, grid, unit)
+    found = reactions(machine, now)
+    check = balance(machine, now, paced, found.rubbing)
+    known = found.solved
+    pairs = (
+        (found.shaking_force, check.shaking_force),
+        (found.shaking_moment, check.shaking_moment),
+        (found.drive, check.drive),
+    )
+    peaks = [float(np.abs(one[known]).max()) for one, _ in pairs]
+    return Measured(found, peaks, [float(np.abs((one - other)[known]).max()) for one, other in pairs])
+
+
+def _share(part: float, whole: float) -> float:
+    return part / whole if whole > 0.0 else part

@@ -1,0 +1,184 @@
+"""Counterweights of least shaking: what they do is linear, no other weights do better, and the bound is below all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kinematics.dynamics.bodies import body, joined
+from kinematics.dynamics.reactions import reactions
+from synthesis.dispatch import solve
+from synthesis.kinds.balancing.driven import placed, task_of
+from synthesis.kinds.balancing.effects import quantities
+from synthesis.kinds.balancing.minimize import minimum, setting_of
+from synthesis.kinds.balancing.problem import BalancingProblem
+from synthesis.kinds.balancing.verify_minimum import verify_minimum
+from synthesis.numerics.conic import Rows, minimized
+from tests.synthesis.balanced_linkages import fourbar, sixbar, stated
+
+
+def problem_of(statement: dict[str, Any]) -> BalancingProblem:
+    problem = BalancingProblem.model_validate(statement)
+    problem.require_consistent()
+    return problem
+
+
+def least(rng: np.random.Generator, make: Any = fourbar, **more: Any) -> dict[str, Any]:
+    weights = {"total_mass": 3.0, "reach": 120.0, "density": 7800.0, "thickness": 20.0}
+    objective = {"shaking_force": 1.0, "shaking_moment": 0.5, "drive": 0.3}
+    return stated(rng, make, **{"goal": "minimize", "objective": objective, "counterweights": weights, **more})
+
+
+@pytest.mark.parametrize("make", [fourbar, sixbar])
+def test_what_a_weight_does_is_linear_in_its_parameters(make: Any) -> None:
+    """Momentum and energy against the reactions of the linkage with the weight in it, gravity and acceleration too."""
+    rng = np.random.default_rng(3)
+    statement = least(rng, make)
+    statement["dynamics"]["gravity"] = {"magnitude": 9.81, "angle": 250.0}
+    statement["motion"]["acceleration"] = 200.0
+    task = task_of(problem_of(statement))
+    machine, links = task.machine, ["coupler", "output"]
+    now = placed(machine, task.positions(40), task.speed, task.acceleration)
+    known = quantities(machine, now, links, ["A", "O2"])
+    bodies, parameters = dict(machine.bodies), []
+    for link in links:
+        about = complex(now.reference(now.mechanism.links[link][0]))
+        mass, arm, own = rng.uniform(0.2, 2.0), complex(*rng.normal(size=2)) * 0.1, rng.uniform(0.001, 0.01)
+        bodies[link] = joined([bodies[link], body(mass, about + arm, own)])
+        parameters += [mass, mass * arm.real, mass * arm.imag, own + mass * abs(arm) ** 2]
+    found = reactions(replace(machine, bodies=bodies), now)
+    named = {"shaking_force": found.shaking_force, "shaking_moment": found.shaking_moment, "drive": found.drive}
+    for name, values in named.items():
+        (part,) = known[name]
+        assert np.abs(part.at(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
+    for joint in ("A", "O2"):
+        for part, values in zip(known[f"joint {joint}"], found.joints[joint].values(), strict=True):
+            assert np.abs(part.at(np.array(parameters)) - values).max() < 1e-9 * np.abs(values).max()
+
+
+def test_the_force_alone_is_balanced_as_the_exact_goal_balances_it() -> None:
+    rng = np.random.default_rng(4)
+    statement = stated(rng, fourbar, counterweights={"links": ["input", "output"], "radius": 100.0})
+    exact = solve(problem_of(statement)).designs[0]
+    weights = {"links": ["input", "output"], "reach": 100.0, "total_mass": 50.0}
+    design = solve(problem_of({**statement, "goal": "minimize", "counterweights": weights})).designs[0]
+    assert design.metrics.value < 1e-6
+    for one, other in zip(exact.counterweights, design.counterweights, strict=True):
+        assert other.moment == pytest.approx(one.moment, rel=1e-5)
+        assert other.angle == pytest.approx(one.angle, abs=1e-3)
+
+
+@pytest.mark.parametrize("norm", ["max", "rms"])
+@pytest.mark.parametrize("make", [fourbar, sixbar])
+def test_no_weights_of_the_set_go_below_the_bound(make: Any, norm: str) -> None:
+    rng = np.random.default_rng(5)
+    statement = least(rng, make)
+    statement["objective"] = {**statement["objective"], "norm": norm}
+    problem = problem_of(statement)
+    task = task_of(problem)
+    setting = setting_of(problem, task)
+    found = minimum(setting, task)
+    design = verify_minimum(problem, task, found)
+    assert design.verification.passed
+    assert found.bound <= design.metrics.value
+    assert design.metrics.gap <= 1e-3
+    links, limits, count = len(setting.links), setting.limits, 200
+    masses = rng.dirichlet(np.ones(links + 1), count)[:, :links] * limits.total
+    arms = limits.reach * np.sqrt(rng.random((count, links))) * np.exp(1j * rng.uniform(-np.pi, np.pi, (count, links)))
+    inertias = masses * np.abs(arms) ** 2 + masses**2 / limits.disc + rng.exponential(0.01, (count, links))
+    moments = masses * arms
+    drawn = np.stack([masses, moments.real, moments.imag, inertias], axis=2).reshape(count, -1)
+    # Convex combinations with the optimum are in the set, and come as near to it as one likes.
+    shares = np.where(rng.random(count) < 0.5, 1.0, 10.0 ** rng.uniform(-4.0, -1.0, count))[:, None]
+    parameters = found.parameters + shares * (drawn - found.parameters)
+    reached = sum(level.weight * level.reached(parameters) for level in setting.levels)
+    assert np.all(reached >= found.bound)
+
+
+def test_caps_and_limits_are_kept() -> None:
+    rng = np.random.default_rng(6)
+    weights = {"max_mass": 0.8, "total_mass": 2.0, "reach": 90.0, "max_gyration": 110.0}
+    statement = least(rng, counterweights={**weights, "density": 7800.0, "thickness": 15.0, "max_disc_radius": 40.0})
+    design = solve(problem_of({**statement, "caps": {"drive": 0.9, "joint_forces": {"A": 1.1}}})).designs[0]
+    assert design.verification.passed
+    levels = {(level.name, level.norm): level for level in design.metrics.levels}
+    assert levels["drive", "max"].ratio <= 0.9009
+    assert levels["joint A", "max"].ratio <= 1.1011
+    assert design.metrics.added_mass <= 2.0 * (1.0 + 1e-9)
+    for weight in design.counterweights:
+        assert weight.mass <= 0.8 * (1.0 + 1e-9)
+        assert weight.radius <= 90.0 * (1.0 + 1e-9)
+        assert weight.disc_radius <= 40.0 * (1.0 + 1e-9)
+        assert weight.inertia >= weight.mass**2 / (2.0 * np.pi * 7800.0 * 0.015) * (1.0 - 1e-9)
+        gyration = np.sqrt(weight.inertia / weight.mass + (1e-3 * weight.radius) ** 2)
+        assert gyration <= 0.110 * 1.001
+
+
+def test_more_of_everything_is_never_worse() -> None:
+    rng = np.random.default_rng(7)
+    statement = least(rng)
+    values = []
+    for mass, reach in ((0.5, 60.0), (1.0, 60.0), (1.0, 120.0), (4.0, 120.0)):
+        weights = {**statement["counterweights"], "total_mass": mass, "reach": reach}
+        values.append(solve(problem_of({**statement, "counterweights": weights})).designs[0].metrics)
+    for one, other in pairwise(values):
+        assert other.bound <= one.value
+        assert other.value <= one.value * (1.0 + 1e-3)
+
+
+def test_weights_that_are_moved_fail_the_proof() -> None:
+    problem = problem_of(least(np.random.default_rng(8)))
+    task = task_of(problem)
+    found = minimum(setting_of(problem, task), task)
+    moved = [weight._replace(at=weight.at + 0.02) for weight in found.weights]
+    assert not verify_minimum(problem, task, found._replace(weights=moved)).verification.passed
+    heavy = [weight._replace(mass=1.5 * weight.mass) for weight in found.weights]
+    checks = verify_minimum(problem, task, found._replace(weights=heavy)).verification.checks
+    assert not next(check for check in checks if check.name == "total_mass").passed
+    lying = verify_minimum(problem, task, found._replace(bound=1.01 * found.bound)).verification.checks
+    assert not next(check for check in lying if check.name == "bound").passed
+
+
+def test_a_driven_slider_and_consistent_units() -> None:
+    """A slider-crank driven by its piston, in units that nothing is converted of."""
+    statement = {
+        "kind": "balancing",
+        "object": "linkage",
+        "goal": "minimize",
+        "length_unit": "in",
+        "mechanism": {
+            "type": "slider_crank",
+            "fixed_pivot": [0.0, 0.0],
+            "links": {"crank": 2.0, "coupler": 7.0},
+            "slide": {"point": [0.0, 0.0], "angle": 0.0},
+            "driven_by": "slider",
+        },
+        "motion": {"from": 5.6, "to": 8.4, "speed": 50.0},
+        "dynamics": {
+            "units": "consistent",
+            "bodies": {"crank": {"mass": 0.02, "cg": {"distance": 0.8}, "inertia": 0.01}},
+            "point_masses": [{"joint": "B", "mass": 0.03}],
+        },
+        "objective": {"shaking_force": 1.0, "drive": 0.5},
+        "counterweights": {"total_mass": 0.05, "reach": 2.0},
+    }
+    design = solve(problem_of(statement)).designs[0]
+    assert design.verification.passed
+    assert design.metrics.value < 1.5
+
+
+def test_a_conic_program_says_what_it_is() -> None:
+    least_x = Rows("nonnegative", np.array([[-1.0]]), np.array([-2.0]))
+    solved = minimized(np.array([1.0]), [least_x])
+    assert (solved.status, solved.value) == ("solved", pytest.approx(2.0, abs=1e-6))
+    assert solved.dual == pytest.approx(2.0, abs=1e-6)
+    most_x = Rows("nonnegative", np.array([[1.0]]), np.array([1.0]))
+    assert minimized(np.array([1.0]), [least_x, most_x]).status == "infeasible"
+    assert minimized(np.array([-1.0]), [least_x]).status == "unbounded"
+    disc = Rows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
+    round_one = minimized(np.array([3.0, 4.0]), [disc])
+    assert round_one.x == pytest.approx([-0.6, -0.8], abs=1e-6)
