@@ -47,14 +47,13 @@ def least_near(of: Callable[[Real], Real], inputs: Real, values: Real) -> tuple[
     known = np.where(np.isfinite(values), values, np.inf)
     n = int(np.argmin(known))
     best = float(inputs[n]), float(known[n])
-    for n in _valleys(known):
-        at, least = _descended(of, inputs, n)
+    for at, least in zip(*_descended(of, inputs, _valleys(known)), strict=True):
         if least < best[1]:
-            best = at, least
+            best = float(at), float(least)
     return best
 
 
-def _valleys(values: Real) -> list[int]:
+def _valleys(values: Real) -> NDArray[np.int64]:
     """The places of a grid beside which the least may lie, the lowest first.
 
     Between the places beside it a smooth quantity falls below a low place by less than the higher of them lies above.
@@ -63,24 +62,26 @@ def _valleys(values: Real) -> list[int]:
     known = np.isfinite(values)
     rise = np.where(known, np.maximum(left, right), 0.0) - np.where(known, values, 0.0)
     low = np.flatnonzero(known & (values <= left) & (values <= right) & (values - rise <= values.min()))
-    return [int(n) for n in low[np.argsort(values[low], kind="stable")][:VALLEYS]]
+    return low[np.argsort(values[low], kind="stable")][:VALLEYS]
 
 
-def _descended(of: Callable[[Real], Real], inputs: Real, n: int) -> tuple[float, float]:
-    """The least about a place of the grid, by ever finer grids."""
-    at, place, least = float(inputs[n]), math.nan, math.inf
-    step = float(np.abs(np.diff(inputs[max(n - 1, 0) : n + 2])).max())
+def _descended(of: Callable[[Real], Real], inputs: Real, places: NDArray[np.int64]) -> tuple[Real, Real]:
+    """The least about places of the grid, by ever finer grids, all at once; infinite where nothing is finite."""
+    at, place, least = inputs[places], np.full(len(places), np.nan), np.full(len(places), np.inf)
+    gaps = np.abs(np.diff(inputs))
+    step = np.maximum(gaps[np.maximum(places - 1, 0)], gaps[np.minimum(places, len(gaps) - 1)])
     low, high = sorted((inputs[0], inputs[-1]))
+    row = np.arange(len(places))
     for _ in range(REFINEMENTS):
-        closer = np.clip(np.linspace(at - step, at + step, SAMPLES), low, high)
-        refined = of(closer)
-        if not np.isfinite(refined).any():
-            break
-        k = int(np.argmin(np.where(np.isfinite(refined), refined, np.inf)))
-        at = float(closer[k])
-        if refined[k] < least:
-            place, least = at, float(refined[k])
-        step *= 2.0 / (SAMPLES - 1)
+        closer = np.clip(np.linspace(at - step, at + step, SAMPLES, axis=1), low, high)
+        refined = np.asarray(of(closer.ravel())).reshape(closer.shape)
+        refined = np.where(np.isfinite(refined), refined, np.inf)
+        k = refined.argmin(axis=1)
+        tried = refined[row, k]
+        at = np.where(np.isfinite(tried), closer[row, k], at)
+        nearer = tried < least
+        place, least = np.where(nearer, at, place), np.where(nearer, tried, least)
+        step = step * (2.0 / (SAMPLES - 1))
     return place, least
 
 
