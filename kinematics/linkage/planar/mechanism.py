@@ -72,6 +72,13 @@ class Mechanism:
         Full turns of the input link in the reference beyond the angle, from −π to π, at which its joints show it. With
         gears of a ratio that is not whole the same input angle a turn on is another configuration.
 
+    Attributes
+    ----------
+    shape : tuple of int
+        S.
+    redundant : int
+        How many constraints could be left out without a further freedom.
+
     Raises
     ------
     TopologyError
@@ -92,6 +99,7 @@ class Mechanism:
     gears: tuple[GearPair, ...] = ()
     turns: int = 0
     shape: tuple[int, ...] = field(init=False)
+    redundant: int = field(init=False)
 
     def __init__(
         self,
@@ -138,11 +146,6 @@ class Mechanism:
         """Degrees of freedom: one, that of the input. :attr:`counted_mobility` is what a count makes of it."""
         return 1
 
-    @property
-    def redundant(self) -> int:
-        """How many constraints could be left out without a further freedom."""
-        return 1 - self.counted_mobility
-
     @cached_property
     def counted_mobility(self) -> int:
         """Degrees of freedom by counting: 3 a moving link, less 2 a pin, 1 a slide and 1 a gear pair (Norton 2.1).
@@ -183,6 +186,7 @@ class Mechanism:
 
     def _check_mobility(self) -> None:
         counted = self.counted_mobility
+        object.__setattr__(self, "redundant", 1 - counted)
         if counted > 1:
             raise TopologyError(f"expected a mobility of 1, got {counted}; look for a link or joint too many")
         if counted == 1:
