@@ -144,8 +144,8 @@ def test_the_blocks_are_good_before_they_are_spoilt(client: httpx.Client, name: 
     assert judged(client, *FULL[name])[0] == 200
 
 
-def test_every_second_field_holds_something_absurd(client: httpx.Client) -> None:
-    for n, (name, path) in enumerate(CASES[::2]):
+def test_every_fourth_field_holds_something_absurd(client: httpx.Client) -> None:
+    for n, (name, path) in enumerate(CASES[::4]):
         mechanism, block = FULL[name]
         refused_in_the_block(client, mechanism, put(block, path, ABSURD[n % len(ABSURD)]))
 
