@@ -12,8 +12,10 @@ _SI = {
     Dimension.TORSION_STIFFNESS: "N·m/rad",
     Dimension.GRAVITY: "m/s²",
     Dimension.UNBALANCE: "g·mm",
+    Dimension.SPEED: "m/s",
+    Dimension.ENERGY: "J",
 }
-"""What only the masses and loads of a linkage have."""
+"""What masses, loads and flywheels have, and nothing else."""
 
 
 def symbols(problem: StatedProblem) -> dict[Dimension, str]:

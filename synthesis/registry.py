@@ -13,6 +13,7 @@ from synthesis.kinds import (
     balancing,
     cam,
     dwell,
+    flywheel,
     function,
     gear_train,
     gearbox,
@@ -45,6 +46,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         function,
         cam,
         balancing,
+        flywheel,
     )
 }
 """Every kind of problem by its name, in the order in which they are offered."""

@@ -26,6 +26,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "gearbox": ("svg", "dxf", "csv"),
     "layshaft_gearbox": ("svg", "dxf", "csv"),
     "rotor": ("svg", "dxf", "csv"),
+    "flywheel": ("svg", "dxf", "csv"),
 }
 """The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
@@ -48,6 +49,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.gears.train_sheet import gear_train_sheet
     from service.render.linkage.sheet import linkage_sheet
     from service.render.rotor.sheet import rotor_sheet
+    from service.render.shafts.flywheel import flywheel_sheet
 
     return {
         LINKAGE: linkage_sheet,
@@ -58,6 +60,7 @@ def _sheets() -> dict[str, Maker]:
         "gearbox": gearbox_sheet,
         "layshaft_gearbox": layshaft_sheet,
         "rotor": rotor_sheet,
+        "flywheel": flywheel_sheet,
     }
 
 
@@ -80,6 +83,7 @@ def _drawings() -> dict[str, Maker]:
     from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
     from service.render.linkage.dxf import linkage_drawing
     from service.render.rotor.dxf import rotor_drawing
+    from service.render.shafts.flywheel import flywheel_drawing
 
     return {
         LINKAGE: linkage_drawing,
@@ -90,6 +94,7 @@ def _drawings() -> dict[str, Maker]:
         "gearbox": gearbox_drawing,
         "layshaft_gearbox": layshaft_drawing,
         "rotor": rotor_drawing,
+        "flywheel": flywheel_drawing,
     }
 
 
@@ -98,6 +103,7 @@ def _tables() -> dict[str, Maker]:
     from service.render.gears.csv import gear_train_table, gearbox_table, layshaft_table, planetary_table
     from service.render.linkage.csv import function_table, linkage_table
     from service.render.rotor.csv import rotor_table
+    from service.render.shafts.flywheel import flywheel_table
 
     return {
         LINKAGE: linkage_table,
@@ -109,6 +115,7 @@ def _tables() -> dict[str, Maker]:
         "gearbox": gearbox_table,
         "layshaft_gearbox": layshaft_table,
         "rotor": rotor_table,
+        "flywheel": flywheel_table,
     }
 
 

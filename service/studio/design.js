@@ -9,6 +9,7 @@ import { overTheCycle, withSkeleton } from "./cycle.js";
 import { el, words } from "./dom.js";
 import { downloads } from "./downloads.js";
 import { Explorer } from "./explorer.js";
+import { Flywheel } from "./flywheel.js";
 import { Gears } from "./gears.js";
 import { checks, dimensions, figures, made, table } from "./figures.js";
 import { Mover, demanded } from "./mover.js";
@@ -23,6 +24,7 @@ const TURN_STEPS = 360;
 /** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
+  flywheel: Flywheel,
 };
 
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */

@@ -7,13 +7,13 @@ function symbols(problem) {
   const slides = problem.mechanism === "slider_crank" || problem.output?.type === "slider" || (problem.stroke ?? null) !== null;
   const [lift, rate] = arm ? ["°", "rad"] : [length, length];
   const inches = length === "in";
-  // Masses and loads of a linkage come with units of their own.
+  // Masses and loads come with units of their own, but for those of cams.
   const own = problem.kind === "cam" ? null : problem.dynamics?.units ?? problem.units ?? "si";
   const force = inches && own === null ? "lbf" : "N";
   const forces = own === "consistent" ? {} : {
     force, stiffness: own === null ? `${force}/${length}` : "N/m", mass: inches && own === null ? "lbf·s²/in" : "kg",
     torque: own === null ? `${force}·${length}` : "N·m", power: "W", density: "kg/m³", inertia: "kg·m²",
-    "torsion stiffness": "N·m/rad", gravity: "m/s²", unbalance: "g·mm",
+    "torsion stiffness": "N·m/rad", gravity: "m/s²", unbalance: "g·mm", speed: "m/s", energy: "J",
   };
   return /** @type {Record<string, string>} */ ({
     length, area: `${length}²`, "inverse length": `1/${length}`, angle: "°",

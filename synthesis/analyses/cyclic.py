@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from kinematics.dynamics.reactions import Reactions
 from kinematics.linkage.planar.mechanism import Mechanism
-from synthesis.mechanisms.flywheel import exact_coefficient, exact_inertia, first_order_inertia, fluctuation
+from synthesis.mechanisms.flywheel import exact_coefficient, exact_inertia, first_order_inertia, fluctuation, pulses
 from synthesis.model.dynamics import StatedFlywheel
 from synthesis.model.loads import FULL_TURN
 
@@ -91,11 +91,6 @@ def flywheel_of(drive: Real, at: Real, speed: float, closed: bool, wanted: State
         return {"energy": None, "mean_torque": None, **sized, "pulses": []}
     angle, torque = (at, drive) if at[-1] > at[0] else (at[::-1], drive[::-1])
     found = fluctuation(np.radians(angle), torque)
-    ends = np.degrees(np.append(found.crossings, found.crossings[:1] + math.radians(float(angle[-1] - angle[0]))))
-    pulses = [
-        {"from": float(start), "to": float(end), "area": float(area)}
-        for start, end, area in zip(ends[:-1], ends[1:], found.areas, strict=True)
-    ]
     answer: dict[str, Any] = {"energy": found.energy, "mean_torque": found.mean}
     if wanted is not None and speed != 0.0:
         whole = first_order_inertia(found.energy, abs(speed), wanted.coefficient)
@@ -105,4 +100,4 @@ def flywheel_of(drive: Real, at: Real, speed: float, closed: bool, wanted: State
             "inertia_exact": max(0.0, exact - wanted.existing_inertia),
             "coefficient_exact": exact_coefficient(found, max(whole, wanted.existing_inertia), abs(speed)),
         }
-    return answer | {"pulses": pulses}
+    return answer | {"pulses": pulses(found, math.radians(float(angle[-1] - angle[0])))}

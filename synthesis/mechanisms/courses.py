@@ -18,12 +18,9 @@ from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.drive import RealJet, drive
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
 from synthesis.model.dynamics import WeighedLinkage
-from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse
+from synthesis.model.loads import FULL_TURN, ForceCourse, GasPressure, Interpolation, TorqueCourse, period_fault
 
 Fault = tuple[str, str]
-
-CLOSES = 1e-9
-"""Share of a table's largest value by which its first and last rows may differ and be one."""
 
 STEPS = 360
 """Positions of a turn between which a dead centre is found by Newton's method."""
@@ -70,16 +67,9 @@ def course_faults(course: ForceCourse | TorqueCourse, mechanism: Mechanism) -> I
     except KinematicsError as error:
         yield "/turns", f"state it: {error}"
         return
-    yield from table_faults(np.array(course.table), period, "/table")
-
-
-def table_faults(table: Real, period: float, path: str) -> Iterator[Fault]:
-    """A table that is longer than its period, or whose ends contradict each other."""
-    span = float(table[-1, 0] - table[0, 0])
-    if span > period:
-        yield path, f"the rows span {span:g}°, more than the {period:g}° after which they repeat"
-    elif span == period and (np.abs(table[-1, 1:] - table[0, 1:]) > CLOSES * np.abs(table[:, 1:]).max()).any():
-        yield path, "the last row is the first one a cycle on, and must be equal to it"
+    fault = period_fault(course.table, period)
+    if fault is not None:
+        yield "/table", fault
 
 
 def tabulated(table: Real, period: float, interpolation: Interpolation) -> Course:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 from scipy.optimize import brentq
 
 from kinematics.linkage.planar.mechanism import Real
@@ -62,18 +62,40 @@ def fluctuation(angle: Real, torque: Real) -> Fluctuation:
     mean = float(torque[:-1].mean())
     level = torque - mean
     level[-1] = level[0]
-    spline = CubicSpline(angle, level, bc_type="periodic")
-    integral = spline.antiderivative()
-    period = float(angle[-1] - angle[0])
-    demand = np.asarray(integral(angle[0] + period * np.arange(FINE) / FINE))
-    crossings = spline.roots(extrapolate=False)
-    crossings = np.unique(crossings[(crossings >= angle[0]) & (crossings < angle[-1])])
+    return _of_course(CubicSpline(angle, level, bc_type="periodic"), mean, float(np.abs(torque).max()))
+
+
+def table_fluctuation(angle: Real, torque: Real, *, smooth: bool) -> Fluctuation:
+    """The fluctuation of a torque by a table: straight between its rows, or ``smooth`` by a periodic cubic.
+
+    Parameters
+    ----------
+    angle, torque : float, shape (N + 1,)
+        Any steps of the angle upwards over a cycle; the last row is the first one again.
+    """
+    if smooth:
+        course = CubicSpline(angle, np.append(torque[:-1], torque[0]), bc_type="periodic")
+    else:
+        course = PPoly(np.stack([np.diff(torque) / np.diff(angle), torque[:-1]]), angle)
+    mean = float(course.integrate(angle[0], angle[-1])) / float(angle[-1] - angle[0])
+    course.c[-1] -= mean
+    return _of_course(course, mean, float(np.abs(torque).max()))
+
+
+def _of_course(course: PPoly, mean: float, greatest: float) -> Fluctuation:
+    """The fluctuation of what a torque has beyond its mean, in polynomials over a cycle."""
+    first, last = float(course.x[0]), float(course.x[-1])
+    integral = course.antiderivative()
+    period = last - first
+    demand = np.asarray(integral(first + period * np.arange(FINE) / FINE))
+    crossings = course.roots(extrapolate=False)
+    crossings = np.unique(crossings[(crossings >= first) & (crossings < last)])
     stands = np.asarray(integral(crossings))
-    size = float(np.abs(torque).max()) * period
+    size = greatest * period
     if len(crossings) < 2 or float(np.ptp(stands)) <= NOTHING * size:
-        return Fluctuation(mean, 0.0, np.empty(0), np.empty(0), float(angle[0]), float(angle[0]), 0.0 * demand)
+        return Fluctuation(mean, 0.0, np.empty(0), np.empty(0), first, first, 0.0 * demand)
     # Over the whole cycle W ends where it began, but for the trapezoid's mean not being the cubic's.
-    round_trip = float(integral(angle[-1]))
+    round_trip = float(integral(last))
     areas = np.diff(np.append(stands, stands[0] + round_trip))
     highest, lowest = int(np.argmax(stands)), int(np.argmin(stands))
     return Fluctuation(
@@ -87,6 +109,15 @@ def fluctuation(angle: Real, torque: Real) -> Fluctuation:
     )
 
 
+def pulses(found: Fluctuation, period: float) -> list[dict[str, float]]:
+    """In the shape of :class:`synthesis.model.dynamics_answer.Pulse`; the period of the cycle in radians."""
+    ends = np.degrees(np.append(found.crossings, found.crossings[:1] + period))
+    return [
+        {"from": float(start), "to": float(end), "area": float(area)}
+        for start, end, area in zip(ends[:-1], ends[1:], found.areas, strict=True)
+    ]
+
+
 def first_order_inertia(energy: float, speed: float, coefficient: float) -> float:
     """E/(k ω̄²)."""
     return energy / (coefficient * speed**2)
@@ -97,8 +128,14 @@ def exact_coefficient(found: Fluctuation, inertia: float, speed: float) -> float
 
     ``MOST`` where the flywheel would come to a stand.
     """
+    ends = extreme_speeds(found, inertia, speed)
+    return MOST if ends is None else (ends[1] - ends[0]) / speed
+
+
+def extreme_speeds(found: Fluctuation, inertia: float, speed: float) -> tuple[float, float] | None:
+    """ω_min and ω_max of a shaft whose mean speed over time is ``speed``; None where it would come to a stand."""
     if found.energy == 0.0:
-        return 0.0
+        return speed, speed
     excess = (found.demand - found.demand.max()) * (-2.0 / inertia)
     span = 2.0 * found.energy / inertia
 
@@ -106,9 +143,9 @@ def exact_coefficient(found: Fluctuation, inertia: float, speed: float) -> float
         return 1.0 / float(np.mean(1.0 / np.sqrt(least_squared + excess)))
 
     if not mean_speed(1e-9 * span) < speed:
-        return MOST
+        return None
     squared = brentq(lambda least: mean_speed(least) - speed, 1e-9 * span, speed**2, xtol=1e-15 * speed**2)
-    return float((np.sqrt(squared + span) - np.sqrt(squared)) / speed)
+    return float(np.sqrt(squared)), float(np.sqrt(squared + span))
 
 
 def exact_inertia(found: Fluctuation, speed: float, coefficient: float) -> float:

@@ -18,11 +18,11 @@ from kinematics.dynamics.springs import NO_LENGTH, Spring, TorsionSpring, rotati
 from kinematics.errors import MechanismError as KinematicsError
 from kinematics.linkage.planar.branches import cycle
 from kinematics.linkage.planar.mechanism import GROUND, Mechanism, Real
-from synthesis.mechanisms.courses import course_faults, course_of, gas_force, ground_slide, table_faults
+from synthesis.mechanisms.courses import course_faults, course_of, gas_force, ground_slide
 from synthesis.mechanisms.link_bodies import BlockError, LinkBodies, token
 from synthesis.model.bodies import Place, PolarPlace
 from synthesis.model.dynamics import DrivenSlide, DynamicsBlock, LengthUnit, WeighedLinkage
-from synthesis.model.loads import StatedLoad
+from synthesis.model.loads import StatedLoad, period_fault
 from synthesis.model.springs import StatedSpring
 
 Fault = tuple[str, str]
@@ -112,7 +112,9 @@ def _course_faults(path: str, load: StatedLoad, mechanism: Mechanism) -> Iterato
                 yield f"{path}/{name}{below}", detail
     gas = None if load.force is None else load.force.gas
     if gas is not None:
-        yield from table_faults(np.array(gas.pressure), float(gas.cycle), f"{path}/force/gas/pressure")
+        fault = period_fault(gas.pressure, float(gas.cycle))
+        if fault is not None:
+            yield f"{path}/force/gas/pressure", fault
 
 
 def _spring_faults(path: str, spring: StatedSpring, mechanism: Mechanism) -> Iterator[Fault]:

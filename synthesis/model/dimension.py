@@ -48,6 +48,8 @@ class Dimension(StrEnum):
     GRAVITY = "gravity"
     UNBALANCE = "unbalance"
     GRADE = "balance grade"
+    SPEED = "speed"
+    ENERGY = "energy"
     PERCENT = "percent"
 
 
@@ -78,6 +80,8 @@ TORSION_STIFFNESS = Dimension.TORSION_STIFFNESS
 GRAVITY = Dimension.GRAVITY
 UNBALANCE = Dimension.UNBALANCE
 GRADE = Dimension.GRADE
+SPEED = Dimension.SPEED
+ENERGY = Dimension.ENERGY
 PERCENT = Dimension.PERCENT
 
 Length = Annotated[float, LENGTH]

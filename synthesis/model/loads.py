@@ -5,6 +5,7 @@ Loads are a closed list of forms: constant, by a table over the input, against t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -35,6 +36,22 @@ ForceRows = Annotated[
     list[tuple[Number, Number, Number]], Field(min_length=2, max_length=MOST_ROWS), AfterValidator(_ascending)
 ]
 PairRows = Annotated[list[tuple[Number, Number]], Field(min_length=2, max_length=MOST_ROWS), AfterValidator(_ascending)]
+
+
+CLOSES = 1e-9
+"""Share of a table's largest value by which its first and last rows may differ and be one."""
+
+
+def period_fault(rows: Sequence[tuple[float, ...]], period: float) -> str | None:
+    """What is wrong with a table over an angle that repeats: longer than its period, or ends that contradict."""
+    first, last = rows[0], rows[-1]
+    span = last[0] - first[0]
+    if span > period:
+        return f"the rows span {span:g}°, more than the {period:g}° after which they repeat"
+    apart = max(abs(end - start) for start, end in zip(first[1:], last[1:], strict=True))
+    if span == period and apart > CLOSES * max(abs(value) for row in rows for value in row[1:]):
+        return "the last row is the first one a cycle on, and must be equal to it"
+    return None
 
 
 class AgainstMotion(Statement):
@@ -83,7 +100,8 @@ class _Course(Statement):
         given = [name for name in forms if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(f"give one of {', '.join(forms)}")
-        if given != ["table"] and {"by", "interpolation", "turns"} & self.model_fields_set:
+        stated = (self.by, self.interpolation, self.turns) != ("input_angle", "linear", None)
+        if given != ["table"] and stated:
             raise ValueError("by, interpolation and turns are those of a table")
 
 

@@ -203,7 +203,7 @@ BAD: dict[str, tuple[Statement, Statement, str]] = {
     "constant and table": (
         ALONE, load(constant=[0, 0], table=[[0, 0, 0], [1, 0, 0]]), "/dynamics/loads/0/force",
     ),
-    "interpolated constant": (ALONE, load(constant=[0, 0], interpolation="linear"), "/dynamics/loads/0/force"),
+    "interpolated constant": (ALONE, load(constant=[0, 0], interpolation="periodic_cubic"), "/dynamics/loads/0/force"),
     "turns": (ALONE, load(table=[[0, 0, 0], [1, 0, 0]], turns=0), "/dynamics/loads/0/force/turns"),
     "by place": (ALONE, load(table=[[0, 0, 0], [1, 0, 0]], by="input_position"), "/dynamics/loads/0/force/by"),
     "negative resistance": (

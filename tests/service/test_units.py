@@ -27,6 +27,10 @@ PURE = {
     "ExactDesign": {"rms_residual"},
     "FollowerDynamics": {"damping_ratio", "min_frequency_ratio", "train_damping_ratio"},
     "ForceCaps": {"shaking_force", "shaking_moment", "drive", "joint_forces"},  # over what they were
+    "Flattest": {"max"},  # radius over thickness
+    "Fluctuation": {"first_order_coefficient"},
+    "FlywheelMetrics": {"coefficient"},
+    "FlywheelProblem": {"coefficient"},
     "ForceCourse": {"table"},  # columns of several units
     "ForceLevel": {"weight", "cap", "ratio"},
     "ForceWeights": {"shaking_force", "shaking_moment", "drive", "joint_forces"},
@@ -68,6 +72,7 @@ PURE = {
     "PlanetaryMechanism": {"addendum"},  # in modules
     "PlanetaryMetrics": {"error", "speeds", "efficiency", "rolling_power", "branch_power"},  # over the input's
     "PlanetaryProblem": {"ratio", "tolerance", "min_contact_ratio", "mesh_efficiency"},
+    "Pulse": {"area"},  # an energy
     "Quality": {"yield"},
     "QuickReturnMetrics": {"time_ratio", "link_ratio", "reach", "quality"},
     "QuickReturnProblem": {"time_ratio"},
@@ -84,6 +89,7 @@ PURE = {
     "SpringChoice": {"gap"},
     "StageRatio": {"min", "max"},
     "StatedSpring": {"damping"},  # by the sort of spring
+    "StatedTorque": {"table"},  # columns of two units
     "SteeringMetrics": {"link_ratio"},
     "StraightLineMetrics": {"link_ratio", "reach", "quality"},
     "StructureVerdict": {"max_error"},

@@ -24,6 +24,7 @@ from synthesis.model.dimension import (
     MASS,
     OUTPUT,
     PERCENT,
+    SPEED,
     VELOCITY,
     dimensions,
 )
@@ -74,6 +75,11 @@ MEASURING = {
     "table_velocity": VELOCITY,
     "table_acceleration": ACCELERATION,
     "table_jerk": JERK,
+    "radius": LENGTH,
+    "min_thickness": LENGTH,
+    "max_thickness": LENGTH,
+    "wall": LENGTH,
+    "rim_speed": SPEED,
 }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tests.service.stated import balancing, cams, gears, linkages
+from tests.service.stated import balancing, cams, gears, linkages, shafts
 
 TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "motion": (linkages.MOTION, linkages.MOTION_ROWS),
@@ -21,6 +21,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "cam": (cams.CAM, cams.CAM_ROWS),
     "function": (linkages.FUNCTION, linkages.FUNCTION_ROWS),
     "balancing": (balancing.ROTOR, balancing.ROTOR_ROWS),
+    "flywheel": (shafts.FLYWHEEL, shafts.FLYWHEEL_ROWS),
 }
 
 EXHAUSTIVE = "an exhaustive search returns nothing that fails"
@@ -31,11 +32,14 @@ NO_EFFECT = {
     ("planetary_train", "include_failed"): EXHAUSTIVE,
     ("gearbox", "include_failed"): EXHAUSTIVE,
     ("layshaft_gearbox", "include_failed"): EXHAUSTIVE,
+    ("flywheel", "include_failed"): "the lightest wheel within the limits keeps them",
     ("quick_return", "layout.over"): "the crank turns through: that is its used range",
     ("dwell", "layout.over"): "the crank turns through: that is its used range",
     ("parallel_motion", "linkage.reference_body_angle"): "taken because answers have it, and said not to be looked at",
 }
 """Fields with which no answer changes, and why."""
 
-ELSEWHERE = frozenset({"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "DynamicsBlock", "Manufacture"})
+ELSEWHERE = frozenset(
+    {"PathProblem", "StatedSkeleton", "Space", "DesignDynamics", "DynamicsBlock", "Manufacture", "WeighedLinkage"}
+)
 """Models whose fields have rows or tests of their own: paths, skeletons beside dimensions, rooms, masses, shops."""

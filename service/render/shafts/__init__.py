@@ -1,0 +1,1 @@
+"""Drawings of what turns with a shaft: flywheels."""

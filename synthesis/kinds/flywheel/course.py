@@ -1,0 +1,94 @@
+"""The torque of a shaft over one cycle: by a table, or by the forces of a linkage at constant speed."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.analyses.cyclic import closes
+from synthesis.analyses.dynamics import DETERMINED, forces_of
+from synthesis.analyses.motions import MAX_POSITIONS, RAD_PER_S
+from synthesis.analyses.weighed import weighed_request
+from synthesis.kinds.flywheel.problem import FlywheelProblem
+from synthesis.mechanisms.courses import repeated_after
+from synthesis.model.loads import FULL_TURN
+
+Real = NDArray[np.float64]
+
+STEPS = 3600
+"""Positions of a turn at which a linkage's torque is computed, as far as an analysis may have so many. Where a load
+sets in, a cubic through them errs by the square of a step: some 1e-7 of a coefficient."""
+
+
+class UnknownTorque(ValueError):
+    """The torque is not known all round a cycle; says why."""
+
+
+class Course(NamedTuple):
+    """What is taken from a shaft over one cycle.
+
+    Attributes
+    ----------
+    angle : float, shape (N + 1,)
+        Radians, upwards over one cycle.
+    demand : float, shape (N + 1,)
+        Torque that is taken; negative where the shaft is driven. The last is the first one again.
+    smooth : bool
+        Whether it is a periodic cubic between these, or straight.
+    """
+
+    angle: Real
+    demand: Real
+    smooth: bool
+
+
+def solver_course(problem: FlywheelProblem) -> Course:
+    """The torque by the table's rows, or by the reactions in a linkage.
+
+    Raises
+    ------
+    UnknownTorque
+        Where a linkage's is not known at all positions, or it does not repeat.
+    """
+    if problem.torque is None:
+        return machine_course(problem, "drive", 0.0)
+    rows = np.array(problem.torque.table, np.float64)
+    angle, torque = np.radians(rows[:, 0]), rows[:, 1]
+    cycle = 2.0 * math.pi * problem.torque.turns
+    if rows[-1, 0] - rows[0, 0] < FULL_TURN * problem.torque.turns:
+        angle, torque = np.append(angle, angle[0] + cycle), np.append(torque, torque[0])
+    else:
+        torque = np.append(torque[:-1], torque[0])
+    sign = 1.0 if problem.torque.side == "demand" else -1.0
+    return Course(angle, sign * torque, problem.torque.interpolation == "periodic_cubic")
+
+
+def machine_course(problem: FlywheelProblem, route: str, share: float) -> Course:
+    """The torque that a linkage takes, by one of the two ``route`` s to its forces; a ``share`` of a step farther on.
+
+    Raises
+    ------
+    UnknownTorque
+        Where it is not known at all positions, or does not repeat.
+    """
+    assert problem.machine is not None
+    request = weighed_request(problem.machine.mechanism, problem.machine.dynamics, problem.length_unit)
+    assert request.dynamics is not None
+    mechanism = request.mechanism.mechanism()
+    turns = repeated_after(request.dynamics, mechanism)
+    if not 0 < turns < MAX_POSITIONS // 36:
+        raise UnknownTorque("the linkage and its loads do not repeat after a few turns")
+    steps = turns * min(STEPS, (MAX_POSITIONS - 1) // turns)
+    at = FULL_TURN * turns * (np.arange(steps + 1) + share) / steps
+    speed = np.full(len(at), problem.speed_rpm * RAD_PER_S)
+    found = forces_of(mechanism, request.dynamics, problem.length_unit, at, speed, 0.0)
+    for status, angle in zip(found["status"], at, strict=True):
+        if status not in DETERMINED:
+            raise UnknownTorque(f"the linkage's forces are not known all round: {status} at {angle:.4g}°")
+    demand = np.array(found[route], np.float64)
+    if not closes(mechanism, at, demand, turns):
+        raise UnknownTorque("the linkage's torque is not the same again after a cycle")
+    return Course(np.radians(at), np.append(demand[:-1], demand[0]), smooth=True)

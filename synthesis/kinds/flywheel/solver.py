@@ -1,0 +1,118 @@
+"""Flywheels: the torque over a cycle, the inertia that it asks for, and the lightest wheels that have it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Literal
+
+from synthesis.analyses.motions import RAD_PER_S
+from synthesis.kinds.flywheel.course import Course, UnknownTorque, solver_course
+from synthesis.kinds.flywheel.design import Fluctuation, FlywheelDesign, FlywheelMechanism, FlywheelResult
+from synthesis.kinds.flywheel.problem import FlywheelProblem
+from synthesis.kinds.flywheel.sizing import Bounds, lightest
+from synthesis.kinds.flywheel.verification import verify_flywheel
+from synthesis.mechanisms import flywheel
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting
+
+
+def solve_flywheel(problem: FlywheelProblem, progress: Progress) -> FlywheelResult:
+    """Solve a problem of flywheels.
+
+    Returns
+    -------
+    FlywheelResult
+        Complete wherever the torque is known: each form has one lightest wheel. Without designs where none is needed,
+        or the limits allow none; ``summary`` says which.
+    """
+    sifting = Sifting[FlywheelDesign](problem)
+    progress(0.0, "torque over a cycle")
+    try:
+        course = solver_course(problem)
+    except UnknownTorque as error:
+        text = f"No flywheel was found: {error}."
+        return FlywheelResult(designs=[], search=sifting.search("exact"), summary=text, fluctuation=None)
+    found = flywheel.table_fluctuation(course.angle, course.demand, smooth=course.smooth)
+    progress(0.3, "sizing")
+    asked = _asked(problem, course, found)
+    said = []
+    wheels = []
+    for form in problem.forms if asked.inertia > 0.0 else ():
+        wheel = _wheel(problem, found, asked.inertia, form)
+        if wheel is None:
+            said.append(f"The limits allow no {form} of the inertia that is needed.")
+        else:
+            wheels.append(wheel)
+    progress(0.5, "integrating the speed")
+    sifting.sift(wheels, partial(verify_flywheel, problem))
+    progress(1.0, "verified")
+    return FlywheelResult(
+        designs=sifting.designs(lambda designs: sorted(designs, key=lambda design: design.metrics.mass)),
+        search=sifting.search("exact", complete=not sifting.rejected),
+        summary=" ".join([_summary(problem, asked, sifting), *said]),
+        fluctuation=asked,
+    )
+
+
+def _asked(problem: FlywheelProblem, course: Course, found: flywheel.Fluctuation) -> Fluctuation:
+    """Inertias that the torque asks for, beside what the shaft has."""
+    speed, present = problem.speed_rpm * RAD_PER_S, problem.existing_inertia
+    whole = flywheel.first_order_inertia(found.energy, speed, problem.coefficient)
+    exact = flywheel.exact_inertia(found, speed, problem.coefficient)
+    sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
+    listed = flywheel.pulses(found, float(course.angle[-1] - course.angle[0]))
+    return Fluctuation.model_validate(
+        {
+            "mean_torque": sign * found.mean,
+            "energy": found.energy,
+            "inertia": max(0.0, exact - present),
+            "first_order_inertia": max(0.0, whole - present),
+            "first_order_coefficient": flywheel.exact_coefficient(found, max(whole, present), speed),
+            "pulses": [pulse | {"area": sign * pulse["area"]} for pulse in listed],
+        }
+    )
+
+
+def _wheel(
+    problem: FlywheelProblem, found: flywheel.Fluctuation, inertia: float, form: Literal["disc", "rim"]
+) -> FlywheelMechanism | None:
+    """The lightest wheel of a form; None where the limits allow none."""
+    scale, limits = problem.scale, problem.limits
+    ends = flywheel.extreme_speeds(found, inertia + problem.existing_inertia, problem.speed_rpm * RAD_PER_S)
+    assert ends is not None, "the inertia was found by this speed"
+    radii = [] if limits.radius is None else [scale * limits.radius.max]
+    radii += [] if limits.rim_speed is None else [limits.rim_speed.max / ends[1]]
+    thickness = limits.thickness
+    bounds = Bounds(
+        radius=min(radii, default=None),
+        thinnest=None if thickness is None or thickness.min is None else scale * thickness.min,
+        thickest=None if thickness is None or thickness.max is None else scale * thickness.max,
+        wall=None if limits.wall is None else scale * limits.wall.min,
+        flattest=None if limits.radius_to_thickness is None else limits.radius_to_thickness.max,
+    )
+    wheel = lightest(inertia, problem.density, bounds, rim=form == "rim")
+    if wheel is None:
+        return None
+    return FlywheelMechanism(
+        form=form,
+        radius=wheel.radius / scale,
+        inner_radius=wheel.inner / scale,
+        thickness=wheel.thickness / scale,
+        density=problem.density,
+    )
+
+
+def _summary(problem: FlywheelProblem, asked: Fluctuation, sifting: Sifting[FlywheelDesign]) -> str:
+    text = [f"The energy fluctuates by {asked.energy:.6g} over a cycle."]
+    if asked.mean_torque < 0.0:
+        text.append("The mean torque is negative: on average the shaft is driven from the other side.")
+    if asked.inertia == 0.0:
+        text.append("No flywheel is needed: the shaft keeps the coefficient without one.")
+    elif sifting.passed:
+        best = min(sifting.passed, key=lambda design: design.metrics.mass)
+        limits = ", ".join(best.metrics.at_limits).replace("_", " ")
+        text.append(
+            f"The lightest wheel is a {best.mechanism.form} of mass {best.metrics.mass:.6g} "
+            f"and inertia {best.metrics.inertia:.6g}; it stands at its limits of {limits}."
+        )
+    return " ".join(text) + sifting.reasons()

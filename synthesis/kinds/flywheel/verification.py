@@ -1,0 +1,293 @@
+"""Verification of flywheels: the speed of the shaft is integrated over two cycles with the finished wheel.
+
+I ω dω/dθ = T̄ − T(θ), by Runge and Kutta's method on a grid that has all rows of the table among its points, and the
+time along with it; the speed at the start is found so that the mean over time is the stated one. Mass and inertia are
+sums over thin rings, and no wheel of a grid over all that the limits allow is lighter.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from synthesis.analyses.motions import RAD_PER_S
+from synthesis.kinds.flywheel.course import UnknownTorque, machine_course
+from synthesis.kinds.flywheel.design import FlywheelDesign, FlywheelMechanism, FlywheelMetrics, Limit, SpeedCurve
+from synthesis.kinds.flywheel.problem import FlywheelProblem
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import LENGTH, SPEED
+from synthesis.proof.checks import at_least, at_most, tolerated
+
+Real = NDArray[np.float64]
+
+CYCLES = 2
+"""Cycles over which the speed is followed: after the first one it has to repeat."""
+
+GRID = 2048
+"""Equal steps of a turn, beside the rows of a table."""
+
+KEPT = 1e-6
+"""Share by which the integrated coefficient may be above the stated one."""
+
+REPEATS = 1e-7
+"""Share of the speed by which it may be another one after a cycle: the method's error at corners of the torque."""
+
+SLOWEST, FASTEST = 1e-6, 4.0
+"""Speeds at the start, over the mean, between which it is looked for: coefficients are at most 1."""
+
+RINGS = 64
+"""Rings of the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
+
+SAMPLED = 400
+"""Radii, inside and outside, of the wheels that are compared."""
+
+NO_LIGHTER = 1e-6
+"""Share by which a compared wheel may be lighter: that of the coefficient, twice."""
+
+AT_LIMIT = 1e-9
+"""Share of a limit within which a wheel stands at it."""
+
+SHOWN = 361
+"""Positions of the course in an answer."""
+
+
+class _Run(NamedTuple):
+    """Angles (radians), torque and speed (rad/s) over the cycles, and the extremes of the speed between them too."""
+
+    angle: Real
+    demand: Real
+    speed: Real
+    least: float
+    greatest: float
+    cycle: float
+
+
+def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> FlywheelDesign | None:
+    """Integrate the speed of a shaft with a wheel and compare the wheel with its limits and with others.
+
+    Parameters
+    ----------
+    problem : FlywheelProblem
+        What was asked.
+    wheel : FlywheelMechanism
+        Dimensions only.
+
+    Returns
+    -------
+    FlywheelDesign or None
+        None where the shaft would come to a stand, or the torque of a linkage is not known by the balance of energy.
+    """
+    mass, inertia = _weighed(problem, wheel)
+    try:
+        angle, middle, last = _torque(problem)
+    except UnknownTorque:
+        return None
+    mean_speed = problem.speed_rpm * RAD_PER_S
+    run = _integrated(angle, middle, last, inertia + problem.existing_inertia, mean_speed)
+    if run is None:
+        return None
+    coefficient = (run.greatest - run.least) / mean_speed
+    rim = run.greatest * wheel.radius * problem.scale
+    count = len(run.speed) // CYCLES
+    checks = [
+        at_most("coefficient", coefficient, problem.coefficient, slack=KEPT),
+        tolerated("speed_repeats", float(abs(run.speed[count] - run.speed[0])) / mean_speed, REPEATS),
+        *_limits(problem, wheel, rim),
+        at_least("lightest", _lightest_other(problem, inertia, run.greatest, wheel.form) / mass, 1.0, slack=NO_LIGHTER),
+    ]
+    metrics = FlywheelMetrics(
+        mass=mass,
+        inertia=inertia,
+        coefficient=coefficient,
+        least_speed=run.least / RAD_PER_S,
+        greatest_speed=run.greatest / RAD_PER_S,
+        rim_speed=rim,
+        at_limits=_at_limits(problem, wheel, rim),
+    )
+    return FlywheelDesign(
+        mechanism=wheel, verification=Verification.of(checks), metrics=metrics, course=_course(problem, run)
+    )
+
+
+def _weighed(problem: FlywheelProblem, wheel: FlywheelMechanism) -> tuple[float, float]:
+    """Mass and moment of inertia, summed over rings."""
+    scale = problem.scale
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    edges = scale * np.linspace(wheel.inner_radius, wheel.radius, RINGS + 1)
+    half = 0.5 * np.diff(edges)[:, None]
+    radius = 0.5 * (edges[1:] + edges[:-1])[:, None] + half * nodes
+    ring = 2.0 * math.pi * wheel.density * scale * wheel.thickness * radius * half * weights
+    return float(ring.sum()), float((ring * radius**2).sum())
+
+
+def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
+    """Angles of a cycle, the demand in the middle of each step, and at all of its ends."""
+    if problem.torque is not None:
+        rows, turns = np.array(problem.torque.table, np.float64), problem.torque.turns
+        start, period = math.radians(rows[0, 0]), 2.0 * math.pi * turns
+        own, smooth = np.radians(rows[:, 0]), problem.torque.interpolation == "periodic_cubic"
+        values = rows[:, 1] if problem.torque.side == "demand" else -rows[:, 1]
+    else:
+        # The other half of the positions, by the balance of energy instead of the reactions.
+        course = machine_course(problem, "virtual_work_drive", 0.5)
+        own, values, smooth = course.angle, course.demand, True
+        start, period = float(own[0]), float(own[-1] - own[0])
+        turns = round(period / (2.0 * math.pi))
+    own, kept = np.unique(np.append(own, start + period), return_index=True)
+    values = np.append(values, values[0])[kept]
+    values[-1] = values[0]
+    angle = np.union1d(own, start + period * np.arange(GRID * turns + 1) / (GRID * turns))
+    angle = angle[(angle >= start) & (angle <= own[-1])]
+    middle = 0.5 * (angle[1:] + angle[:-1])
+    if smooth:
+        spline = CubicSpline(own, values, bc_type="periodic")
+        return angle, np.asarray(spline(middle)), np.asarray(spline(angle))
+    return angle, np.interp(middle, own, values), np.interp(angle, own, values)
+
+
+def _integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed: float) -> _Run | None:
+    """The speed over the cycles, whose mean over time is as stated; None where the shaft comes to a stand."""
+    step = np.diff(angle)
+    cycle = float(angle[-1] - angle[0])
+    mean = float((step * (ends[:-1] + 4.0 * middle + ends[1:])).sum() / 6.0) / cycle
+    first = np.tile((mean - ends[:-1]) / inertia, CYCLES).tolist()
+    half = np.tile((mean - middle) / inertia, CYCLES).tolist()
+    last = np.tile((mean - ends[1:]) / inertia, CYCLES).tolist()
+    steps = np.tile(step, CYCLES).tolist()
+
+    def off(start: float) -> float:
+        """By how much the mean over time is beyond the stated one."""
+        speed = _followed(start, steps, first, half, last)
+        if not speed:
+            return -mean_speed
+        w = np.array(speed)
+        slope = np.array(first) / w[:-1], np.array(last) / w[1:]
+        between = 0.5 * (w[1:] + w[:-1]) + np.array(steps) * (slope[0] - slope[1]) / 8.0
+        time = float((np.array(steps) * (1.0 / w[:-1] + 4.0 / between + 1.0 / w[1:])).sum()) / 6.0
+        return CYCLES * cycle / time - mean_speed
+
+    if not off(FASTEST * mean_speed) > 0.0:
+        return None
+    start = float(brentq(off, SLOWEST * mean_speed, FASTEST * mean_speed, xtol=1e-14 * mean_speed))
+    speed = _followed(start, steps, first, half, last)
+    if not speed:
+        return None
+    w, h = np.array(speed), np.array(steps)
+    tops = _between(w, np.array(first) / w[:-1], np.array(last) / w[1:], h)
+    return _Run(
+        np.concatenate([angle[:-1], angle[:-1] + cycle, [angle[-1] + cycle]]),
+        np.concatenate([ends[:-1], ends[:-1], ends[-1:]]),
+        w,
+        float(tops.min()),
+        float(tops.max()),
+        cycle,
+    )
+
+
+def _followed(start: float, h: list[float], first: list[float], half: list[float], last: list[float]) -> list[float]:
+    """The speed at the ends of all steps by dω/dθ = a/ω, a at three places of each; empty where it comes to rest."""
+    w, speed = start, [start]
+    for step, a, b, c in zip(h, first, half, last, strict=True):
+        one = a / w
+        two = w + 0.5 * step * one
+        if two <= 0.0:
+            return []
+        two = b / two
+        three = w + 0.5 * step * two
+        if three <= 0.0:
+            return []
+        three = b / three
+        four = w + step * three
+        if four <= 0.0:
+            return []
+        w += step * (one + 2.0 * two + 2.0 * three + c / four) / 6.0
+        if w <= 0.0:
+            return []
+        speed.append(w)
+    return speed
+
+
+def _between(w: Real, before: Real, after: Real, h: Real) -> Real:
+    """Speeds at the ends of all steps, and where the cubic by both ends and their slopes turns within a step."""
+    turns = before * after < 0.0
+    share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
+    lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]
+    bend = share * (1.0 - share) ** 2 * h * before - share**2 * (1.0 - share) * h * after
+    return np.concatenate([w, lead + bend])
+
+
+def _limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Check]:
+    limits, checks = problem.limits, []
+    if limits.radius is not None:
+        checks.append(at_most("radius", wheel.radius, limits.radius.max, LENGTH))
+    if limits.thickness is not None and limits.thickness.min is not None:
+        checks.append(at_least("min_thickness", wheel.thickness, limits.thickness.min, LENGTH))
+    if limits.thickness is not None and limits.thickness.max is not None:
+        checks.append(at_most("max_thickness", wheel.thickness, limits.thickness.max, LENGTH))
+    if limits.wall is not None and wheel.form == "rim":
+        checks.append(at_least("wall", wheel.radius - wheel.inner_radius, limits.wall.min, LENGTH))
+    if limits.rim_speed is not None:
+        checks.append(at_most("rim_speed", rim, limits.rim_speed.max, SPEED, slack=KEPT))
+    if limits.radius_to_thickness is not None:
+        checks.append(at_most("radius_to_thickness", wheel.radius / wheel.thickness, limits.radius_to_thickness.max))
+    return checks
+
+
+def _at_limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Limit]:
+    """The limits at which a wheel stands."""
+    names: dict[str, Limit] = {
+        "radius": "radius",
+        "min_thickness": "min_thickness",
+        "max_thickness": "max_thickness",
+        "wall": "wall",
+        "rim_speed": "rim_speed",
+        "radius_to_thickness": "radius_to_thickness",
+    }
+    return [
+        names[check.name]
+        for check in _limits(problem, wheel, rim)
+        if check.value is not None
+        and check.limit is not None
+        and abs(check.value - check.limit) <= (KEPT if check.name == "rim_speed" else AT_LIMIT) * check.limit
+    ]
+
+
+def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, form: str) -> float:
+    """The least mass of the wheels of a grid that have the inertia and keep the limits; infinite where none does."""
+    scale, limits = problem.scale, problem.limits
+    c = 2.0 * inertia / (math.pi * problem.density)
+    widest = [] if limits.radius is None else [scale * limits.radius.max]
+    widest += [] if limits.rim_speed is None else [limits.rim_speed.max / greatest]
+    # Without a limit of its own the radius goes far beyond what a wheel as thick as it is wide has.
+    outer = min(widest, default=1e3 * c**0.2) * np.geomspace(1e-3, 1.0, SAMPLED)[:, None]
+    inner = outer * (np.linspace(0.0, 1.0, SAMPLED, endpoint=False) if form == "rim" else np.zeros(1))
+    ring = outer**4 - inner**4
+    with np.errstate(divide="ignore", invalid="ignore"):
+        thickness = c / ring
+        allowed = ring > 0.0
+        if limits.thickness is not None and limits.thickness.min is not None:
+            allowed &= thickness >= scale * limits.thickness.min
+        if limits.thickness is not None and limits.thickness.max is not None:
+            allowed &= thickness <= scale * limits.thickness.max
+        if limits.wall is not None and form == "rim":
+            allowed &= outer - inner >= scale * limits.wall.min
+        if limits.radius_to_thickness is not None:
+            allowed &= outer <= limits.radius_to_thickness.max * thickness
+        mass = math.pi * problem.density * thickness * (outer**2 - inner**2)
+    return float(mass[allowed].min()) if allowed.any() else math.inf
+
+
+def _course(problem: FlywheelProblem, run: _Run) -> SpeedCurve:
+    """A cycle at equal steps."""
+    at = run.angle[0] + run.cycle * np.arange(SHOWN) / (SHOWN - 1)
+    sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0
+    return SpeedCurve(
+        angle=np.degrees(at).tolist(),
+        torque=(sign * np.interp(at, run.angle, run.demand)).tolist(),
+        speed=(np.interp(at, run.angle, run.speed) / RAD_PER_S).tolist(),
+    )
