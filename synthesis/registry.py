@@ -13,6 +13,7 @@ from synthesis.kinds import (
     balancing,
     cam,
     dwell,
+    engine,
     flywheel,
     function,
     gear_train,
@@ -47,6 +48,7 @@ KINDS: dict[str, Kind[Any, Any]] = {
         cam,
         balancing,
         flywheel,
+        engine,
     )
 }
 """Every kind of problem by its name, in the order in which they are offered."""

@@ -27,6 +27,7 @@ FILES: dict[str, tuple[Form, ...]] = {
     "layshaft_gearbox": ("svg", "dxf", "csv"),
     "rotor": ("svg", "dxf", "csv"),
     "flywheel": ("svg", "dxf", "csv"),
+    "engine": ("svg", "dxf", "csv"),
 }
 """The forms of files of the types of mechanism that are not linkages; linkages have all forms."""
 
@@ -49,6 +50,7 @@ def _sheets() -> dict[str, Maker]:
     from service.render.gears.train_sheet import gear_train_sheet
     from service.render.linkage.sheet import linkage_sheet
     from service.render.rotor.sheet import rotor_sheet
+    from service.render.shafts.engine import engine_sheet
     from service.render.shafts.flywheel import flywheel_sheet
 
     return {
@@ -61,6 +63,7 @@ def _sheets() -> dict[str, Maker]:
         "layshaft_gearbox": layshaft_sheet,
         "rotor": rotor_sheet,
         "flywheel": flywheel_sheet,
+        "engine": engine_sheet,
     }
 
 
@@ -83,6 +86,7 @@ def _drawings() -> dict[str, Maker]:
     from service.render.gears.gearbox_dxf import gearbox_drawing, layshaft_drawing
     from service.render.linkage.dxf import linkage_drawing
     from service.render.rotor.dxf import rotor_drawing
+    from service.render.shafts.engine import engine_drawing
     from service.render.shafts.flywheel import flywheel_drawing
 
     return {
@@ -95,6 +99,7 @@ def _drawings() -> dict[str, Maker]:
         "layshaft_gearbox": layshaft_drawing,
         "rotor": rotor_drawing,
         "flywheel": flywheel_drawing,
+        "engine": engine_drawing,
     }
 
 
@@ -103,6 +108,7 @@ def _tables() -> dict[str, Maker]:
     from service.render.gears.csv import gear_train_table, gearbox_table, layshaft_table, planetary_table
     from service.render.linkage.csv import function_table, linkage_table
     from service.render.rotor.csv import rotor_table
+    from service.render.shafts.engine import engine_table
     from service.render.shafts.flywheel import flywheel_table
 
     return {
@@ -116,6 +122,7 @@ def _tables() -> dict[str, Maker]:
         "layshaft_gearbox": layshaft_table,
         "rotor": rotor_table,
         "flywheel": flywheel_table,
+        "engine": engine_table,
     }
 
 

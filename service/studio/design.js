@@ -8,6 +8,7 @@ import { cognates, picker } from "./cognates.js";
 import { overTheCycle, withSkeleton } from "./cycle.js";
 import { el, words } from "./dom.js";
 import { downloads } from "./downloads.js";
+import { Engine } from "./engine.js";
 import { Explorer } from "./explorer.js";
 import { Flywheel } from "./flywheel.js";
 import { Gears } from "./gears.js";
@@ -24,7 +25,7 @@ const TURN_STEPS = 360;
 /** What shows a mechanism that is no linkage. @type {Record<string, new (place: HTMLElement, design: any, motion: any, problem: any) => Moving>} */
 const VIEWS = {
   cam: Disc, barrel_cam: Barrel, gear_train: Gears, planetary_train: Gears, gearbox: Gears, layshaft_gearbox: Gears, rotor: Rotor,
-  flywheel: Flywheel,
+  flywheel: Flywheel, engine: Engine,
 };
 
 /** @typedef {{stop: () => void, pause?: () => void}} Moving */

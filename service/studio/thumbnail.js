@@ -49,7 +49,7 @@ function outlines(curves, closed) {
     ...(closed ? [svg("circle", { class: "pin", r: 2.5, cx: u, cy: v })] : [])];
 }
 
-/** Pitch circles; of a flywheel its own. @param {any} mechanism @param {any} metrics @returns {Circle[]} */
+/** Pitch circles; of a flywheel its own, of an engine those of its throws. @param {any} mechanism @param {any} metrics @returns {Circle[]} */
 function circles(mechanism, metrics) {
   const { module } = mechanism;
   if (mechanism.type === "rotor") {
@@ -60,6 +60,7 @@ function circles(mechanism, metrics) {
       return { centre: [far * Math.cos(angle), far * Math.sin(angle)], radius: 0.12 * reach };
     })];
   }
+  if (mechanism.type === "engine") return mechanism.throws.map((/** @type {number} */ _, /** @type {number} */ n) => ({ centre: [2.2 * mechanism.crank * n, 0], radius: mechanism.crank }));
   if (mechanism.type === "flywheel") return [mechanism.radius, mechanism.inner_radius].filter(Boolean).map((radius) => ({ centre: [0, 0], radius }));
   const row = (/** @type {[number, number, number, number][]} */ pairs) => pairs.flatMap(([from, to, one, other]) =>
     /** @type {Circle[]} */ ([{ centre: [from, 0], radius: one }, { centre: [to, 0], radius: other }]));

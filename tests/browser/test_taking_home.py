@@ -38,11 +38,12 @@ FIELDS = {
     "layshaft_gearbox": ("ratios", "3.4, 2.2, 1.5, 1", [3.4, 2.2, 1.5, 1]),
     "function": ("input_range", "85", 85),
     "cam": ("follower/roller_radius", "9", 9),
-    "flywheel": ("coefficient", "0.04", 0.04),
+    "flywheel": ("coefficient", "0.06", 0.06),
+    "engine": ("stroke", "74", 74),
 }
 
-# What has no motion over a cycle: of several speeds one is engaged at a time, and a wheel looks the same.
-STILL = {"gearbox", "layshaft_gearbox", "flywheel"}
+# What has no motion over a cycle: of several speeds one is engaged at a time, and shafts just turn.
+STILL = {"gearbox", "layshaft_gearbox", "flywheel", "engine"}
 
 
 def reveal(page, path):

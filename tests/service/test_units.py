@@ -12,6 +12,7 @@ PURE = {
     "AgainstMotion": {"forward", "backward"},  # forces, or torques on a link
     "Allocation": {"cost"},
     "BalanceMetrics": {"value", "bound", "gap"},  # shares of what was before
+    "Balancer": {"backward", "forward"},  # in units of m_B r
     "BarrelMetrics": {"curvature_ratio"},
     "CamForces": {"frequency_ratio"},
     "CamLimits": {"curvature_ratio"},
@@ -20,8 +21,22 @@ PURE = {
     "CognateTriples": {"largest_residual"},
     "Constraints": {"max_link_ratio", "max_joint_force_index"},
     "CurvePlacement": {"size"},  # times the stated curve
+    "CylinderPressure": {"table"},  # columns of two units
     "DesignForces": {"joint_force_index"},
     "DwellMetrics": {"link_ratio", "reach", "quality"},
+    "EngineCylinder": {"place"},  # in spacings of the throws
+    "EngineFlywheel": {"coefficient"},
+    "EngineHarmonic": {"coefficient", "cos", "place_cos", "place_sin", "sin", "torque"},
+    "EngineLayout": {"positions"},  # in spacings of the throws
+    "EngineMetrics": {
+        "binomial_terms",
+        "primary_force",
+        "primary_moment",
+        "secondary_force",
+        "secondary_moment",
+        "torque",
+    },
+    "EngineProblem": {"rod_ratio"},
     "ErrorCurve": {"input"},
     "ErrorExtreme": {"input"},
     "ExactDesign": {"rms_residual"},
@@ -44,6 +59,8 @@ PURE = {
     "GearPair": {"ratio"},
     "GearedInertia": {"ratio"},
     "StatedFlywheel": {"coefficient"},
+    "IdleFlywheel": {"coefficient"},
+    "Overbalance": {"share"},
     "StatedGear": {"ratio"},
     "GearTrainMetrics": {"error", "relative_error", "largest_stage_ratio"},
     "GearTrainProblem": {"ratio", "max_stage_ratio", "tolerance"},
@@ -99,6 +116,7 @@ PURE = {
     "Target": {"residual"},
     "TorqueCourse": {"table"},  # columns of several units
     "TrainVibration": {"frequency_ratio", "period_ratio"},
+    "VectorHarmonic": {"backward", "forward", "major", "minor"},
     "Yield": {"value", "low", "high"},
 }
 

@@ -80,6 +80,8 @@ MEASURING = {
     "max_thickness": LENGTH,
     "wall": LENGTH,
     "rim_speed": SPEED,
+    "fires_at_top": ANGLE,
+    "even_firing": ANGLE,
 }
 
 

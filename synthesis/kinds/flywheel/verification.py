@@ -8,12 +8,10 @@ sums over thin rings, and no wheel of a grid over all that the limits allow is l
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from synthesis.analyses.motions import RAD_PER_S
 from synthesis.kinds.flywheel.course import UnknownTorque, machine_course
@@ -22,11 +20,9 @@ from synthesis.kinds.flywheel.problem import FlywheelProblem
 from synthesis.model.answer import Check, Verification
 from synthesis.model.dimension import LENGTH, SPEED
 from synthesis.proof.checks import at_least, at_most, tolerated
+from synthesis.proof.shaft_speed import CYCLES, Run, integrated
 
 Real = NDArray[np.float64]
-
-CYCLES = 2
-"""Cycles over which the speed is followed: after the first one it has to repeat."""
 
 GRID = 2048
 """Equal steps of a turn, beside the rows of a table."""
@@ -36,9 +32,6 @@ KEPT = 1e-6
 
 REPEATS = 1e-7
 """Share of the speed by which it may be another one after a cycle: the method's error at corners of the torque."""
-
-SLOWEST, FASTEST = 1e-6, 4.0
-"""Speeds at the start, over the mean, between which it is looked for: coefficients are at most 1."""
 
 RINGS = 64
 """Rings of the sums, each by Gauss's rule of three points, which is exact for cubic integrands."""
@@ -54,17 +47,6 @@ AT_LIMIT = 1e-9
 
 SHOWN = 361
 """Positions of the course in an answer."""
-
-
-class _Run(NamedTuple):
-    """Angles (radians), torque and speed (rad/s) over the cycles, and the extremes of the speed between them too."""
-
-    angle: Real
-    demand: Real
-    speed: Real
-    least: float
-    greatest: float
-    cycle: float
 
 
 def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> FlywheelDesign | None:
@@ -88,7 +70,7 @@ def verify_flywheel(problem: FlywheelProblem, wheel: FlywheelMechanism) -> Flywh
     except UnknownTorque:
         return None
     mean_speed = problem.speed_rpm * RAD_PER_S
-    run = _integrated(angle, middle, last, inertia + problem.existing_inertia, mean_speed)
+    run = integrated(angle, middle, last, inertia + problem.existing_inertia, mean_speed)
     if run is None:
         return None
     coefficient = (run.greatest - run.least) / mean_speed
@@ -148,77 +130,6 @@ def _torque(problem: FlywheelProblem) -> tuple[Real, Real, Real]:
         spline = CubicSpline(own, values, bc_type="periodic")
         return angle, np.asarray(spline(middle)), np.asarray(spline(angle))
     return angle, np.interp(middle, own, values), np.interp(angle, own, values)
-
-
-def _integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed: float) -> _Run | None:
-    """The speed over the cycles, whose mean over time is as stated; None where the shaft comes to a stand."""
-    step = np.diff(angle)
-    cycle = float(angle[-1] - angle[0])
-    mean = float((step * (ends[:-1] + 4.0 * middle + ends[1:])).sum() / 6.0) / cycle
-    first = np.tile((mean - ends[:-1]) / inertia, CYCLES).tolist()
-    half = np.tile((mean - middle) / inertia, CYCLES).tolist()
-    last = np.tile((mean - ends[1:]) / inertia, CYCLES).tolist()
-    steps = np.tile(step, CYCLES).tolist()
-
-    def off(start: float) -> float:
-        """By how much the mean over time is beyond the stated one."""
-        speed = _followed(start, steps, first, half, last)
-        if not speed:
-            return -mean_speed
-        w = np.array(speed)
-        slope = np.array(first) / w[:-1], np.array(last) / w[1:]
-        between = 0.5 * (w[1:] + w[:-1]) + np.array(steps) * (slope[0] - slope[1]) / 8.0
-        time = float((np.array(steps) * (1.0 / w[:-1] + 4.0 / between + 1.0 / w[1:])).sum()) / 6.0
-        return CYCLES * cycle / time - mean_speed
-
-    if not off(FASTEST * mean_speed) > 0.0:
-        return None
-    start = float(brentq(off, SLOWEST * mean_speed, FASTEST * mean_speed, xtol=1e-14 * mean_speed))
-    speed = _followed(start, steps, first, half, last)
-    if not speed:
-        return None
-    w, h = np.array(speed), np.array(steps)
-    tops = _between(w, np.array(first) / w[:-1], np.array(last) / w[1:], h)
-    return _Run(
-        np.concatenate([angle[:-1], angle[:-1] + cycle, [angle[-1] + cycle]]),
-        np.concatenate([ends[:-1], ends[:-1], ends[-1:]]),
-        w,
-        float(tops.min()),
-        float(tops.max()),
-        cycle,
-    )
-
-
-def _followed(start: float, h: list[float], first: list[float], half: list[float], last: list[float]) -> list[float]:
-    """The speed at the ends of all steps by dω/dθ = a/ω, a at three places of each; empty where it comes to rest."""
-    w, speed = start, [start]
-    for step, a, b, c in zip(h, first, half, last, strict=True):
-        one = a / w
-        two = w + 0.5 * step * one
-        if two <= 0.0:
-            return []
-        two = b / two
-        three = w + 0.5 * step * two
-        if three <= 0.0:
-            return []
-        three = b / three
-        four = w + step * three
-        if four <= 0.0:
-            return []
-        w += step * (one + 2.0 * two + 2.0 * three + c / four) / 6.0
-        if w <= 0.0:
-            return []
-        speed.append(w)
-    return speed
-
-
-def _between(w: Real, before: Real, after: Real, h: Real) -> Real:
-    """Speeds at the ends of all steps, and where the cubic by both ends and their slopes turns within a step."""
-    turns = before * after < 0.0
-    share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
-    lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]
-    bend = share * (1.0 - share) ** 2 * h * before - share**2 * (1.0 - share) * h * after
-    return np.concatenate([w, lead + bend])
 
 
 def _limits(problem: FlywheelProblem, wheel: FlywheelMechanism, rim: float) -> list[Check]:
@@ -282,7 +193,7 @@ def _lightest_other(problem: FlywheelProblem, inertia: float, greatest: float, f
     return float(mass[allowed].min()) if allowed.any() else math.inf
 
 
-def _course(problem: FlywheelProblem, run: _Run) -> SpeedCurve:
+def _course(problem: FlywheelProblem, run: Run) -> SpeedCurve:
     """A cycle at equal steps."""
     at = run.angle[0] + run.cycle * np.arange(SHOWN) / (SHOWN - 1)
     sign = 1.0 if problem.torque is None or problem.torque.side == "demand" else -1.0

@@ -1,4 +1,4 @@
-"""Flywheels: of every field a value with which the answer is another one."""
+"""Flywheels and engines: of every field a value with which the answer is another one."""
 
 from __future__ import annotations
 
@@ -61,4 +61,92 @@ FLYWHEEL_ROWS: dict[str, Any] = {
     "limits.radius_to_thickness.max": Row(
         3.5, {"limits": {"radius_to_thickness": {"max": 4.0}, "thickness": {"max": 90.0}}}
     ),
+}
+
+MASSES = {
+    "piston": 0.35,
+    "rod": {"mass": 0.45, "cg": 40.0, "inertia": 0.0012},
+    "crank": {"mass": 1.0, "cg": 5.0, "inertia": 0.001},
+}
+GAS = {"table": [[0.0, 2e6], [60.0, 5e5], [180.0, 0.0], [540.0, 0.0], [660.0, 2e5]]}
+ENGINE: dict[str, Any] = {
+    "kind": "engine",
+    "cylinders": 2,
+    "stroke_cycle": 4,
+    "bore": 70.0,
+    "stroke": 70.0,
+    "rod": 120.0,
+    "masses": MASSES,
+    "pressure": GAS,
+    "speed_rpm": 2000.0,
+    "layout": {"type": "inline", "throws": [0.0, 170.0], "spacing": 80.0},
+    "flywheel": {"coefficient": 0.05, "speed_rpm": 800.0},
+}
+VEE = {"type": "vee", "vee_angle": 80.0, "throws": [0.0, 170.0]}
+FOUR = {"cylinders": 4, "layout": VEE}
+SOUGHT = {"cylinders": 4, "layout": {"type": "inline"}, "max_designs": 2}
+ENGINE_ROWS: dict[str, Any] = {
+    "length_unit": "cm",
+    "max_designs": Row(1, SOUGHT),
+    "include_failed": Row(True, {"firing_order": [1, 2], "firing_angles": [0.0, 30.0]}),
+    "seed": 7,
+    "units": Row("consistent", {"masses": {"piston": 0.35, "rod": {"mass": 0.45, "cg": 40.0}}, "flywheel": None}),
+    "cylinders": Row(3, {"layout": {"type": "inline"}}),
+    "stroke_cycle": Row(2, {"pressure": None}),
+    "stroke": 72.0,
+    "rod": 130.0,
+    "rod_ratio": Row(3.6, {"rod": None, "masses": None, "pressure": None, "flywheel": None}),
+    "bore": 72.0,
+    "masses": {"piston": 0.4, "rod": {"mass": 0.45, "cg": 40.0}},
+    "masses.piston": 0.4,
+    "masses.rod": {"mass": 0.5, "cg": 40.0},
+    "masses.rod.mass": 0.5,
+    "masses.rod.cg": 41.0,
+    "masses.rod.inertia": 0.0013,
+    "masses.crank": {"mass": 1.0, "cg": -5.0},
+    "masses.crank.mass": 1.1,
+    "masses.crank.cg": -5.0,
+    "masses.crank.inertia": 0.002,
+    "pressure": {"table": [[0.0, 2e6], [60.0, 5e5], [180.0, 0.0]]},
+    "pressure.table": [[0.0, 2e6], [60.0, 5e5], [180.0, 0.0]],
+    "pressure.interpolation": "periodic_cubic",
+    "speed_rpm": 2100.0,
+    "layout": {"type": "inline", "throws": [0.0, 160.0]},
+    "layout.type": Row("opposed", {"layout": {"type": "inline", "pins": "shared", "throws": [0.0]}, "cylinders": 1}),
+    "layout.vee_angle": Row(70.0, FOUR),
+    "layout.pins": Row("own", {"cylinders": 2, "layout": {"type": "opposed"}}),
+    "layout.throws": [0.0, 160.0],
+    "layout.positions": [0.0, 2.0],
+    "layout.spacing": 90.0,
+    "layout.numbering": Row("by_bank", FOUR),
+    "layout.first_bank": Row("right", FOUR),
+    "other_layouts": Row([{"type": "opposed", "pins": "own"}], SOUGHT),
+    "other_layouts[].type": Row(
+        "radial", SOUGHT | {"other_layouts": [{"type": "opposed"}], "stroke_cycle": 2, "pressure": None}
+    ),
+    "other_layouts[].vee_angle": Row(80.0, SOUGHT | {"other_layouts": [{"type": "vee", "vee_angle": 90.0}]}),
+    "other_layouts[].pins": Row("own", SOUGHT | {"other_layouts": [{"type": "opposed"}]}),
+    "other_layouts[].throws": Row([0.0, 0.0], SOUGHT | {"other_layouts": [{"type": "opposed"}]}),
+    "other_layouts[].positions": Row(
+        [0.0, 1.0, 2.0, 4.0], SOUGHT | {"layout": {"type": "radial"}, "other_layouts": [{"type": "inline"}]}
+    ),
+    "other_layouts[].spacing": Row(
+        70.0, SOUGHT | {"layout": {"type": "radial"}, "other_layouts": [{"type": "inline", "spacing": 60.0}]}
+    ),
+    "other_layouts[].numbering": Row(
+        "by_bank", SOUGHT | {"layout": {"type": "radial"}, "other_layouts": [{"type": "opposed"}]}
+    ),
+    "other_layouts[].first_bank": Row(
+        "right", SOUGHT | {"layout": {"type": "radial"}, "other_layouts": [{"type": "opposed"}]}
+    ),
+    "throw_angles": Row([0.0, 90.0, 180.0], {"layout": {"type": "inline"}}),
+    "moment_about": "middle",
+    "method": "two_term",
+    "avoid_adjacent": Row(False, {"cylinders": 6, "layout": {"type": "inline"}, "max_designs": 1}),
+    "firing_order": [1, 2],
+    "firing_angles": Row([0.0, 170.0], {"firing_order": [1, 2]}),
+    "flywheel": {"coefficient": 0.04, "speed_rpm": 800.0},
+    "flywheel.coefficient": 0.04,
+    "flywheel.existing_inertia": 0.01,
+    "flywheel.speed_rpm": 700.0,
 }

@@ -22,6 +22,7 @@ TABLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "function": (linkages.FUNCTION, linkages.FUNCTION_ROWS),
     "balancing": (balancing.ROTOR, balancing.ROTOR_ROWS),
     "flywheel": (shafts.FLYWHEEL, shafts.FLYWHEEL_ROWS),
+    "engine": (shafts.ENGINE, shafts.ENGINE_ROWS),
 }
 
 EXHAUSTIVE = "an exhaustive search returns nothing that fails"

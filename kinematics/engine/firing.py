@@ -1,0 +1,59 @@
+"""Firing orders: a cylinder fires at its top dead centre, in a four-stroke engine at every other one."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+SAME = 1e-9
+"""Degrees within which angles, and unevennesses, are one."""
+
+MOST_CYLINDERS = 20
+"""Beyond this the 2^(n−1) choices of a four-stroke engine are too many to be gone through."""
+
+
+class Firing(NamedTuple):
+    """Choices of where each cylinder fires.
+
+    Attributes
+    ----------
+    angles : float, shape (C, n)
+        Firing angles after that of the first cylinder, degrees, by cylinder: the choices that are as even as possible.
+    unevenness : float
+        Largest less smallest gap between firings, degrees.
+    choices : int
+        All choices that there are.
+    """
+
+    angles: Real
+    unevenness: float
+    choices: int
+
+
+def unevenness(angles: Real, cycle: float) -> Real:
+    """Largest less smallest gap between firings, shape S of angles (S + (n,)) in degrees of a cycle."""
+    ordered = np.sort(np.mod(angles, cycle), axis=-1)
+    gaps = np.diff(np.concatenate([ordered, ordered[..., :1] + cycle], axis=-1), axis=-1)
+    return np.asarray(gaps.max(axis=-1) - gaps.min(axis=-1))
+
+
+def firing_choices(top: Real, strokes: int) -> Firing:
+    """The most even choices for top dead centres τ (degrees, by cylinder) of an engine of 2 or 4 strokes."""
+    count = len(top)
+    own = np.mod(top - top[0], 360.0)
+    # What rounding has left below a full turn is a full turn.
+    own = np.where(own > 360.0 - SAME, 0.0, own)
+    if strokes == 2:
+        return Firing(own[None], float(unevenness(own, 360.0)), 1)
+    if count > MOST_CYLINDERS:
+        raise ValueError(f"expected at most {MOST_CYLINDERS} cylinders, got {count}")
+    number = np.arange(1 << (count - 1))[:, None]
+    late = np.concatenate([np.zeros((len(number), 1), np.int64), (number >> np.arange(count - 1)) & 1], axis=1)
+    angles = own + 360.0 * late
+    uneven = unevenness(angles, 720.0)
+    least = float(uneven.min())
+    return Firing(angles[uneven <= least + SAME], least, len(number))

@@ -1,0 +1,58 @@
+"""Harmonics of an engine's forces, moments and torque, as sums over its cylinders.
+
+Cylinder i has its axis at β_i and its top dead centre where the crank has turned by τ_i = φ_i + β_i. Its k-th harmonic
+pushes the frame by u(β_i) cos k(θ − τ_i), in units of m_B r ω² A_k. As a complex number the sum is
+
+    P e^(jkθ) + N e^(−jkθ),    P = ½ Σ w_i e^(j(β_i − kτ_i)),    N = ½ Σ w_i e^(j(β_i + kτ_i)):
+
+an ellipse of half axes |P| + |N| and ||P| − |N||. With N = 0 weights on a shaft that turns k times as fast balance it,
+with |P| = |N| a pair of shafts that turn against each other. Moments have w_i = z_i and are turned by a right angle.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Turning(NamedTuple):
+    """The parts of a harmonic that turn with the crank and against it; complex, arrays over arrangements."""
+
+    forward: Complex
+    backward: Complex
+
+    @property
+    def major(self) -> Real:
+        """The greatest size over a turn."""
+        return np.asarray(np.abs(self.forward) + np.abs(self.backward))
+
+    @property
+    def minor(self) -> Real:
+        """The least size over a turn."""
+        return np.asarray(np.abs(np.abs(self.forward) - np.abs(self.backward)))
+
+
+def turning_parts(order: int, axis: Real, top: Real, weight: Real | float = 1.0) -> Turning:
+    """Both parts of a harmonic, in units of m_B r ω² A_k.
+
+    Parameters
+    ----------
+    axis, top : float, shape S + (n,)
+        β and τ of the cylinders, radians.
+    weight : float, shape S + (n,)
+        1 for forces, the places along the shaft for moments.
+    """
+    return Turning(
+        0.5 * (weight * np.exp(1j * (axis - order * top))).sum(axis=-1),
+        0.5 * (weight * np.exp(1j * (axis + order * top))).sum(axis=-1),
+    )
+
+
+def torque_sum(order: int, top: Real, weight: Real | float = 1.0) -> Complex:
+    """Σ e^(−jkτ): what the k-th harmonic of the torque is, in units of one cylinder's."""
+    return np.asarray((weight * np.exp(-1j * order * top)).sum(axis=-1))

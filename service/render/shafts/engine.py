@@ -1,0 +1,221 @@
+"""Piston engines: the sheet with end view, crankshaft and torque; the DXF drawing of both views; the table.
+
+=========  ============================================================
+layer      what is on it
+=========  ============================================================
+CYLINDERS  axes of the cylinders, seen from the front
+CRANK      the throws, seen from the front, and the shaft from the side
+TEXT       numbers of the cylinders
+=========  ============================================================
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from service.render.checks import checks, verdict
+from service.render.outline import entries
+from service.render.page import blocks, dxf
+from service.render.page.diagrams import Diagram
+from service.render.page.numbers import angle, length
+from service.render.page.sheet import EDGE, TOP, beside, framed, sheet, stacked
+from service.render.page.svg import Box, Element, Viewport, circle, element, line, path, text
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INK, INPUT, OUTPUT, scale_bar
+from service.render.page.table import table
+from service.units import symbols
+from synthesis.kinds.engine.design import EngineDesign, EngineMechanism
+from synthesis.kinds.engine.problem import EngineProblem
+from synthesis.model.dimension import FORCE, TORQUE
+
+PANEL, DIAGRAM, MARGIN = 400.0, 175.0, 26.0
+"""Heights of the panel and of each diagram, and room around what is shown, pixels."""
+
+LETTERS = 11.0
+"""Font size of the numbers of cylinders, pixels."""
+
+SHOWN_ORDERS = 6
+"""Firing orders on the sheet."""
+
+ENDS = (0.1, 0.3, 0.5, 0.7, 0.85, 1.0)
+"""Right ends of the columns of the table of harmonics."""
+
+
+def engine_sheet(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+    """The engine from the front and its shaft from the side, torque, shaking force and tables, as an SVG document."""
+    mechanism, units = design.mechanism, symbols(problem)
+    view = Viewport.fit(_box(mechanism), Box(EDGE, TOP, EDGE + beside(), TOP + PANEL), MARGIN, MARGIN)
+    parts = [_panel(mechanism, view, problem.length_unit)]
+    low = TOP + PANEL + 10.0
+    for diagram in _diagrams(design, units[TORQUE], units[FORCE]):
+        parts.append(diagram.draw(Box(EDGE, low, EDGE + beside(), low + DIAGRAM)))
+        low += DIAGRAM
+    tables, bottom = stacked(_tables(design, problem))
+    order = "-".join(map(str, design.firing.orders[0].order))
+    count = len(mechanism.cylinders)
+    words = (
+        f"{mechanism.layout.capitalize()} engine of {count} cylinders, firing {order}; {verdict(design.verification)}"
+    )
+    described = "A piston engine seen from the front, with its cylinders and throws, and its crankshaft from the side."
+    return sheet(title or "Piston engine", words, described, [*parts, *tables], max(low, bottom))
+
+
+def _diagrams(design: EngineDesign, torque: str, force: str) -> list[Diagram]:
+    course = design.course
+    if course is None:
+        return []
+    at = np.array(course.angle)
+    given = np.array(course.gas_torque) + np.array(course.inertia_torque)
+    shaking = np.hypot(course.shaking_x, course.shaking_y)
+    return [
+        Diagram(f"Torque of gas and inertia ({torque})" if torque else "Torque", "torque", at, given, INPUT),
+        Diagram(f"Shaking force ({force})" if force else "Shaking force", "shaking", at, shaking, OUTPUT),
+    ]
+
+
+def _tables(design: EngineDesign, problem: EngineProblem) -> list[blocks.Block]:
+    mechanism, unit, firing = design.mechanism, problem.length_unit, design.firing
+    built = [
+        ("radius of the crank", f"{length(mechanism.crank)} {unit}"),
+        ("rod", f"{length(mechanism.rod)} {unit}"),
+        ("throws", ", ".join(angle(phase) for phase in mechanism.throws)),
+    ]
+    orders = [
+        (f"order {k}", "-".join(map(str, order.order))) for k, order in enumerate(firing.orders[:SHOWN_ORDERS], 1)
+    ]
+    lines = [
+        blocks.Line(
+            [
+                str(harmonic.order),
+                length(harmonic.force.forward, digits=4),
+                length(harmonic.force.backward, digits=4),
+                length(harmonic.moment.forward, digits=4),
+                length(harmonic.moment.backward, digits=4),
+                length(harmonic.torque, digits=4),
+            ]
+        )
+        for harmonic in design.harmonics
+    ]
+    heads = ["k", "force +", "force −", "moment +", "moment −", "torque"]
+    tables = [
+        blocks.rows("Engine", built),
+        blocks.rows("Firing", [("unevenness", angle(firing.unevenness)), *orders]),
+        blocks.table("Harmonics, with the crank and against it", heads, lines, ENDS),
+        checks(design.verification, problem),
+        blocks.rows("Metrics", entries(design.metrics, problem, {"forces"})),
+    ]
+    if design.metrics.forces is not None:
+        tables.append(blocks.rows("Greatest forces", entries(design.metrics.forces, problem)))
+    return tables
+
+
+def _reach(mechanism: EngineMechanism) -> float:
+    """From the shaft to beyond a piston at its top."""
+    return mechanism.crank + mechanism.rod + 0.6 * mechanism.crank
+
+
+def _box(mechanism: EngineMechanism) -> Box:
+    """Around the end view, whose shaft is the origin, and the crankshaft at its right."""
+    reach = _reach(mechanism)
+    tips = [1j * reach * cmath.rect(1.0, math.radians(cylinder.axis)) for cylinder in mechanism.cylinders]
+    shaft = _shaft(mechanism)
+    around = np.array([*tips, *shaft, complex(-mechanism.crank, -mechanism.crank)])
+    return Box.around(around).grown(0.3 * mechanism.crank)
+
+
+def _shaft(mechanism: EngineMechanism) -> list[complex]:
+    """The crankshaft from the side as a line, to the right of the end view."""
+    reach, step = _reach(mechanism), 1.6 * mechanism.crank
+    left = 1.2 * reach
+    points = [complex(left)]
+    for n, phase in enumerate(mechanism.throws):
+        high = 1j * mechanism.crank * math.cos(math.radians(phase))
+        near, far = left + step * (n + 0.3), left + step * (n + 0.9)
+        points += [complex(near), near + high, far + high, complex(far)]
+    return [*points, complex(left + step * (len(mechanism.throws) + 0.2))]
+
+
+def _throws(mechanism: EngineMechanism) -> list[complex]:
+    """The pins from the front with the first throw up: those that lag stand behind it, clockwise."""
+    first = mechanism.throws[0]
+    return [1j * cmath.rect(mechanism.crank, math.radians(first - phase)) for phase in mechanism.throws]
+
+
+def _panel(mechanism: EngineMechanism, view: Viewport, unit: str) -> Element:
+    group = framed(view.panel, "engine")
+    middle, reach = view.point(0j), _reach(mechanism)
+    numbers: dict[float, list[int]] = {}
+    for cylinder in mechanism.cylinders:
+        numbers.setdefault(cylinder.axis, []).append(cylinder.number)
+    half = 0.75 * mechanism.crank
+    for axis, on in numbers.items():
+        way = 1j * cmath.rect(1.0, math.radians(axis))
+        low, high = mechanism.rod - mechanism.crank, mechanism.rod + mechanism.crank
+        group.add(line(middle, view.point(reach * way), stroke=GREY, stroke_width=0.8, stroke_dasharray="9 3 2 3"))
+        for side in (-1j * half * way, 1j * half * way):
+            walls = view.point(low * way + side), view.point(high * way + side)
+            group.add(line(*walls, stroke=GROUND, stroke_width=1.6))
+        at = view.point(reach * way)
+        words = ", ".join(map(str, on))
+        group.add(text(at.real, at.imag, words, LETTERS, text_anchor="middle", fill=INK, data_bank=words))
+    for n, pin in enumerate(_throws(mechanism), 1):
+        at = view.point(pin)
+        group.add(line(middle, at, stroke=INPUT, stroke_width=4.0, stroke_opacity=0.5, data_throw=str(n)))
+        group.add(circle(at, 4.0, fill="#fff", stroke=INPUT, stroke_width=1.6))
+    group.add(circle(middle, 4.0, fill=GROUND))
+    points = np.array([view.point(point) for point in _shaft(mechanism)])
+    group.add(path([points], stroke=COUPLER, stroke_width=3.0, stroke_linejoin="round"))
+    group.add(element("g", *_shaft_numbers(mechanism, view), fill=CURVE))
+    return group.add(scale_bar(view, unit)[0])
+
+
+def _shaft_numbers(mechanism: EngineMechanism, view: Viewport) -> list[Element]:
+    """The cylinders of each throw, below the shaft's side view."""
+    left, step = 1.2 * _reach(mechanism), 1.6 * mechanism.crank
+    listed = []
+    for n in range(len(mechanism.throws)):
+        on = [str(cylinder.number) for cylinder in mechanism.cylinders if cylinder.throw == n + 1]
+        at = view.point(complex(left + step * (n + 0.6), -1.5 * mechanism.crank))
+        listed.append(text(at.real, at.imag, ", ".join(on), LETTERS, text_anchor="middle"))
+    return listed
+
+
+def engine_drawing(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+    """End view and shaft as a DXF document (R2010)."""
+    mechanism = design.mechanism
+    layers = {"CYLINDERS": (7, "CENTER"), "CRANK": (5, "CONTINUOUS"), "TEXT": (7, "CONTINUOUS")}
+    document = dxf.new_drawing(title or "Piston engine", problem.length_unit, layers)
+    space, letters = document.modelspace(), 0.25 * mechanism.crank
+    for axis in sorted({cylinder.axis for cylinder in mechanism.cylinders}):
+        tip = 1j * _reach(mechanism) * cmath.rect(1.0, math.radians(axis))
+        on = ", ".join(str(cylinder.number) for cylinder in mechanism.cylinders if cylinder.axis == axis)
+        dxf.add_line(space, 0j, tip, "CYLINDERS")
+        dxf.add_words(space, tip * 1.05, on, letters)
+    dxf.add_circle(space, 0j, mechanism.crank, "CRANK")
+    for pin in _throws(mechanism):
+        dxf.add_line(space, 0j, pin, "CRANK")
+        dxf.add_circle(space, pin, 0.15 * mechanism.crank, "CRANK")
+    points = _shaft(mechanism)
+    for start, end in pairwise(points):
+        dxf.add_line(space, start, end, "CRANK")
+    return dxf.written(document)
+
+
+def engine_table(design: EngineDesign, problem: EngineProblem, title: str) -> str:
+    """Torques, shaking force and pins over a cycle where there are forces; otherwise the cylinders and their firing."""
+    course = design.course
+    if course is not None:
+        columns = {name: getattr(course, name) for name in type(course).model_fields}
+        return table(columns, (list(row) for row in zip(*columns.values(), strict=True)))
+    order = design.firing.orders[0]
+    fires = dict(zip(order.order, order.angles, strict=True))
+    return table(
+        ["cylinder", "throw", "axis_deg", "phase_deg", "place", "fires_deg"],
+        (
+            [one.number, one.throw, one.axis, one.phase, one.place, fires[one.number]]
+            for one in design.mechanism.cylinders
+        ),
+    )

@@ -1,0 +1,65 @@
+"""An engine's cylinders: axis, throw, phase and place of each, from a layout and the phases of its throws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.engine.problem import BANKS, EngineLayout
+
+Real = NDArray[np.float64]
+
+
+class Cylinders(NamedTuple):
+    """Cylinders in the order in which they are counted; degrees, and spacings along the shaft.
+
+    ``throw`` is the number of each one's throw from 0, ``axis`` its direction from the engine's own, positive to the
+    left, and ``phase`` the lag of its throw.
+    """
+
+    throw: NDArray[np.int64]
+    axis: Real
+    phase: Real
+    place: Real
+
+    @property
+    def top(self) -> Real:
+        """Crank angles of the top dead centres."""
+        return np.asarray(self.phase + self.axis)
+
+
+def axes_of(layout: EngineLayout, cylinders: int) -> list[list[float]]:
+    """The axes of the cylinders on each throw, the first bank first."""
+    if layout.type == "radial":
+        return [[360.0 * n / cylinders for n in range(cylinders)]]
+    banks = BANKS[layout.type]
+    half = 90.0 if layout.type == "opposed" else 0.5 * (banks - 1) * (layout.vee_angle or 0.0)
+    step = 0.0 if banks == 1 else 2.0 * half / (banks - 1)
+    row = [half - step * n for n in range(banks)]
+    if layout.first_bank == "right":
+        row.reverse()
+    count = layout.throw_count(cylinders)
+    assert count is not None, "a layout without faults"
+    if layout.pins == "own":
+        return [[row[n % banks]] for n in range(count)]
+    return [row] * count
+
+
+def cylinders_of(layout: EngineLayout, cylinders: int, throws: Sequence[float]) -> Cylinders:
+    """The cylinders of an engine whose throws lag by these phases."""
+    axes = axes_of(layout, cylinders)
+    places = layout.positions or [float(n) for n in range(len(throws))]
+    listed = [(n, axis, throws[n], places[n]) for n, row in enumerate(axes) for axis in row]
+    if layout.numbering == "by_bank" and layout.type != "radial":
+        order = list(dict.fromkeys(axis for _, axis, _, _ in listed))
+        listed.sort(key=lambda cylinder: order.index(cylinder[1]))
+    throw, axis, phase, place = zip(*listed, strict=True)
+    return Cylinders(np.array(throw), np.array(axis), np.array(phase, np.float64), np.array(place, np.float64))
+
+
+def middle_of(places: Real) -> float:
+    """The middle of the cylinders along the shaft."""
+    return 0.5 * float(places.min() + places.max())

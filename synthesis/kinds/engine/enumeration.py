@@ -1,0 +1,198 @@
+"""All arrangements of an engine's throws that fire evenly; those that a turn, mirror or the other end makes alike once.
+
+Even firing puts the top dead centres on slots: n of them with one cylinder each, or in a four-stroke engine of an even
+number of cylinders n/2 with two each. A throw with cylinders of several banks takes the slots of all of them, so that
+only banks whose angles are whole numbers of slots apart can share throws. An arrangement is a word: the slot of the
+first cylinder of each throw. Words are made one throw after the other, from the slots that are left.
+
+Of more than eight throws, each with a cylinder, words are counted by Burnside's lemma. No turn alone, and no mirror of
+more than two slots, leaves a word as it is. Counted from the other end it may stay, if pairs of places p, N − 1 − p
+have slots s, π(s), π an involution: a turn by half, or a mirror. With f slots that π leaves and t pairs that it
+exchanges, of capacity c, there are (N/2)!/((c/2)!^f c!^t) 2^(tc) of them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synthesis.kinds.engine.arrangement import axes_of
+from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
+
+Real = NDArray[np.float64]
+
+MOST_THROWS = 8
+"""Throws up to which all arrangements are listed."""
+
+MOST_LISTED = 5040
+"""Symmetric arrangements of more throws that are listed."""
+
+WHOLE = 1e-9
+"""Slots by which an angle between banks may miss a whole number of them."""
+
+DIGITS = 7
+"""Decimals of a degree in which arrangements are compared."""
+
+
+class Arrangements(NamedTuple):
+    """Phases of throws, degrees: those that are listed, how many there are, and whether that is all of them."""
+
+    phases: list[tuple[float, ...]]
+    total: int
+    complete: bool
+
+
+class Slots(NamedTuple):
+    """Places of even firing within a turn: how many, how many cylinders each, and degrees between them."""
+
+    number: int
+    capacity: int
+    step: float
+
+
+def slots_of(cylinders: int, strokes: int) -> Slots:
+    """The slots of even firing."""
+    if strokes == 4 and cylinders % 2 == 0:
+        return Slots(cylinders // 2, 2, 720.0 / cylinders)
+    return Slots(cylinders, 1, 360.0 / cylinders)
+
+
+def even_arrangements(problem: EngineProblem, layout: EngineLayout) -> Arrangements:
+    """The arrangements of a layout's throws that fire evenly, the first throw at 0."""
+    axes = axes_of(layout, problem.cylinders)
+    slots = slots_of(problem.cylinders, problem.stroke_cycle)
+    steps = [[(axis - row[0]) / slots.step for axis in row] for row in axes]
+    if any(abs(step - round(step)) > WHOLE for row in steps for step in row):
+        return Arrangements([], 0, True)
+    taken = [[round(step) for step in row] for row in steps]
+    if len(axes) > MOST_THROWS:
+        words, count, complete = _symmetric(problem, slots, len(axes)), _counted(layout, slots, len(axes)), False
+    else:
+        words, count, complete = _words(taken, slots), 0, True
+    origin = [axes[0][0] - row[0] for row in axes]
+    phases = (tuple(slots.step * s + o for s, o in zip(word, origin, strict=True)) for word in words)
+    listed = distinct(phases, layout, problem.cylinders)
+    return Arrangements(listed, count or len(listed), complete)
+
+
+def stated_arrangements(problem: EngineProblem, layout: EngineLayout, angles: Sequence[float]) -> Arrangements:
+    """All arrangements of stated phases, even or not, the first throw at the first of them."""
+    throws = layout.throw_count(problem.cylinders) or 1
+    first = angles[0]
+    combinations = itertools.product(angles, repeat=throws - 1)
+    listed = distinct(((first, *others) for others in combinations), layout, problem.cylinders)
+    return Arrangements(listed, len(listed), True)
+
+
+def distinct(phases: Iterator[tuple[float, ...]], layout: EngineLayout, cylinders: int) -> list[tuple[float, ...]]:
+    """One of each set of arrangements that are alike, the first throw at 0; in the order of their phases."""
+    turns = _alike(layout, cylinders)
+    found: dict[tuple[float, ...], tuple[float, ...]] = {}
+    for throws in phases:
+        images = []
+        for mirror, other in turns:
+            image = throws[::-1] if other else throws
+            exact = tuple(_within_turn(mirror * (phase - image[0])) for phase in image)
+            images.append((tuple(round(phase, DIGITS) for phase in exact), exact))
+        key, exact = min(images)
+        found.setdefault(key, exact)
+    return [found[key] for key in sorted(found)]
+
+
+def _within_turn(angle: float) -> float:
+    """From 0 to below 360; what rounding has left of a full turn is 0."""
+    turned = angle % 360.0
+    return 0.0 if min(turned, 360.0 - turned) < 0.5 * 10.0**-DIGITS else turned
+
+
+def _alike(layout: EngineLayout, cylinders: int) -> list[tuple[float, bool]]:
+    """What leaves the cylinders where they are: a mirror (−1) or none, and whether they are counted from the other end.
+
+    The engine may be turned by half besides: so do opposed cylinders come to where those of the other bank were.
+    """
+    axes = axes_of(layout, cylinders)
+    places = layout.positions or list(range(len(axes)))
+    ends = [low + high for low, high in zip(places, reversed(places), strict=True)]
+
+    def rows(mirror: float, turn: float) -> list[list[float]]:
+        return [sorted(round(_within_turn(mirror * axis + turn), DIGITS) for axis in row) for row in axes]
+
+    own, found = rows(1.0, 0.0), []
+    for mirror, other in itertools.product((1.0, -1.0), (False, True)):
+        images = [rows(mirror, turn)[:: -1 if other else 1] for turn in (0.0, 180.0)]
+        if own in images and (not other or max(ends) - min(ends) <= WHOLE):
+            found.append((mirror, other))
+    return found
+
+
+def _words(taken: list[list[int]], slots: Slots) -> Iterator[tuple[int, ...]]:
+    """Words whose first letter is 0; ``taken`` are the slots that a throw takes beside its first."""
+    left = [slots.capacity] * slots.number
+    word: list[int] = []
+
+    def follow() -> Iterator[tuple[int, ...]]:
+        if len(word) == len(taken):
+            yield tuple(word)
+            return
+        for slot in range(slots.number if word else 1):
+            used = [(slot + step) % slots.number for step in taken[len(word)]]
+            for one in used:
+                left[one] -= 1
+            if all(left[one] >= 0 for one in used):
+                word.append(slot)
+                yield from follow()
+                word.pop()
+            for one in used:
+                left[one] += 1
+
+    yield from follow()
+
+
+def _symmetric(problem: EngineProblem, slots: Slots, throws: int) -> Iterator[tuple[int, ...]]:
+    """Words that read alike from both ends; where each slot is taken once, the other end reads them mirrored."""
+    if slots.capacity == 2:
+        for half in itertools.permutations(range(1, slots.number)):
+            yield (0, *half, *reversed(half), 0)
+        return
+    # There are too many to be listed: a part of them is drawn.
+    rng = np.random.default_rng(problem.seed)
+    for _ in range(MOST_LISTED):
+        last = int(rng.integers(1, slots.number))
+        pairs = [{slot, (last - slot) % slots.number} for slot in range(slots.number)]
+        chosen = {min(pair): tuple(pair) for pair in pairs if len(pair) == 2}
+        fixed = [slot for slot in range(slots.number) if (last - slot) % slots.number == slot]
+        if 2 * len(chosen) != throws - throws % 2 or len(fixed) != throws % 2:
+            continue
+        others = [pair for low, pair in chosen.items() if low != 0]
+        rng.shuffle(others)
+        front = [0, *(int(pair[int(rng.integers(2))]) for pair in others)]
+        yield (*front, *fixed, *((last - slot) % slots.number for slot in reversed(front)))
+
+
+def _counted(layout: EngineLayout, slots: Slots, throws: int) -> int:
+    """Arrangements of throws with a cylinder each, by Burnside's lemma; more than two slots."""
+    m, c = slots.number, slots.capacity
+    alike = _alike(layout, throws)
+    # Every turn of the shaft goes with each of these; only involutions leave a word as it is.
+    halves = {0, m // 2} if m % 2 == 0 else {0}
+    turns = [[(s + r) % m for s in range(m)] for r in halves if (1.0, True) in alike]
+    mirrors = [[(r - s) % m for s in range(m)] for r in range(m) if (-1.0, True) in alike]
+    fixed = sum(_fixed(turn, c, throws) for turn in [*turns, *mirrors])
+    return int(math.factorial(throws) // math.factorial(c) ** m + fixed) // (len(alike) * m)
+
+
+def _fixed(image: list[int], capacity: int, throws: int) -> int:
+    """Words that read from the other end are their own image, of an involution of the slots."""
+    kept = sum(image[slot] == slot for slot in range(len(image)))
+    pairs = (len(image) - kept) // 2
+    half = throws // 2
+    if kept and capacity == 1:
+        return math.factorial(half) * 2**pairs if throws % 2 and kept == 1 else 0
+    if throws % 2:
+        return 0
+    return int(math.factorial(half) // math.factorial(capacity) ** pairs * 2 ** (capacity * pairs))

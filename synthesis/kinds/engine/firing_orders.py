@@ -1,0 +1,76 @@
+"""The firing orders of an engine as an answer has them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.engine.firing import SAME, firing_choices, unevenness
+from synthesis.kinds.engine.arrangement import Cylinders
+from synthesis.kinds.engine.design import EngineFiring, FiringOrder
+from synthesis.kinds.engine.problem import EngineProblem
+
+Real = NDArray[np.float64]
+
+MOST_ORDERS = 64
+"""Orders that are listed."""
+
+
+def firing_of(problem: EngineProblem, cylinders: Cylinders) -> EngineFiring:
+    """The most even firing orders, those with the fewest neighbours first if that is asked for."""
+    found = firing_choices(cylinders.top, problem.stroke_cycle)
+    orders: dict[tuple[int, ...], FiringOrder] = {}
+    for angles in found.angles:
+        listed = _order(angles, cylinders)
+        # An order and its reverse are one: the one that names the higher cylinder first stands for both.
+        known = orders.get(tuple(listed.reversed))
+        if known is None or known.order < listed.order:
+            orders.pop(tuple(listed.reversed), None)
+            orders.setdefault(tuple(listed.order), listed)
+    ranked = sorted(
+        orders.values(), key=lambda one: (one.adjacent if problem.avoid_adjacent else 0, [-k for k in one.order[::-1]])
+    )
+    return EngineFiring(
+        unevenness=found.unevenness,
+        orders=ranked[:MOST_ORDERS],
+        even_choices=len(found.angles),
+        choices=found.choices,
+        stated_unevenness=_stated(problem),
+    )
+
+
+def _stated(problem: EngineProblem) -> float | None:
+    if problem.firing_angles is None:
+        return None
+    return float(unevenness(np.array(problem.firing_angles), problem.cycle))
+
+
+def _order(angles: Real, cylinders: Cylinders) -> FiringOrder:
+    number = np.lexsort((np.arange(len(angles)), np.round(angles, 6)))
+    order = [int(k) + 1 for k in number]
+    return FiringOrder(
+        order=order,
+        reversed=[order[0], *order[:0:-1]],
+        angles=[float(angles[k]) for k in number],
+        adjacent=_adjacent(number, cylinders),
+    )
+
+
+def _adjacent(number: NDArray[np.int64], cylinders: Cylinders) -> int:
+    """How often neighbours of a bank fire after each other, round the cycle."""
+    if len(number) < 3:
+        return 0
+    following = np.roll(number, -1)
+    same = np.abs(cylinders.axis[number] - cylinders.axis[following]) <= SAME
+    # Places in a bank: how many different ones of its cylinders lie before each.
+    rows = [np.unique(cylinders.place[np.abs(cylinders.axis - axis) <= SAME]) for axis in cylinders.axis]
+    rank = np.array([int((row < place).sum()) for row, place in zip(rows, cylinders.place, strict=True)])
+    return int((same & (np.abs(rank[number] - rank[following]) == 1)).sum())
+
+
+def fires(firing: EngineFiring) -> Real:
+    """Firing angles by cylinder, of the first order that is listed."""
+    first = firing.orders[0]
+    at = np.empty(len(first.order))
+    at[np.array(first.order) - 1] = first.angles
+    return at

@@ -1,0 +1,313 @@
+"""Piston engines: cylinders, their arrangement, masses, gas, and what is to be found."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from synthesis.model.dimension import ANGLE, INERTIA, LENGTH, MASS, ROTATIONAL_SPEED
+from synthesis.model.dynamics import METRES, StatedFlywheel
+from synthesis.model.loads import FULL_TURN, Interpolation, PairRows, period_fault
+from synthesis.model.statement import (
+    Contradiction,
+    Count,
+    Degrees,
+    Flag,
+    NonNegative,
+    Number,
+    PositiveLength,
+    PositiveNumber,
+    StatedProblem,
+    Statement,
+)
+
+MOST_CYLINDERS = 16
+"""Cylinders at most: 2^15 choices of firing."""
+
+LEAST_ROD = 1.0 + 1e-3
+"""Rod over crank below which the rod is refused: at 1 it could not pass the dead centre."""
+
+MOST_COMBINATIONS, MOST_CHOICES = 20_000, 20_000_000
+"""Combinations of stated throw angles that are gone through, and choices of firing that they have together."""
+
+BANKS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
+"""Rows of cylinders by type of layout; a radial engine has a star of them instead."""
+
+
+class EngineLayout(Statement):
+    """How cylinders and cranks are arranged."""
+
+    type: Literal["inline", "vee", "opposed", "radial", "w"]
+    vee_angle: Annotated[float, ANGLE, Field(strict=True, gt=0.0, lt=180.0)] | None = Field(
+        default=None, description="Between neighbouring banks of a vee or w, degrees; 180 is `opposed`, 0 `inline`."
+    )
+    pins: Literal["shared", "own"] = Field(
+        default="shared",
+        description="Whether the cylinders of all banks that stand side by side are on one throw, or each has its own.",
+    )
+    throws: list[Degrees] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_CYLINDERS,
+        description="Phases of the throws along the shaft: by how much each lags, degrees. Left out, they are sought.",
+    )
+    positions: list[Number] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_CYLINDERS,
+        description="Places of the throws along the shaft, in spacings; by default 0, 1, 2, ...",
+    )
+    spacing: PositiveLength | None = Field(
+        default=None, description="Between neighbouring throws; without it moments are those of a spacing of 1."
+    )
+    numbering: Literal["along_shaft", "by_bank"] = Field(
+        default="along_shaft", description="How cylinders are counted: throw by throw, or bank by bank."
+    )
+    first_bank: Literal["left", "right"] = Field(default="left", description="Which bank is counted first.")
+
+    def throw_count(self, cylinders: int) -> int | None:
+        """Throws of so many cylinders; None where they do not divide."""
+        if self.type == "inline" or self.pins == "own":
+            return cylinders
+        if self.type == "radial":
+            return 1
+        banks = BANKS[self.type]
+        return None if cylinders % banks else cylinders // banks
+
+
+class StatedRod(Statement):
+    """A connecting rod."""
+
+    mass: Annotated[NonNegative, MASS]
+    cg: Annotated[NonNegative, LENGTH] = Field(description="From the crank pin to the centre of gravity.")
+    inertia: Annotated[NonNegative, INERTIA] | None = Field(
+        default=None, description="About it; by default that of two masses at the pins."
+    )
+
+
+class StatedCrank(Statement):
+    """One throw of the crankshaft."""
+
+    mass: Annotated[NonNegative, MASS]
+    cg: Annotated[Number, LENGTH] = Field(description="From the shaft towards the pin; negative with counterweights.")
+    inertia: Annotated[NonNegative, INERTIA] | None = Field(
+        default=None, description="About the shaft; it is a part of the flywheel's."
+    )
+
+
+class EngineMasses(Statement):
+    """What moves, of each cylinder alike."""
+
+    piston: Annotated[PositiveNumber, MASS] = Field(description="With its pin and rings.")
+    rod: StatedRod
+    crank: StatedCrank | None = None
+
+
+class CylinderPressure(Statement):
+    """Gauge pressure in a cylinder over its cycle, which begins at the top dead centre at which it fires."""
+
+    table: PairRows = Field(description="Rows of crank angle (°) and pressure (Pa, or in the consistent units).")
+    interpolation: Interpolation = "linear"
+
+
+class IdleFlywheel(StatedFlywheel):
+    """The flywheel that is to even the speed, as a rule at idle."""
+
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED]
+
+
+class EngineProblem(StatedProblem):
+    """Piston engine: how it shakes, turns and fires, or the arrangements of its throws that fire evenly.
+
+    With `throws` the engine is analysed: harmonics of forces, moments and torque, exact and not of two terms; firing
+    orders; pin forces; what balances it. Without them all arrangements of the throws that fire evenly are found, and
+    ordered by what shakes the frame. Every number is verified by driving the slider-crank of each cylinder.
+    """
+
+    model_config = ConfigDict(
+        title="Piston engine",
+        json_schema_extra={
+            "examples": [
+                {
+                    "kind": "engine",
+                    "cylinders": 4,
+                    "stroke_cycle": 4,
+                    "bore": 76.0,
+                    "stroke": 72.0,
+                    "rod": 130.0,
+                    "masses": {
+                        "piston": 0.35,
+                        "rod": {"mass": 0.45, "cg": 40.0, "inertia": 0.0012},
+                        "crank": {"mass": 1.0, "cg": 5.0},
+                    },
+                    "layout": {"type": "inline", "throws": [0.0, 180.0, 180.0, 0.0], "spacing": 85.0},
+                    "speed_rpm": 3000.0,
+                    "pressure": {
+                        "table": [
+                            [0.0, 2.4e6],
+                            [15.0, 4.2e6],
+                            [40.0, 1.6e6],
+                            [90.0, 4.5e5],
+                            [140.0, 2.0e5],
+                            [180.0, 2.0e4],
+                            [540.0, 0.0],
+                            [630.0, 9.0e4],
+                            [690.0, 8.0e5],
+                            [720.0, 2.4e6],
+                        ]
+                    },
+                    "flywheel": {"coefficient": 0.04, "speed_rpm": 800.0},
+                },
+                {
+                    "kind": "engine",
+                    "cylinders": 8,
+                    "stroke_cycle": 4,
+                    "stroke": 80.0,
+                    "rod": 140.0,
+                    "layout": {"type": "vee", "vee_angle": 90.0},
+                },
+            ]
+        },
+    )
+
+    kind: Literal["engine"]
+    units: Literal["si", "consistent"] = Field(
+        default="si",
+        description="`si`: kg, N, N·m, Pa, lengths in the length unit; `consistent`: as they are.",
+    )
+    cylinders: Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]
+    stroke_cycle: Literal[2, 4]
+    stroke: PositiveLength = Field(description="Of the piston: twice the crank's radius.")
+    rod: PositiveLength | None = Field(default=None, description="Its length; give this or `rod_ratio`.")
+    rod_ratio: PositiveNumber | None = Field(default=None, description="Length of the rod over the crank's radius.")
+    bore: PositiveLength | None = Field(default=None, description="Diameter; for gas forces.")
+    masses: EngineMasses | None = Field(default=None, description="Without them forces are in units of m_B r ω².")
+    pressure: CylinderPressure | None = None
+    speed_rpm: Annotated[PositiveNumber, ROTATIONAL_SPEED] | None = Field(
+        default=None, description="At which forces are told; needed with masses or pressure."
+    )
+    layout: EngineLayout
+    other_layouts: list[EngineLayout] = Field(
+        default=[], max_length=8, description="Where throws are sought: further layouts that are allowed."
+    )
+    throw_angles: list[Degrees] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=24,
+        description="Where throws are sought: the phases that are allowed, even firing or not.",
+    )
+    moment_about: Literal["first_throw", "middle"] = Field(
+        default="first_throw",
+        description="Of the reported moments; arrangements are ordered by those about the middle.",
+    )
+    method: Literal["exact", "two_term"] = Field(
+        default="exact", description="`two_term`: cos θ + (r/l) cos 2θ, for comparison with books."
+    )
+    avoid_adjacent: Flag = Field(
+        default=True, description="Firing orders in which neighbours of one bank fire after each other come later."
+    )
+    firing_order: list[Annotated[Count, Field(ge=1, le=MOST_CYLINDERS)]] | None = Field(
+        default=None, min_length=1, max_length=MOST_CYLINDERS, description="An order that the engine has to have."
+    )
+    firing_angles: list[Degrees] | None = Field(
+        default=None, min_length=1, max_length=MOST_CYLINDERS, description="Where these cylinders fire, in that order."
+    )
+    flywheel: IdleFlywheel | None = None
+
+    @property
+    def force_units(self) -> Literal["si", "consistent"]:
+        """Those that are stated."""
+        return self.units
+
+    @property
+    def scale(self) -> float:
+        """The length unit in that of the forces."""
+        return METRES[self.length_unit] if self.units == "si" else 1.0
+
+    @property
+    def crank(self) -> float:
+        """Radius of the crank, in the length unit."""
+        return 0.5 * self.stroke
+
+    @property
+    def rod_length(self) -> float:
+        """In the length unit."""
+        return self.rod if self.rod is not None else (self.rod_ratio or 0.0) * self.crank
+
+    @property
+    def cycle(self) -> float:
+        """Degrees of the crank after which an engine repeats."""
+        return 0.5 * FULL_TURN * self.stroke_cycle
+
+    @property
+    def layouts(self) -> list[tuple[str, EngineLayout]]:
+        """All layouts with their places in the statement."""
+        others = [(f"/other_layouts/{n}", layout) for n, layout in enumerate(self.other_layouts)]
+        return [("/layout", self.layout), *others]
+
+    def contradictions(self) -> list[Contradiction]:
+        """Lengths, counts and tables that do not agree."""
+        found = []
+        if (self.rod is None) == (self.rod_ratio is None):
+            found.append(Contradiction("/rod", "give the rod by its length or by rod_ratio, one of both"))
+        elif self.rod_length < LEAST_ROD * self.crank:
+            path = "/rod" if self.rod is not None else "/rod_ratio"
+            found.append(Contradiction(path, "the rod must be longer than the crank's radius"))
+        for path, layout in self.layouts:
+            found += self._layout_faults(path, layout)
+        return found + self._force_faults() + self._firing_faults()
+
+    def _layout_faults(self, path: str, layout: EngineLayout) -> list[Contradiction]:
+        found = []
+        if (layout.type in ("vee", "w")) != (layout.vee_angle is not None):
+            detail = "a vee or w needs the angle between its banks; other layouts have none"
+            found.append(Contradiction(f"{path}/vee_angle", detail))
+        if layout.type in ("inline", "radial") and layout.pins == "own":
+            found.append(Contradiction(f"{path}/pins", "only banks side by side can have pins of their own"))
+        count = layout.throw_count(self.cylinders)
+        if count is None:
+            detail = f"{self.cylinders} cylinders do not fill {BANKS[layout.type]} banks; give each its own pin"
+            found.append(Contradiction("/cylinders", detail))
+        elif layout.throws is not None and len(layout.throws) != count:
+            found.append(Contradiction(f"{path}/throws", f"expected {count}, one for each throw"))
+        if count is not None and layout.positions is not None and len(layout.positions) != count:
+            found.append(Contradiction(f"{path}/positions", f"expected {count}, one for each throw"))
+        if path != "/layout" and layout.throws is not None:
+            found.append(Contradiction(f"{path}/throws", "throws of further layouts are sought; leave them out"))
+        return found
+
+    def _force_faults(self) -> list[Contradiction]:
+        found = []
+        if self.speed_rpm is None and (self.masses is not None or self.pressure is not None):
+            found.append(Contradiction("/speed_rpm", "forces of masses and gas need a speed"))
+        if self.pressure is not None:
+            if self.bore is None:
+                found.append(Contradiction("/bore", "gas acts on the area of a bore; state it"))
+            fault = period_fault(self.pressure.table, self.cycle)
+            if fault is not None:
+                found.append(Contradiction("/pressure/table", fault))
+        if self.masses is not None and self.masses.rod.cg > self.rod_length:
+            found.append(Contradiction("/masses/rod/cg", "lies beyond the wrist pin"))
+        if self.flywheel is not None and self.masses is None and self.pressure is None:
+            found.append(Contradiction("/flywheel", "a flywheel evens torque; state masses or pressure"))
+        return found
+
+    def _firing_faults(self) -> list[Contradiction]:
+        found, order, given = [], self.firing_order, self.layout.throws is not None
+        if order is not None and sorted(order) != list(range(1, self.cylinders + 1)):
+            found.append(Contradiction("/firing_order", f"expected each of the cylinders 1 to {self.cylinders} once"))
+        if self.firing_angles is not None and (order is None or len(order) != len(self.firing_angles)):
+            found.append(Contradiction("/firing_angles", "expected an angle for each cylinder of firing_order"))
+        if given and (self.other_layouts or self.throw_angles is not None):
+            path = "/other_layouts" if self.other_layouts else "/throw_angles"
+            found.append(Contradiction(path, "the throws are given; nothing is sought"))
+        if self.throw_angles is not None and not given:
+            choices = 1 if self.stroke_cycle == 2 else 1 << (self.cylinders - 1)
+            for path, layout in self.layouts:
+                count = layout.throw_count(self.cylinders) or 1
+                combinations = len(self.throw_angles) ** (count - 1)
+                if combinations > MOST_COMBINATIONS or combinations * choices > MOST_CHOICES:
+                    detail = f"{combinations} combinations of {count} throws for {path} are too many to be compared"
+                    found.append(Contradiction("/throw_angles", detail))
+        return found

@@ -1,0 +1,158 @@
+"""Piston engines: the given arrangement, or all that fire evenly in the order of what shakes the frame."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.engine.firing import firing_choices
+from kinematics.engine.harmonics import torque_sum, turning_parts
+from synthesis.kinds.engine.arrangement import Cylinders, cylinders_of, middle_of
+from synthesis.kinds.engine.design import EngineCylinder, EngineDesign, EngineMechanism, EngineResult
+from synthesis.kinds.engine.enumeration import even_arrangements, stated_arrangements
+from synthesis.kinds.engine.measures import measured
+from synthesis.kinds.engine.problem import EngineLayout, EngineProblem
+from synthesis.kinds.engine.verification import verify_engine
+from synthesis.model.kind import Progress
+from synthesis.outcome.sifting import Sifting
+
+Real = NDArray[np.float64]
+
+DIGITS = 9
+"""Decimals in which what engines are ordered by is compared."""
+
+CHOSEN = 3
+"""Times as many arrangements are analysed as designs are asked for, where an order of firing is demanded."""
+
+
+class _Candidate(NamedTuple):
+    """An arrangement, and what it is ordered by."""
+
+    score: tuple[float, ...]
+    place: int
+    throws: tuple[float, ...]
+
+
+def solve_engine(problem: EngineProblem, progress: Progress) -> EngineResult:
+    """Solve a problem of piston engines.
+
+    Returns
+    -------
+    EngineResult
+        Complete where the throws are given, or all arrangements were listed: those of up to eight throws.
+    """
+    sifting = Sifting[EngineDesign](problem)
+    given = problem.layout.throws
+    if given is not None:
+        progress(0.1, "analysing")
+        sifting.sift([_Candidate((), 0, tuple(given))], partial(_design, problem))
+        progress(1.0, "verified")
+        return EngineResult(
+            designs=sifting.designs(list),
+            search=sifting.search("analysis", complete=not sifting.rejected),
+            summary=_told(sifting) + sifting.reasons(),
+            count=1,
+        )
+    candidates: list[_Candidate] = []
+    counted, complete = 0, True
+    for place, (_, layout) in enumerate(problem.layouts):
+        progress(0.6 * place / len(problem.layouts), f"arranging the throws of layout {place + 1}")
+        angles = problem.throw_angles
+        found = even_arrangements(problem, layout) if angles is None else stated_arrangements(problem, layout, angles)
+        counted, complete = counted + found.total, complete and found.complete
+        candidates += _scored(problem, layout, place, found.phases)
+    candidates.sort()
+    progress(0.6, "analysing the best")
+    wanted = problem.max_designs * (CHOSEN if problem.firing_order is not None else 1)
+    sifting.sift(candidates[:wanted], partial(_design, problem), enough=problem.max_designs)
+    verified = sifting.candidates
+    sifting.reject("outranked", len(candidates) - verified)
+    progress(1.0, "verified")
+    return EngineResult(
+        designs=sifting.designs(list),
+        search=sifting.search("exhaustive", complete=complete and not sifting.failed),
+        summary=_summary(problem, sifting, counted, len(candidates)),
+        count=counted,
+    )
+
+
+def _scored(
+    problem: EngineProblem, layout: EngineLayout, place: int, phases: list[tuple[float, ...]]
+) -> list[_Candidate]:
+    """Arrangements of one layout with what they are ordered by, all at once."""
+    if not phases:
+        return []
+    plain = cylinders_of(layout, problem.cylinders, phases[0])
+    lag = np.array(phases)[:, plain.throw]
+    axis, top = np.radians(plain.axis), np.radians(lag + plain.axis)
+    places = plain.place - middle_of(plain.place)
+    force, moment = turning_parts(1, axis, top), turning_parts(1, axis, top, places)
+    second, second_moment = turning_parts(2, axis, top), turning_parts(2, axis, top, places)
+    torque = np.max([np.abs(torque_sum(k, top)) for k in (1, 2, 3)], axis=0)
+    uneven = np.zeros(len(phases))
+    if problem.throw_angles is not None:
+        uneven = np.array([firing_choices(row, problem.stroke_cycle).unevenness for row in lag + plain.axis])
+    columns = [
+        uneven,
+        np.abs(force.backward),
+        np.abs(moment.backward),
+        second.major,
+        second_moment.major,
+        torque,
+        # What is alike so far: the smaller the weights on the crankshaft, the better.
+        np.abs(force.forward),
+        np.abs(moment.forward),
+    ]
+    scores = np.round(np.stack(columns, axis=1), DIGITS) + 0.0
+    return [_Candidate(tuple(row), place, throws) for row, throws in zip(scores.tolist(), phases, strict=True)]
+
+
+def _design(problem: EngineProblem, candidate: _Candidate) -> EngineDesign:
+    """An arrangement as a verified design."""
+    layout = problem.layouts[candidate.place][1]
+    cylinders = cylinders_of(layout, problem.cylinders, candidate.throws)
+    mechanism = EngineMechanism(
+        layout=layout.type,
+        crank=problem.crank,
+        rod=problem.rod_length,
+        throws=list(candidate.throws),
+        cylinders=_listed(cylinders),
+    )
+    design = measured(problem, layout, mechanism, cylinders)
+    return design.model_copy(update={"verification": verify_engine(problem, design)})
+
+
+def _listed(cylinders: Cylinders) -> list[EngineCylinder]:
+    columns = (column.tolist() for column in cylinders)
+    return [
+        EngineCylinder(number=n, throw=throw + 1, axis=axis, phase=phase, place=place)
+        for n, (throw, axis, phase, place) in enumerate(zip(*columns, strict=True), 1)
+    ]
+
+
+def _told(sifting: Sifting[EngineDesign]) -> str:
+    """The first design in words."""
+    if not sifting.passed:
+        return "No engine passed its checks."
+    best = sifting.passed[0]
+    order, metrics = "-".join(map(str, best.firing.orders[0].order)), best.metrics
+    evenly = "evenly" if metrics.unevenness <= 1e-6 else f"unevenly, by {metrics.unevenness:.4g}°,"
+    shaken = [
+        name.replace("_", " ")
+        for name in ("primary_force", "primary_moment", "secondary_force", "secondary_moment")
+        if getattr(metrics, name) > 1e-9
+    ]
+    left = " and ".join(shaken) or "nothing up to the second order"
+    fired = f"The {best.mechanism.layout} engine fires {evenly} in the order {order}"
+    return f"{fired}; weights on the crankshaft leave {left}."
+
+
+def _summary(problem: EngineProblem, sifting: Sifting[EngineDesign], count: int, listed: int) -> str:
+    if not count:
+        return "No arrangement of these throws fires evenly; state throw_angles to compare uneven ones."
+    evenly = "" if problem.throw_angles is not None else " with even firing"
+    part = "" if listed == count else f", of which {listed} symmetric ones were compared"
+    return f"Arrangements of the throws{evenly}: {count}{part}. {_told(sifting)}"

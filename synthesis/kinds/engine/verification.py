@@ -1,0 +1,311 @@
+"""Verification of engines: the slider-crank of each cylinder is driven, and what shakes the frame measured on that.
+
+Nothing of the solver's is used: pistons and cranks are those of a mechanism that closes, accelerations are the drive's,
+harmonics are read from a Fourier transform of their sum, torques and pin forces are the reactions of
+:mod:`kinematics.dynamics`, and a balancing weight's force is the second derivative of where it is.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from kinematics.dynamics.bodies import body
+from kinematics.dynamics.loads import JointForce
+from kinematics.dynamics.machine import Machine
+from kinematics.dynamics.places import Places
+from kinematics.dynamics.reactions import Reactions, reactions
+from kinematics.linkage.planar import catalogue
+from kinematics.linkage.planar.drive import drive
+from synthesis.analyses.motions import RAD_PER_S
+from synthesis.kinds.engine.design import Balancer, EngineCourse, EngineCylinder, EngineDesign, EngineFlywheel
+from synthesis.kinds.engine.problem import EngineProblem
+from synthesis.model.answer import Check, Verification
+from synthesis.model.dimension import ANGLE
+from synthesis.proof.checks import at_most, tolerated
+from synthesis.proof.shaft_speed import integrated
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SAMPLES = 4096
+"""Positions of a turn: far more than a piston has harmonics, but for rods hardly longer than the crank."""
+
+AGREES = 1e-9
+"""Difference of two routes, as a share of the sizes of one cylinder, that is rounding."""
+
+EVEN = 1e-6
+"""Degrees of unevenness that are rounding."""
+
+AT_TOP = 1e-6
+"""Degrees by which a firing may miss the top dead centre as it is found."""
+
+KEPT = 1e-6
+"""Share by which the integrated coefficient of fluctuation may be above the stated one."""
+
+
+class _Shaken(NamedTuple):
+    """Fourier coefficients of the accelerations of all pistons, summed: at k with the crank, at −k against it."""
+
+    force: Complex
+    moment: Complex
+    one: Complex
+
+
+def verify_engine(problem: EngineProblem, design: EngineDesign) -> Verification:
+    """Drive the cylinders of an engine and compare what is measured with what the design says.
+
+    Parameters
+    ----------
+    problem : EngineProblem
+        What was asked.
+    design : EngineDesign
+        Its mechanism gives the engine; all other parts are claims.
+    """
+    shaken = _shaken(design)
+    # The books' two terms are off by the terms that they leave out: of the order of λ³ in the second harmonic.
+    off = AGREES if problem.method == "exact" else (problem.crank / problem.rod_length) ** 2
+    checks = [
+        tolerated("harmonics", _harmonics_off(problem, design, shaken), AGREES),
+        tolerated("piston_series", _series_off(design, shaken), off),
+        tolerated("fires_at_top", _firing_off(design), AT_TOP, ANGLE),
+        tolerated("balancers", _unbalanced(design, shaken, off), off),
+    ]
+    if problem.layout.throws is None and problem.throw_angles is None:
+        checks.append(tolerated("even_firing", _gaps(problem, design), EVEN, ANGLE))
+    if problem.firing_order is not None:
+        checks.append(Check(name="firing_order", passed=_has_order(problem, design)))
+    if design.course is not None:
+        checks += _forces_checks(problem, design, design.course, off)
+    if design.flywheel is not None and problem.flywheel is not None:
+        checks += _flywheel_checks(problem, design, design.flywheel)
+    return Verification.of(checks)
+
+
+def _driven(design: EngineDesign, cylinder: EngineCylinder, angle: Real) -> Complex:
+    """Place, velocity and acceleration by the angle of a cylinder's piston, over angles of the crank; (3, N)."""
+    mechanism, axis = design.mechanism, math.radians(cylinder.axis)
+    made = catalogue.slider_crank(0j, 0j, axis, mechanism.crank, mechanism.rod, axis)
+    motion = drive(made, angle - math.radians(cylinder.phase), order=2)
+    return np.asarray(motion.joints["B"])
+
+
+def _turn() -> Real:
+    return np.asarray(2.0 * math.pi * np.arange(SAMPLES) / SAMPLES)
+
+
+def _shaken(design: EngineDesign) -> _Shaken:
+    """What the pistons do to the frame at unit mass and speed, over r: the opposite of their accelerations."""
+    turn, crank = _turn(), design.mechanism.crank
+    force, moment = np.zeros(SAMPLES, np.complex128), np.zeros(SAMPLES, np.complex128)
+    for cylinder in design.mechanism.cylinders:
+        push = -_driven(design, cylinder, turn)[2] / crank
+        force, moment = force + push, moment + cylinder.place * push
+    upright = EngineCylinder(number=1, throw=1, axis=0.0, phase=0.0, place=0.0)
+    one = -_driven(design, upright, turn)[2] / crank
+    return _Shaken(*(np.fft.fft(values) / SAMPLES for values in (force, moment, one)))
+
+
+def _about(problem: EngineProblem, design: EngineDesign) -> float:
+    if problem.moment_about == "first_throw":
+        return 0.0
+    return _middle(design)
+
+
+def _middle(design: EngineDesign) -> float:
+    places = [cylinder.place for cylinder in design.mechanism.cylinders]
+    return 0.5 * (min(places) + max(places))
+
+
+def _harmonics_off(problem: EngineProblem, design: EngineDesign, shaken: _Shaken) -> float:
+    """The largest difference of a part that turns, in units of the first harmonic of one cylinder."""
+    about, worst, count = _about(problem, design), 0.0, len(design.mechanism.cylinders)
+    reach = max(1.0, *(abs(cylinder.place - about) for cylinder in design.mechanism.cylinders))
+    for harmonic in design.harmonics:
+        k = harmonic.order
+        if k == 3:
+            continue
+        # One cylinder's harmonic is planar: both of its parts are half of it.
+        whole = 2.0 * abs(shaken.one[k])
+        moment = shaken.moment - about * shaken.force
+        for spectrum, told, size in ((shaken.force, harmonic.force, 1.0), (moment, harmonic.moment, reach)):
+            parts = (spectrum[k], told.forward), (spectrum[-k], told.backward)
+            worst = max(worst, *(abs(abs(found) - whole * claimed) / (count * size) for found, claimed in parts))
+            worst = max(worst, abs(told.major - told.forward - told.backward) / (count * size))
+    return float(worst)
+
+
+def _series_off(design: EngineDesign, shaken: _Shaken) -> float:
+    """The largest difference of a coefficient of the piston's acceleration."""
+    known = {harmonic.order: harmonic.coefficient for harmonic in design.harmonics}
+    return max(
+        abs(2.0 * float(shaken.one[k].real) - coefficient)
+        for k, coefficient in known.items()
+        if coefficient is not None
+    )
+
+
+def _firing_off(design: EngineDesign) -> float:
+    """By how many degrees a firing misses the place where its piston turns, farthest from the shaft."""
+    first = design.mechanism.cylinders[0]
+    start = math.radians(first.phase + first.axis)
+    worst = 0.0
+    for order in design.firing.orders:
+        for number, angle in zip(order.order, order.angles, strict=True):
+            cylinder = design.mechanism.cylinders[number - 1]
+            away = np.exp(-1j * math.radians(cylinder.axis))
+            place, slope, bend = (_driven(design, cylinder, np.array([start + math.radians(angle)]))[:, 0] * away).real
+            # One step of Newton's method tells how far the dead centre is; at the other one the piston bends up.
+            missed = math.degrees(abs(slope / bend)) if bend < 0.0 and place > 0.0 else 180.0
+            worst = max(worst, missed)
+    return worst
+
+
+def _gaps(problem: EngineProblem, design: EngineDesign) -> float:
+    """Largest less smallest gap of the first order."""
+    order = design.firing.orders[0]
+    gaps = np.diff([*order.angles, order.angles[0] + problem.cycle])
+    return float(gaps.max() - gaps.min())
+
+
+def _has_order(problem: EngineProblem, design: EngineDesign) -> bool:
+    """Whether the cylinders can fire in the stated order: each at a top dead centre, where it is stated to or not."""
+    order, cylinders = problem.firing_order or [], design.mechanism.cylinders
+    tops = [math.fmod(cylinders[k - 1].phase + cylinders[k - 1].axis, 360.0) for k in order]
+    tops = [(top - tops[0]) % 360.0 for top in tops]
+    if problem.firing_angles is not None:
+        start = problem.firing_angles[0]
+        missed = (math.remainder(at - start - top, 360.0) for at, top in zip(problem.firing_angles, tops, strict=True))
+        turned = [(at - start) % problem.cycle for at in problem.firing_angles]
+        return max(map(abs, missed)) <= EVEN and turned == sorted(turned)
+    at = 0.0
+    for top in tops[1:]:
+        # The next top dead centre of this cylinder; two may fire together.
+        at += (top - at - EVEN) % 360.0 + EVEN if (top - at) % 360.0 > EVEN else 0.0
+    return at < problem.cycle - EVEN or len(order) == 1
+
+
+def _unbalanced(design: EngineDesign, shaken: _Shaken, none: float) -> float:
+    """What the balancers leave of the harmonics that they are against, in units of one cylinder's first."""
+    turn, worst = _turn(), 0.0
+    first = design.mechanism.cylinders[0]
+    moment = shaken.moment - _middle(design) * shaken.force
+    left = {"force": shaken.force.copy(), "moment": moment.copy()}
+    for balancer in design.balancers:
+        left[balancer.against] += np.fft.fft(_pushed(balancer, turn - math.radians(first.phase))) / SAMPLES
+    reach = max(1.0, *(abs(cylinder.place) for cylinder in design.mechanism.cylinders))
+    for spectrum in left.values():
+        worst = max(worst, *(abs(spectrum[k]) for k in (1, -1, 2, -2)))
+    return float(worst) / (len(design.mechanism.cylinders) * reach)
+
+
+def _pushed(balancer: Balancer, angle: Real) -> Complex:
+    """The force of a balancer's weights at unit speed: the opposite of their acceleration, by a Fourier transform."""
+    k = balancer.order
+    place = balancer.forward * np.exp(1j * (k * angle + math.radians(balancer.forward_angle)))
+    place = place + balancer.backward * np.exp(1j * (math.radians(balancer.backward_angle) - k * angle))
+    number = np.fft.fftfreq(len(angle), 1.0 / len(angle))
+    return np.asarray(np.fft.ifft(number**2 * np.fft.fft(place)))
+
+
+def _forces_checks(problem: EngineProblem, design: EngineDesign, course: EngineCourse, off: float) -> list[Check]:
+    """Torque, shaking force and pins of the course, by the reactions in the slider-crank of each cylinder."""
+    assert problem.speed_rpm is not None, "a statement without contradictions"
+    angle = np.array(course.angle)
+    speed = problem.speed_rpm * RAD_PER_S
+    torque, shaking, alone = _summed(problem, design, angle, speed)
+    told = np.array(course.gas_torque) + np.array(course.inertia_torque)
+    shake = np.array(course.shaking_x) + 1j * np.array(course.shaking_y)
+    along = {
+        "wrist": (alone.joints["B"]["coupler"] * -1.0, np.array(course.wrist_x) + 1j * np.array(course.wrist_y)),
+        "pin": (alone.joints["A"]["crank"], np.array(course.crank_pin_x) + 1j * np.array(course.crank_pin_y)),
+        "main": (alone.joints["O2"]["ground"], np.array(course.main_x) + 1j * np.array(course.main_y)),
+        "side": (-alone.slides[0] * 1j, 1j * np.array(course.side)),
+    }
+    carried = max(float(np.abs(found).max()) for found, _ in along.values())
+    size = carried * problem.scale * problem.crank
+    worst = max(float(np.abs(found - claimed).max()) for found, claimed in along.values())
+    return [
+        tolerated("torque", float(np.abs(torque - told).max()) / (size or 1.0), off),
+        tolerated("shaking_force", float(np.abs(shaking - shake).max()) / (carried or 1.0), off),
+        tolerated("pin_forces", worst / (carried or 1.0), off),
+    ]
+
+
+def _summed(problem: EngineProblem, design: EngineDesign, angle: Real, speed: float) -> tuple[Real, Complex, Reactions]:
+    """Torque given and shaking force of the engine at angles (degrees), and the reactions of one cylinder there."""
+    order = design.firing.orders[0]
+    torque, shaking = np.zeros(len(angle)), np.zeros(len(angle), np.complex128)
+    turning: set[int] = set()
+    for number, fire in zip(order.order, order.angles, strict=True):
+        cylinder = design.mechanism.cylinders[number - 1]
+        heavy = cylinder.throw not in turning
+        turning.add(cylinder.throw)
+        found = _reactions(problem, design, angle - fire, speed, heavy=heavy)
+        torque = torque - found.drive
+        gas = _gas(problem, angle - fire)
+        # Gas pushes the cylinder head as much as the piston.
+        shaking = shaking + (found.shaking_force + gas) * np.exp(1j * math.radians(cylinder.axis))
+    return torque, shaking, _reactions(problem, design, angle, speed, heavy=True)
+
+
+def _reactions(problem: EngineProblem, design: EngineDesign, after: Real, speed: float, *, heavy: bool) -> Reactions:
+    """Reactions of one upright cylinder at degrees after the top dead centre at which it fires."""
+    scale, crank, rod = problem.scale, design.mechanism.crank, design.mechanism.rod
+    made = catalogue.slider_crank(0j, 0j, 0.0, crank, rod, 0.0)
+    bodies, pins = {}, {}
+    if problem.masses is not None:
+        stated = problem.masses.rod
+        own = stated.mass * scale**2 * stated.cg * (rod - stated.cg)
+        place = scale * (crank + stated.cg) + 0j
+        bodies["coupler"] = body(stated.mass, place, own if stated.inertia is None else stated.inertia)
+        pins["B"] = np.asarray(problem.masses.piston)
+        throw = problem.masses.crank
+        if throw is not None and heavy:
+            bodies["crank"] = body(throw.mass, complex(scale * throw.cg))
+    gas = _gas(problem, after)
+    loads = (JointForce("B", lambda input: np.asarray(-gas, np.complex128)),)
+    machine = Machine(made, bodies, pins, loads=loads, scale=scale)
+    motion = drive(made, np.radians(after), speed=np.full(len(after), speed), acceleration=0.0, order=2)
+    return reactions(machine, Places(made, motion, scale))
+
+
+def _gas(problem: EngineProblem, after: Real) -> Real:
+    """The force of the gas, from the table itself."""
+    if problem.pressure is None or problem.bore is None:
+        return np.zeros(len(after))
+    rows = [list(row) for row in problem.pressure.table]
+    if rows[-1][0] < rows[0][0] + problem.cycle:
+        rows.append([rows[0][0] + problem.cycle, rows[0][1]])
+    at, value = np.array(rows).T
+    value[-1] = value[0]
+    within = (after - at[0]) % problem.cycle + at[0]
+    area = math.pi * (0.5 * problem.bore * problem.scale) ** 2
+    if problem.pressure.interpolation == "periodic_cubic":
+        return np.asarray(area * CubicSpline(at, value, bc_type="periodic")(within))
+    return np.asarray(area * np.interp(within, at, value))
+
+
+def _flywheel_checks(problem: EngineProblem, design: EngineDesign, wheel: EngineFlywheel) -> list[Check]:
+    """The coefficient by integrating the speed of the shaft over two cycles."""
+    assert problem.flywheel is not None
+    count = round(4.0 * problem.cycle)
+    degrees = problem.cycle * np.arange(count + 1) / count
+    speed = wheel.speed * RAD_PER_S
+    torque, _, _ = _summed(problem, design, degrees, speed)
+    inertia = wheel.inertia + problem.flywheel.existing_inertia
+    throw = None if problem.masses is None else problem.masses.crank
+    if throw is not None and throw.inertia is not None:
+        inertia += throw.inertia * len(design.mechanism.throws)
+    # Corners of the gas pressure lie between the positions: a cubic through these is what both routes take.
+    spline = CubicSpline(np.radians(degrees), np.append(-torque[:-1], -torque[0]), bc_type="periodic")
+    fine = np.radians(problem.cycle * np.arange(2 * count + 1) / (2 * count))
+    run = (
+        integrated(fine, spline(0.5 * (fine[1:] + fine[:-1])), spline(fine), inertia, speed) if inertia > 0.0 else None
+    )
+    coefficient = math.inf if run is None else (run.greatest - run.least) / speed
+    return [at_most("coefficient", coefficient, problem.flywheel.coefficient, slack=KEPT)]

@@ -1,0 +1,110 @@
+"""The speed of a shaft under a torque, integrated over two cycles: I ω dω/dθ = T̄ − T(θ), by Runge and Kutta's method.
+
+The time is summed along with it; the speed at the start is found so that the mean over time is the stated one.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+Real = NDArray[np.float64]
+
+CYCLES = 2
+"""Cycles over which the speed is followed: after the first one it has to repeat."""
+
+SLOWEST, FASTEST = 1e-6, 4.0
+"""Speeds at the start, over the mean, between which it is looked for: coefficients are at most 1."""
+
+
+class Run(NamedTuple):
+    """Angles (radians), torque and speed (rad/s) over the cycles, and the extremes of the speed between them too."""
+
+    angle: Real
+    demand: Real
+    speed: Real
+    least: float
+    greatest: float
+    cycle: float
+
+
+def integrated(angle: Real, middle: Real, ends: Real, inertia: float, mean_speed: float) -> Run | None:
+    """The speed over the cycles, whose mean over time is as stated; None where the shaft comes to a stand.
+
+    Parameters
+    ----------
+    angle, ends : float, shape (N + 1,)
+        Angles over one cycle (radians) and what is taken from the shaft there; corners of the torque are among them.
+    middle : float, shape (N,)
+        The torque in the middle between them.
+    """
+    step = np.diff(angle)
+    cycle = float(angle[-1] - angle[0])
+    mean = float((step * (ends[:-1] + 4.0 * middle + ends[1:])).sum() / 6.0) / cycle
+    first = np.tile((mean - ends[:-1]) / inertia, CYCLES).tolist()
+    half = np.tile((mean - middle) / inertia, CYCLES).tolist()
+    last = np.tile((mean - ends[1:]) / inertia, CYCLES).tolist()
+    steps = np.tile(step, CYCLES).tolist()
+
+    def off(start: float) -> float:
+        """By how much the mean over time is beyond the stated one."""
+        speed = _followed(start, steps, first, half, last)
+        if not speed:
+            return -mean_speed
+        w = np.array(speed)
+        slope = np.array(first) / w[:-1], np.array(last) / w[1:]
+        between = 0.5 * (w[1:] + w[:-1]) + np.array(steps) * (slope[0] - slope[1]) / 8.0
+        time = float((np.array(steps) * (1.0 / w[:-1] + 4.0 / between + 1.0 / w[1:])).sum()) / 6.0
+        return CYCLES * cycle / time - mean_speed
+
+    if not off(FASTEST * mean_speed) > 0.0:
+        return None
+    start = float(brentq(off, SLOWEST * mean_speed, FASTEST * mean_speed, xtol=1e-14 * mean_speed))
+    speed = _followed(start, steps, first, half, last)
+    if not speed:
+        return None
+    w, h = np.array(speed), np.array(steps)
+    tops = _between(w, np.array(first) / w[:-1], np.array(last) / w[1:], h)
+    return Run(
+        np.concatenate([angle[:-1], angle[:-1] + cycle, [angle[-1] + cycle]]),
+        np.concatenate([ends[:-1], ends[:-1], ends[-1:]]),
+        w,
+        float(tops.min()),
+        float(tops.max()),
+        cycle,
+    )
+
+
+def _followed(start: float, h: list[float], first: list[float], half: list[float], last: list[float]) -> list[float]:
+    """The speed at the ends of all steps by dω/dθ = a/ω, a at three places of each; empty where it comes to rest."""
+    w, speed = start, [start]
+    for step, a, b, c in zip(h, first, half, last, strict=True):
+        one = a / w
+        two = w + 0.5 * step * one
+        if two <= 0.0:
+            return []
+        two = b / two
+        three = w + 0.5 * step * two
+        if three <= 0.0:
+            return []
+        three = b / three
+        four = w + step * three
+        if four <= 0.0:
+            return []
+        w += step * (one + 2.0 * two + 2.0 * three + c / four) / 6.0
+        if w <= 0.0:
+            return []
+        speed.append(w)
+    return speed
+
+
+def _between(w: Real, before: Real, after: Real, h: Real) -> Real:
+    """Speeds at the ends of all steps, and where the cubic by both ends and their slopes turns within a step."""
+    turns = before * after < 0.0
+    share = np.where(turns, before / np.where(turns, before - after, 1.0), 0.0)
+    lead = (1.0 + 2.0 * share) * (1.0 - share) ** 2 * w[:-1] + share**2 * (3.0 - 2.0 * share) * w[1:]
+    bend = share * (1.0 - share) ** 2 * h * before - share**2 * (1.0 - share) * h * after
+    return np.concatenate([w, lead + bend])
