@@ -311,7 +311,7 @@ def statements(count: int, seed: int) -> Iterator[tuple[str, Statement]]:
             grooved = ("peak_contact_force",) if follower == "barrel_roller" else ()
             _criterion(draw, *grooved)
         if follower in FOLLOWERS[:2] and "dynamics" not in stated and draw.chance(0.2):
-            stated["closure"] = "form"
+            stated["closure"] = "form" if n % 3 else "conjugate"
         if "dynamics" in stated or draw.chance(0.4):
             _loaded(draw)
         yield name, in_units(stated, "mm" if draw.chance(0.4) else draw.one(list(UNITS)))
@@ -377,7 +377,7 @@ def _loaded(draw: _Draw) -> None:
         dynamics["spring_rate"] = float(np.exp(rng.uniform(math.log(0.5), math.log(50.0))))
     if draw.chance(0.5):
         dynamics["damping_ratio"] = float(rng.uniform(0.0, 0.2))
-    grooved = stated.get("closure") == "form" or draw.follower == "barrel_roller"
+    grooved = stated.get("closure", "force") != "force" or draw.follower == "barrel_roller"
     if not grooved and draw.chance(0.6):
         dynamics["least_force"] = float(rng.uniform(0.0, 50.0))
     if draw.chance(0.4):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.independent.cam_curves import compare_curves
 from benchmarks.independent.cam_motion import Move, greatest, least, mean, motion_at, turned
+from benchmarks.independent.cam_pairs import compare_pair, compare_pushing
 from benchmarks.independent.cam_springs import Moved, compare_springs
 from benchmarks.independent.cam_verdicts import compare_roller, compare_smallest, compare_verdicts, sound_radius
 from benchmarks.independent.comparison import AGREE, Beside
@@ -83,7 +84,10 @@ def compare_cam(beside: Beside, stated: dict[str, Any], moves: list[Move], prove
     compare_verdicts(beside, stated, values | known)
     if proven:
         compare_smallest(beside, stated, lift, lambda other: _checked(_shape(turn, other), other))
-    if "curvature_ratio" in found:
+    if getattr(design.mechanism, "second", None) is not None:
+        inverse = Turn(turn.at, greatest(turn.s) - turn.s, -turn.v, -turn.a, -turn.j)
+        compare_pair(beside, lambda other: _shape(inverse, other))
+    if "curvature_ratio" in found and stated.get("closure") != "conjugate":
         compare_roller(beside, stated, found["curvature_ratio"] * design.mechanism.follower.roller_radius)
     _compare_shape(beside, turn)
 
@@ -224,7 +228,7 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
         still = Moved(turn.s, turn.v, turn.a, mass, dynamics.get("damping_ratio", 0.0), 0.0)
         top = forces.over_speeds.max_rpm * math.tau / 60.0
         needed = max(needed, dynamics.get("least_force", 0.0) * arm - still.weakest(rate, top))
-    grooved = stated.get("closure") == "form" or stated["follower"]["type"] == "barrel_roller"
+    grooved = stated.get("closure", "force") != "force" or stated["follower"]["type"] == "barrel_roller"
     preload = dynamics.get("preload")
     preload = preload * arm if preload is not None else (0.0 if grooved else needed)
     force = moved + preload
@@ -254,6 +258,7 @@ def _compare_forces(beside: Beside, stated: dict[str, Any], turn: Turn) -> tuple
     natural = math.sqrt(rate / mass)
     beside.add("metrics.forces.natural_frequency", forces.natural_frequency, natural, natural)
     beside.add("metrics.forces.frequency_ratio", forces.frequency_ratio, natural / speed, natural / speed)
+    compare_pushing(beside, turn.at.ravel(), force.ravel())
     if forces.wall_changes is not None:
         changes = _changes(turn, force)
         beside.same("metrics.forces.wall_changes", len(forces.wall_changes), len(changes))

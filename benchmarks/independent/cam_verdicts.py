@@ -58,7 +58,7 @@ def limits_of(stated: dict[str, Any]) -> dict[str, Limit]:
     for name in ("velocity", "acceleration", "jerk"):
         if name in limits:
             found[f"peak_{name}"] = found[f"table_{name}"] = Limit(limits[name], 1)
-    grooved = stated.get("closure") == "form" or follower["type"] == "barrel_roller"
+    grooved = stated.get("closure", "force") != "force" or follower["type"] == "barrel_roller"
     if "dynamics" in stated and not grooved:
         found["contact_force"] = Limit(stated["dynamics"].get("least_force", 0.0), -1)
     if "dynamics" in stated and "min_frequency_ratio" in stated["dynamics"]:

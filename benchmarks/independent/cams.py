@@ -111,7 +111,7 @@ def _loaded(rng: np.random.Generator, stated: Statement) -> None:
     dynamics = {"mass": float(rng.uniform(0.2, 3.0)), "spring_rate": float(rng.uniform(0.5, 20.0))}
     if rng.random() < 0.5:
         dynamics["damping_ratio"] = float(rng.uniform(0.0, 0.2))
-    grooved = stated.get("closure") == "form" or stated["follower"]["type"] == "barrel_roller"
+    grooved = stated.get("closure", "force") != "force" or stated["follower"]["type"] == "barrel_roller"
     if not grooved:
         dynamics["least_force"] = float(rng.uniform(0.0, 50.0))
     elif rng.random() < 0.5:

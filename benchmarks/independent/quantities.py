@@ -160,6 +160,9 @@ COMPARED: dict[str, frozenset[str]] = {
             metrics.forces.max_contact_force metrics.forces.min_torque metrics.forces.max_torque
             metrics.forces.wall_changes metrics.forces.natural_frequency metrics.forces.frequency_ratio
             metrics.forces.spring_rate metrics.forces.jump_speed metrics.forces.damped_frequency
+            metrics.forces.pushing.start metrics.forces.pushing.end metrics.forces.pushing.cam
+            metrics.second.size metrics.second.max_pressure_angle_rise metrics.second.max_pressure_angle_fall
+            metrics.second.min_convex_radius metrics.second.min_concave_radius metrics.second.curvature_ratio
             metrics.forces.over_speeds.max_rpm metrics.forces.over_speeds.min_contact_force
             metrics.forces.over_speeds.angle metrics.forces.over_speeds.rpm metrics.forces.spring.max_contact_force
             metrics.forces.spring.bound metrics.forces.spring.gap metrics.forces.spring.binding
@@ -178,7 +181,11 @@ COMPARED: dict[str, frozenset[str]] = {
             checks.meets_positions checks.meets_velocities checks.meets_accelerations checks.min_radius checks.convex
             checks.face_width checks.clears_pivot checks.pressure_angle checks.pressure_angle_fall
             checks.curvature_ratio checks.hub_radius checks.size checks.contact_force checks.contact_on_profile
-            checks.frequency_ratio checks.overturning_moment checks.overturning_on_profile checks.limit checks.passed
+            checks.roller_distance checks.second_reproduces_program checks.second_no_cusp
+            checks.second_does_not_cross_itself checks.second_pressure_angle checks.second_pressure_angle_fall
+            checks.second_curvature_ratio checks.second_hub_radius checks.second_size checks.second_clears_pivot
+            mechanism.second checks.frequency_ratio checks.overturning_moment checks.overturning_on_profile
+            checks.limit checks.passed
             mechanism.program mechanism.conditions mechanism.profile mechanism.outer_wall mechanism.lower_wall
             mechanism.upper_wall mechanism.pitch_curve mechanism.smallest mechanism.roller_radius
             mechanism.best_law

@@ -93,7 +93,7 @@ export class Turning {
 
 export class Disc extends Turning {
   scene() {
-    const { follower, profile, pitch_curve: pitch, outer_wall: wall } = this.mechanism;
+    const { follower, profile, pitch_curve: pitch, outer_wall: wall, second } = this.mechanism;
     this.sense = this.mechanism.rotation === "cw" ? -1 : 1;
     this.radius = follower.roller_radius ?? 0;
     this.rolls = follower.type.endsWith("roller");
@@ -103,7 +103,8 @@ export class Disc extends Turning {
     const far = Math.max(...outline.map(([x, y]) => Math.hypot(x, y)), ...(wall ? ring(wall).map(([x, y]) => Math.hypot(x, y)) : []));
     const high = Math.max(...pitch.x.map((/** @type {number} */ x, /** @type {number} */ k) => Math.hypot(x, pitch.y[k])));
     const reach = this.swings ? [follower.pivot_distance + 0.1 * this.base, 0.2 * this.base] : [high + this.radius + STEM * this.base, 0];
-    const wide = Math.max(far, high);
+    const beside = second ? Math.max(...ring(second.pitch_curve).map(([x, y]) => Math.hypot(x, y))) + this.radius : 0;
+    const wide = Math.max(far, high, beside);
     this.view = new View([[-wide, -wide], [wide, wide], /** @type {Point} */ (reach)], WIDTH, HEIGHT, 24);
     const { view } = this;
     const [u, v] = view.at(0, 0);
@@ -112,6 +113,7 @@ export class Disc extends Turning {
       wall && svg("circle", { class: "disc", cx: u, cy: v, r: 1.06 * view.scale * far }),
       wall && svg("path", { class: "hollow", d: `${view.path(ring(wall))}Z` }),
       svg("path", { class: "profile", d: `${view.path(outline)}Z` }),
+      second && svg("path", { class: "conjugate", d: `${view.path(ring(second.profile))}Z` }),
       this.rolls && svg("path", { class: "pitch", d: `${view.path(ring(pitch))}Z` }),
       svg("path", { class: "spoke", d: view.path([[0, 0], [0.5 * this.base, 0]]) }));
     this.spin = this.rolling();
@@ -121,10 +123,11 @@ export class Disc extends Turning {
         return `M${-c} ${-s}L${c} ${s}`;
       }).join("") }));
     this.holder = svg("path", { class: "holder" });
+    this.other = svg("g", { class: "roller" }, svg("circle", { class: "tyre", r: Math.max(2, view.scale * this.radius) }));
     this.touch = svg("circle", { class: "touch", r: 3.5 });
     this.normal = svg("line", { class: "normal" });
     const pivot = this.swings && svg("circle", { class: "pin", r: 5, cx: view.at(follower.pivot_distance, 0)[0], cy: v });
-    return [circle("rim", this.base), this.cam, circle("pin", 4 / view.scale), this.normal, this.holder, ...(this.rolls ? [this.wheel] : []), this.touch, ...(pivot ? [pivot] : [])];
+    return [circle("rim", this.base), this.cam, circle("pin", 4 / view.scale), this.normal, this.holder, ...(this.rolls ? [this.wheel] : []), ...(second ? [this.other] : []), this.touch, ...(pivot ? [pivot] : [])];
   }
 
   /** How far the roller has turned at each sample: its contact has gone along it as far as along the profile. @returns {number[]} radians */
@@ -179,10 +182,21 @@ export class Disc extends Turning {
       this.wheel.setAttribute("transform", `translate(${cu.toFixed(2)} ${cv.toFixed(2)}) rotate(${((-spin * 180) / Math.PI).toFixed(2)})`);
       for (const [name, value] of Object.entries({ x1: tu, y1: tv, x2: 3 * cu - 2 * tu, y2: 3 * cv - 2 * tv })) this.normal.setAttribute(name, String(value));
       const end = /** @type {Point} */ (this.swings ? [follower.pivot_distance, 0] : [centre[0] + this.radius + STEM * this.base, centre[1]]);
-      this.holder.setAttribute("d", view.path([centre, end]));
+      const other = this.opposite(centre);
+      this.holder.setAttribute("d", view.path(other ? [...(this.swings ? [centre, end, other] : [other, centre, end])] : [centre, end]));
+      if (other) this.other.setAttribute("transform", `translate(${view.at(...other).map((one) => one.toFixed(2)).join(" ")})`);
     } else this.holder.setAttribute("d", this.face(touching));
     const what = this.swings ? "Arm" : "Follower";
     this.facts.replaceChildren(el("dt", {}, what), el("dd", {}, this.place(at)));
+  }
+
+  /** The second roller of conjugate cams, which the same follower carries. @param {Point} centre @returns {Point | null} */
+  opposite([x, y]) {
+    const { second, follower } = this.mechanism;
+    if (!second) return null;
+    if (!this.swings) return [x - second.roller_distance, y];
+    const [u, v] = turned([x - follower.pivot_distance, y], -this.sense * follower.sense * (second.arm_angle * Math.PI) / 180);
+    return [follower.pivot_distance + u, v];
   }
 
   /** Displacement of the follower. @param {number} at */

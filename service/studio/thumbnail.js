@@ -18,7 +18,7 @@ export function thumbnail(design) {
 /** @param {any} design @returns {Element[] | null} */
 function drawn({ mechanism, metrics }) {
   if (mechanism.skeleton?.joints) return linkage(mechanism.skeleton);
-  if (mechanism.profile) return outlines([mechanism.profile, mechanism.outer_wall].filter(Boolean), true);
+  if (mechanism.profile) return outlines([mechanism.profile, mechanism.outer_wall, mechanism.second?.profile].filter(Boolean), true);
   if (mechanism.upper_wall) return outlines([mechanism.lower_wall, mechanism.upper_wall], false);
   const listed = circles(mechanism, metrics);
   if (!listed.length) return null;

@@ -131,6 +131,7 @@ class GivenCam(Statement):
     profile: GivenCurve
     outer_wall: GivenCurve | None = Field(default=None, description="Of a groove; the profile is its inner wall.")
     pitch_curve: Any = None
+    second: Any = Field(default=None, description="The other one of conjugate cams, which is not looked at.")
     program: Any = None
 
     def core_follower(self) -> core.Follower:

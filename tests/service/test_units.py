@@ -103,6 +103,7 @@ PURE = {
     "RoundingCost": {"rms_residual"},
     "SpindleSpeed": {"error"},
     "SpindleSpeeds": {"ratio"},
+    "SecondMetrics": {"curvature_ratio"},
     "SpringChoice": {"gap"},
     "StageRatio": {"min", "max"},
     "StatedSpring": {"damping"},  # by the sort of spring

@@ -12,7 +12,7 @@ from service.render.cam.scene import CamScene
 from service.render.cam.view import STEM
 from service.render.page.animation import FRAMES, Stroke, animated, ring
 from service.render.page.svg import Box, Points
-from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, PALE
+from service.render.page.symbols import COUPLER, CURVE, GREY, GROUND, INPUT, OUTPUT, PALE
 from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign
 from synthesis.kinds.cam.mechanism import points_of
 from synthesis.kinds.cam.problem import CamProblem
@@ -52,6 +52,8 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
     spin = _spin(scene, contact.point, np.unwrap(np.angle(-normal)), radius) if radius > 0.0 else np.zeros(FRAMES)
     far = float(np.abs(scene.profile if scene.outer_wall is None else scene.outer_wall).max())
     reach = STEM * scene.base_radius
+    second = scene.second
+    carried = second.centres(theta) if second else centre[:0]
 
     def frames() -> Iterator[list[Stroke]]:
         for k in range(FRAMES):
@@ -64,6 +66,13 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
             strokes.append(Stroke(ring(0j, HUB * scene.base_radius), GROUND, 1.6, closed=True, fill="#ffffff"))
             if radius > 0.0:
                 strokes += _roller(complex(centre[k]), radius, float(spin[k]))
+            if second is not None:
+                other = complex(carried[k] * turns[k])
+                strokes.append(Stroke(second.profile * turns[k], OUTPUT, 2.0, closed=True))
+                strokes.append(Stroke(ring(other, second.follower.roller_radius), COUPLER, 2.2, closed=True))
+                strokes.append(
+                    Stroke(np.array([other, centre[k] if scene.pivot is None else scene.pivot]), COUPLER, 2.0)
+                )
             strokes += _holder(scene, complex(touching[k]), complex(centre[k]), reach)
             yield strokes
 
@@ -74,6 +83,8 @@ def cam_animation(design: CamDesign, problem: CamProblem, title: str) -> bytes:
     ]
     if scene.pivot is not None:
         corners[2] = np.array([scene.pivot])
+    if second is not None:
+        corners.append(ring(0j, float(np.abs(carried).max()) + second.follower.roller_radius))
     return animated(frames(), Box.around(np.concatenate(corners)))
 
 

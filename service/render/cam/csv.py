@@ -40,6 +40,14 @@ def cam_table(design: CamDesign, problem: CamProblem, title: str) -> str:
     wall = scene.outer_wall
     if wall is not None and len(wall) == len(scene.angle):
         columns |= {f"outer_wall_x [{unit}]": wall.real, f"outer_wall_y [{unit}]": wall.imag}
+    second = scene.second
+    if second is not None and len(second.profile) == len(scene.angle):
+        columns |= {
+            f"second_profile_x [{unit}]": second.profile.real,
+            f"second_profile_y [{unit}]": second.profile.imag,
+            f"second_roller_centre_x [{unit}]": second.pitch_curve.real,
+            f"second_roller_centre_y [{unit}]": second.pitch_curve.imag,
+        }
     follower = design.mechanism.follower
     given = {name: value for name, value in follower.model_dump().items() if value is not None and name != "type"}
     remarks = [f"{follower.type}, {_radius(design)} {unit}, turns {design.mechanism.rotation}"]

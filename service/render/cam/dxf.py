@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
 from kinematics.cam.unrolled import UnrolledWall
-from service.render.cam.scene import CamScene
+from service.render.cam.scene import CamScene, SecondScene
 from service.render.page import dxf
 from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign
 from synthesis.kinds.cam.mechanism import points_of
@@ -56,6 +56,9 @@ LAYERS = {
     "CENTRE": (7, "CONTINUOUS"),
 }
 """Colour index and line type of each layer."""
+
+SECOND_LAYERS = {"SECOND_PROFILE": (3, "CONTINUOUS"), "SECOND_PITCH_CURVE": (3, "DASHED")}
+"""Those that a drawing of conjugate cams has besides."""
 
 BARREL_LAYERS = {
     "WALLS": (5, "CONTINUOUS"),
@@ -81,7 +84,8 @@ STRAIGHT = 1e-12
 def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     """The drawing of a cam design as a DXF document (R2010)."""
     scene = CamScene(design.mechanism)
-    document = dxf.new_drawing(title or "Cam", problem.length_unit, LAYERS, frozen="PROFILE_ARCS")
+    layers = LAYERS if scene.second is None else LAYERS | SECOND_LAYERS
+    document = dxf.new_drawing(title or "Cam", problem.length_unit, layers, frozen="PROFILE_ARCS")
     space = document.modelspace()
     _closed(space, scene.contour, "PROFILE")
     space.add_lwpolyline(
@@ -96,11 +100,22 @@ def cam_drawing(design: CamDesign, problem: CamProblem, title: str) -> str:
     if scene.roller:
         _closed(space, Contour(scene.pitch_curve), "PITCH_CURVE")
         dxf.add_circle(space, 0j, scene.roller.prime_radius, "PRIME_CIRCLE")
+    if scene.second is not None:
+        _second(space, scene, scene.second)
     _follower(space, scene)
     arm = ARM * scene.base_radius
     dxf.add_cross(space, 0j, arm, "CENTRE")
     dxf.add_line(space, complex(arm), complex(3.0 * arm), "CENTRE")
     return dxf.written(document)
+
+
+def _second(space: Modelspace, scene: CamScene, second: SecondScene) -> None:
+    """The other one of conjugate cams, its roller at cam angle 0 and what carries it."""
+    _closed(space, Contour(second.profile), "SECOND_PROFILE")
+    _closed(space, Contour(second.pitch_curve), "SECOND_PITCH_CURVE")
+    centre = complex(second.pitch_curve[0])
+    dxf.add_circle(space, centre, second.follower.roller_radius, "FOLLOWER")
+    dxf.add_line(space, centre, complex(scene.pitch_curve[0]) if scene.pivot is None else scene.pivot, "FOLLOWER")
 
 
 def barrel_drawing(design: BarrelCamDesign, problem: CamProblem, title: str) -> str:

@@ -9,16 +9,50 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from kinematics.cam.conjugate import turned
 from kinematics.cam.contact import ContactMotion, Contour
 from kinematics.cam.follower import Follower, OscillatingFlat, OscillatingRoller, TranslatingFlat, TranslatingRoller
-from synthesis.kinds.cam.design import CamMechanism
+from kinematics.cam.profile import Rotation
+from synthesis.kinds.cam.design import CamMechanism, SecondCam
 from synthesis.kinds.cam.mechanism import core_follower, points_of
+from synthesis.mechanisms.cam import follower_by_dimensions
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FACE_SHARE = 0.35
 """Half the length of a drawn face, as a share of the base radius."""
+
+
+@dataclass(frozen=True, eq=False)
+class SecondScene:
+    """The second of two conjugate cams, in the frame of the first."""
+
+    cam: SecondCam
+    rotation: Rotation
+
+    @cached_property
+    def follower(self) -> TranslatingRoller | OscillatingRoller:
+        """Its follower, as the analysis core has it."""
+        found = follower_by_dimensions(self.cam.follower.type, self.cam.prime_radius, self.cam.follower)
+        assert isinstance(found, TranslatingRoller | OscillatingRoller)
+        return found
+
+    @cached_property
+    def profile(self) -> Complex:
+        """Points of the profile."""
+        return points_of(self.cam.profile)
+
+    @cached_property
+    def pitch_curve(self) -> Complex:
+        """Path of the roller's centre around the cam."""
+        return points_of(self.cam.pitch_curve)
+
+    def centres(self, angle: Real) -> Complex:
+        """Centres of the roller at cam angles, where it touches the profile."""
+        own = turned(self.follower, self.profile)
+        found = Contour(own).follow(self.follower, angle, self.rotation)
+        return turned(self.follower, found.point + self.follower.roller_radius * found.normal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +99,12 @@ class CamScene:
         """Points of the groove's outer wall; None without a groove."""
         wall = self.mechanism.outer_wall
         return None if wall is None else points_of(wall)
+
+    @cached_property
+    def second(self) -> SecondScene | None:
+        """The other one of conjugate cams; None of a cam alone."""
+        second = self.mechanism.second
+        return None if second is None else SecondScene(second, self.mechanism.rotation)
 
     @cached_property
     def contour(self) -> Contour:

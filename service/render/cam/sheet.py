@@ -18,7 +18,7 @@ from service.render.page.numbers import NONE, length
 from service.render.page.sheet import EDGE, FULL, GUTTER, TOP, UNITS, beside, in_columns, sheet, stacked
 from service.render.page.svg import Box, Element, circle, clean, element, line, text, text_width
 from service.render.page.symbols import COUPLER, CURVE, DEMANDED, GREY, INK, INPUT, OUTPUT
-from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign, CamFollower, ProgramTable
+from synthesis.kinds.cam.design import BarrelCamDesign, CamDesign, CamFollower, CamMechanism, ProgramTable
 from synthesis.kinds.cam.problem import CamProblem
 
 DRAWING_HEIGHT, DIAGRAM_HEIGHT, KEY_HEIGHT = 620.0, 172.0, 30.0
@@ -77,7 +77,8 @@ def cam_sheet(design: CamDesign, problem: CamProblem, title: str) -> str:
             *_measured(design, problem),
         ]
     )
-    height = max(DRAWING_HEIGHT, y - TOP - KEY_HEIGHT)
+    # With two cams the key is longer than the drawing is wide, and stands below the tables.
+    height = max(DRAWING_HEIGHT, y - TOP - (KEY_HEIGHT if scene.second is None else 0.0))
     drawn = panel(scene, Box(EDGE, TOP, EDGE + beside(), TOP + height), unit)
     top = max(TOP + height + KEY_HEIGHT, y)
     diagrams, bottom = _in_two_columns(_diagrams(design, problem, scene), top, design)
@@ -136,7 +137,7 @@ def _dimensions(
 ) -> Block:
     mechanism, follower = design.mechanism, design.mechanism.follower
     rows = [("follower", FOLLOWERS[follower.type])]
-    rows += entries(mechanism, problem, {"type", "follower", "rotation", *CURVES})
+    rows += entries(mechanism, problem, {"type", "follower", "rotation", "second", *CURVES})
     rows += derived
     rows += entries(follower, problem, {"type", "sense", "offset"})
     if isinstance(follower, CamFollower) and follower.offset is not None:
@@ -145,6 +146,9 @@ def _dimensions(
         rows.append(("offset", f"{length(follower.offset, size)} {problem.length_unit}"))
     if isinstance(follower, CamFollower) and follower.sense is not None:
         rows.append(("arm swings outward", "with the cam" if follower.sense == 1 else "against the cam"))
+    if isinstance(mechanism, CamMechanism) and mechanism.second is not None:
+        second = entries(mechanism.second, problem, {"follower", *CURVES})
+        rows += [(f"second cam, {name}" if "prime" in name else name, value) for name, value in second]
     rows.append(("rotation", ROTATIONS[mechanism.rotation]))
     rows.append(("points of a curve", f"{len(mechanism.pitch_curve.x)}"))
     return blocks.rows("Dimensions", rows)
@@ -236,6 +240,8 @@ def _key(scene: CamScene, y: float) -> Element:
     group, x, middle = element("g", data_key="true"), EDGE, y - KEY_MIDDLE
     for name, style in STYLES.items():
         if scene.roller is None and name in ("pitch curve", "prime circle"):
+            continue
+        if name == "second cam" and scene.second is None:
             continue
         if name == "outer wall":
             # Its line is the profile's.

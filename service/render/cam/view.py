@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from service.render.cam.scene import CamScene
+from service.render.cam.scene import CamScene, SecondScene
 from service.render.page.labels import Labels
 from service.render.page.numbers import angle
 from service.render.page.sheet import framed
@@ -63,6 +63,7 @@ SMALLEST_ROLLER = 1.5
 STYLES: dict[str, dict[str, str | float]] = {
     "profile": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
     "outer wall": {"stroke": INPUT, "stroke_width": 2.6, "stroke_linejoin": "round"},
+    "second cam": {"stroke": OUTPUT, "stroke_width": 2.2, "stroke_linejoin": "round"},
     "pitch curve": {"stroke": CURVE, "stroke_width": 1.1, "stroke_dasharray": "7 4"},
     "prime circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "2 3"},
     "base circle": {"stroke": GREY, "stroke_width": 1.0, "stroke_dasharray": "11 3 2 3"},
@@ -77,6 +78,8 @@ def shown_box(scene: CamScene) -> Box:
     roller = scene.roller
     reach = roller.roller_radius if roller else 0.0
     box = Box.around(np.concatenate([scene.pitch_curve, scene.profile])).grown(reach)
+    if scene.second is not None:
+        box = box.united(Box.around(scene.second.pitch_curve).grown(reach))
     face = max((max(abs(a), abs(b)) for a, b in scene.faces(1)), default=0.0) if roller is None else 0.0
     box = box.united(Box.around(np.array([-face - 1j * face, face + 1j * face]))) if face else box
     if scene.pivot is not None:
@@ -101,6 +104,8 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
     group.add(_closed(scene.profile, viewport, "profile"))
     if scene.outer_wall is not None:
         group.add(_closed(scene.outer_wall, viewport, "outer wall"))
+    if scene.second is not None:
+        group.add(*_second(scene, scene.second, viewport))
     group.add(_stations(scene.mechanism.pitch_curve, viewport, labels, centre))
     group.add(_follower(scene, viewport))
     symbol, _ = bearing(centre, BEARING)
@@ -110,6 +115,18 @@ def panel(scene: CamScene, box: Box, unit: str) -> Element:
     group.add(_rotation(scene, viewport))
     bar, _ = scale_bar(viewport, unit)
     return group.add(bar, *labels.drawn)
+
+
+def _second(scene: CamScene, second: SecondScene, viewport: Viewport) -> list[Element | None]:
+    """The other one of conjugate cams, with its roller at cam angle 0 and what carries it."""
+    centre, radius = complex(second.pitch_curve[0]), second.follower.roller_radius
+    carrier = complex(scene.pitch_curve[0]) if scene.pivot is None else scene.pivot
+    held = element("g", data_part="second follower", **STYLES["follower"])
+    held.add(line(viewport.point(centre), viewport.point(carrier)))
+    held.add(
+        circle(viewport.point(centre), max(viewport.scale * radius, SMALLEST_ROLLER), fill="#fff", fill_opacity=0.7)
+    )
+    return [_closed(second.profile, viewport, "second cam"), held]
 
 
 def _closed(points: Complex, viewport: Viewport, part: str) -> Element | None:

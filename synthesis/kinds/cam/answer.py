@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -24,6 +25,7 @@ from synthesis.kinds.cam.design import (
     CamSegment,
     ContactOverSpeeds,
     Optimality,
+    PushingCam,
     SpringChoice,
 )
 from synthesis.kinds.cam.excesses import warning_of
@@ -46,6 +48,9 @@ from synthesis.proof.checks import at_least
 
 FORCE_SLACK = 1e-9
 """Relative slack of the least contact force: the least preload gives exactly that, but for rounding."""
+
+SAMPLES = 181
+"""Cam angles between two changes of walls at which is asked which cam pushes; it is one and the same in between."""
 
 BINDS = 1e-6
 """Relative distance to a demand within which it is met with nothing to spare."""
@@ -135,6 +140,7 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         min_torque=torque.least,
         max_torque=torque.greatest,
         wall_changes=changes,
+        pushing=_pushing(running, changes) if problem.closure == "conjugate" and changes is not None else None,
         spring_rate=load.spring_rate / arm**2,
         jump_speed=None if groove else _jump_rpm(running),
         natural_frequency=load.natural_frequency,
@@ -145,6 +151,19 @@ def forces_of(problem: CamProblem, program: Program) -> CamForces | None:
         train=train,
         warning=warning,
     )
+
+
+def _pushing(running: RunningCam, changes: Sequence[float]) -> list[PushingCam]:
+    """Which of two conjugate cams pushes between the changes: the first where the force is along the displacement."""
+    starts = list(changes) or [0.0]
+    ends = [*starts[1:], starts[0] if changes else 360.0]
+    found = []
+    for start, end in zip(starts, ends, strict=True):
+        last = end if end > start else end + 360.0
+        force = running.force(np.radians(np.linspace(start, last, SAMPLES)[1:-1]))
+        strongest = force[np.abs(force).argmax()]
+        found.append(PushingCam(start=start, end=end, cam=1 if strongest >= 0.0 else 2))
+    return found
 
 
 def _jump_rpm(running: RunningCam) -> float | None:

@@ -58,6 +58,21 @@ class ProgramTable(Answer):
     breaks: list[Angle] = Field(description="Cam angles of the table between which the motion is smooth.")
 
 
+class SecondCam(Answer):
+    """The second of two conjugate cams, on the same shaft and in the same frame, with the roller opposite the first.
+
+    The follower is as its own cam sees it: displaced by what the first is below its highest place. On a slide it lies
+    on −x at cam angle 0.
+    """
+
+    follower: CamFollower
+    prime_radius: Length
+    roller_distance: Length = Field(description="Of the two rollers' centres, the same at all cam angles.")
+    arm_angle: Angle | None = optional("Between the two arms of an oscillating follower, degrees.")
+    profile: CamCurve
+    pitch_curve: CamCurve
+
+
 class CamMechanism(Answer):
     """A radial cam. At cam angle 0 its frame is the ground's; the follower lies on the +x axis."""
 
@@ -69,6 +84,7 @@ class CamMechanism(Answer):
     profile: CamCurve
     outer_wall: CamCurve | None = optional("Of a groove; the profile is its inner wall.")
     pitch_curve: CamCurve = Field(description="Path of the roller's centre; the profile itself under a flat face.")
+    second: SecondCam | None = optional("Of conjugate cams.")
     program: ProgramTable
 
 
@@ -181,6 +197,14 @@ class TrainVibration(Answer):
     max_contact_force: Force | None = optional()
 
 
+class PushingCam(Answer):
+    """From one cam angle to another one of two conjugate cams pushes the follower."""
+
+    start: Angle = Field(description="Degrees.")
+    end: Angle = Field(description="Degrees; less than the start where the turn ends between.")
+    cam: Literal[1, 2]
+
+
 class CamForces(Answer):
     """The follower as one mass on a spring, at the stated speed."""
 
@@ -194,6 +218,7 @@ class CamForces(Answer):
         "Cam angles at which a roller in a groove changes walls: where the force along its motion begins to have the "
         "other sign than the last one that it had. Without spring and preload it is zero in a rest."
     )
+    pushing: list[PushingCam] | None = optional("Of conjugate cams, from each change of walls to the next.")
     spring_rate: Stiffness = Field(description="Of the return spring, stated or chosen.")
     jump_speed: RotationalSpeed | None = Field(
         description="At which the follower first leaves the cam; null where it does at none, and in a groove."
@@ -209,6 +234,17 @@ class CamForces(Answer):
     warning: str | None = optional()
 
 
+class SecondMetrics(Answer):
+    """Measured on the second of two conjugate cams; its rise is where the follower comes back."""
+
+    size: Length = Field(description="Greatest radius of the profile.")
+    max_pressure_angle_rise: Angle = Field(description="Degrees.")
+    max_pressure_angle_fall: Angle = Field(description="Degrees.")
+    min_convex_radius: Length
+    min_concave_radius: Length | None = optional("None where it is convex.")
+    curvature_ratio: float
+
+
 class CamMetrics(Answer):
     """Measured on the finished cam."""
 
@@ -220,6 +256,7 @@ class CamMetrics(Answer):
     min_concave_radius: Length | None = optional("None where it is convex.")
     curvature_ratio: float | None = optional("Pitch curve over roller.")
     face_width: Length | None = optional("Length that the contact sweeps.")
+    second: SecondMetrics | None = optional("Of conjugate cams.")
     overturning_moment: Torque | None = optional(
         "Greatest on the slide of a translating follower, where its forces and the lever are known."
     )

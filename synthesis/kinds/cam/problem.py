@@ -129,9 +129,10 @@ class CamProblem(StatedProblem):
         default="peak_acceleration",
         description="What automatic and optimal motions make least; the cam is as small as then can be.",
     )
-    closure: Literal["force", "form"] = Field(
+    closure: Literal["force", "form", "conjugate"] = Field(
         default="force",
-        description="What holds the follower to the cam: a force, or a groove whose two walls guide the roller.",
+        description="What holds the follower to the cam: a force; a groove whose two walls guide the roller; or a "
+        "second cam on the shaft, conjugate to the first, with a roller of its own on the other side.",
     )
     dynamics: FollowerDynamics | None = None
     continuity: Literal["acceleration", "jerk"] = Field(
@@ -179,14 +180,22 @@ class CamProblem(StatedProblem):
 
     @property
     def grooved(self) -> bool:
-        """Whether the follower runs between two walls, so that no force has to hold it."""
-        return self.closure == "form" or isinstance(self.follower, BarrelRoller)
+        """Whether the follower runs between two walls, or two cams, so that no force has to hold it."""
+        return self.closure != "force" or isinstance(self.follower, BarrelRoller)
 
     def _closure(self) -> list[Contradiction]:
-        """A groove guides a roller and nothing else."""
-        if self.closure == "form" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
+        """A groove guides a roller and nothing else; so do two cams."""
+        if self.closure != "force" and isinstance(self.follower, TranslatingFlat | OscillatingFlat):
             detail = "only a roller runs in a groove; take another follower or force"
+            if self.closure == "conjugate":
+                detail = "only rollers run between two cams; take another follower or force"
             return [Contradiction("/closure", detail)]
+        if self.closure == "conjugate" and isinstance(self.follower, BarrelRoller):
+            detail = "the groove of a barrel has two walls already; take a radial roller follower"
+            return [Contradiction("/closure", detail)]
+        if self.closure == "conjugate" and isinstance(self.follower, TranslatingRoller) and self.follower.overhang:
+            detail = "a yoke around two cams is guided on both sides; leave it out"
+            return [Contradiction("/follower/overhang", detail)]
         return []
 
     def _spring(self, dynamics: FollowerDynamics) -> list[Contradiction]:
@@ -212,7 +221,7 @@ class CamProblem(StatedProblem):
         if dynamics.max_rpm is not None and dynamics.max_rpm < speed:
             contradictions.append(Contradiction("/dynamics/max_rpm", "must be at least the stated speed"))
         if self.grooved:
-            detail = "in a groove no spring holds the follower; state a rate, or take the closure by force"
+            detail = "between two walls no spring holds the follower; state a rate, or take the closure by force"
             if free:
                 contradictions.append(Contradiction("/dynamics/spring_rate", detail))
             if dynamics.max_rpm is not None:

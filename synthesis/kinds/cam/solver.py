@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -31,6 +32,7 @@ from synthesis.kinds.cam.composition import (
     least_pitch_radius,
     roller_radius_range,
 )
+from synthesis.kinds.cam.conjugate import pair_mechanism, second_cam, second_metrics, verify_pair, with_equal_rollers
 from synthesis.kinds.cam.design import CamDesign, CamMechanism, CamMetrics, CamResult
 from synthesis.kinds.cam.followers import (
     BarrelRoller,
@@ -65,7 +67,7 @@ from synthesis.model.statement import Contradiction, ContradictionError
 
 Real = NDArray[np.float64]
 
-UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound"}
+UNSOUND = {"no_cusp", "does_not_cross_itself", "outer_wall_is_sound", "second_no_cusp", "second_does_not_cross_itself"}
 """Checks that more points do not mend."""
 
 PEAKS = {"peak_velocity", "peak_acceleration", "peak_jerk"}
@@ -117,15 +119,20 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
         reason = "no cam of any size carries the program within the limits on pressure angle, curvature and face width"
         return none_of(problem, reason, proven, "size")
     cam, size = sized
+    cams = _pair(problem, cam)
+    if cams is None:
+        reason = "the second of the conjugate cams has no size within the limits on pressure angle and curvature"
+        return none_of(problem, reason, False, "size")
     progress(0.7, "verifying")
-    mechanism, verification, measured = _verified(problem, cam, progress)
+    mechanism, verification, measured = _verified(problem, cams, progress)
     tighter = _tightened(problem, verification)
     if tighter is not None and (larger := _sized(tighter, composed.program)) is not None:
-        cam, size = larger
-        mechanism, verification, measured = _verified(problem, cam, progress)
+        cams, size = _pair(tighter, larger[0]) or cams, larger[1]
+        mechanism, verification, measured = _verified(problem, cams, progress)
+    cam = cams[0]
     if measured is None:
         return none_of(problem, _not_laid_on(cam), False, "follower_can_be_laid_on")
-    metrics = _metrics(problem, cam, measured)
+    metrics = _metrics(problem, cam, mechanism, measured)
     held = [*force_checks(problem, metrics.forces), *measured_contact(problem, mechanism, metrics.forces)]
     held += overturning_checks(problem, mechanism, metrics)
     verification = Verification.of([*verification.checks, *held])
@@ -141,17 +148,31 @@ def solve_cam(problem: CamProblem, progress: Progress) -> CamResult:
     return result_of(problem, composed, design, size, ("prime" if cam.roller_radius else "base", cam.size))
 
 
-def _verified(problem: CamProblem, cam: Cam, progress: Progress) -> tuple[CamMechanism, Verification, Measured | None]:
-    """The finished cam, what its checks say, and its measure; None where the follower cannot be laid on."""
-    curves = [cam.profile, cam.outer_wall] if problem.closure == "form" else [cam.profile]
+def _pair(problem: CamProblem, cam: Cam) -> tuple[Cam, ...] | None:
+    """The cam alone, or with the second one that is conjugate to it; None where that has no sound size."""
+    if problem.closure != "conjugate":
+        return (cam,)
+
+    def sized(other: CamProblem, program: Program) -> Cam | None:
+        found = _sized(other, program)
+        return None if found is None else found[0]
+
+    second = second_cam(problem, cam, sized)
+    return None if second is None else with_equal_rollers(cam, second)
+
+
+def _verified(
+    problem: CamProblem, cams: tuple[Cam, ...], progress: Progress
+) -> tuple[CamMechanism, Verification, Measured | None]:
+    """The finished cams, what their checks say, and the measure; None where the follower cannot be laid on."""
+    cam, groove = cams[0], problem.closure == "form"
+    curves = [cam.profile, cam.outer_wall] if groove else [one.profile for one in cams]
     laid = [profile_angles(cam.program, curve, cam.roller_radius, problem.profile_points) for curve in curves]
-    return resolved(
-        max(laid, key=len),
-        partial(cam_mechanism, cam, groove=problem.closure == "form"),
-        partial(verify, problem),
-        _closer,
-        progress,
-    )
+    make: Callable[[Real], CamMechanism] = partial(cam_mechanism, cam, groove=groove)
+    if len(cams) > 1:
+        make = partial(pair_mechanism, cams[0], cams[1])
+    proof = verify if len(cams) == 1 else verify_pair
+    return resolved(max(laid, key=len), make, partial(proof, problem), _closer, progress)
 
 
 def _tightened(problem: CamProblem, verification: Verification) -> CamProblem | None:
@@ -161,9 +182,9 @@ def _tightened(problem: CamProblem, verification: Verification) -> CamProblem | 
     little curvature is missing.
     """
     failed = [check for check in verification.checks if not check.passed]
-    if [check.name for check in failed] != ["curvature_ratio"] or not failed[0].value or failed[0].limit is None:
+    if not failed or {check.name for check in failed} - {"curvature_ratio", "second_curvature_ratio"}:
         return None
-    short = failed[0].limit / failed[0].value - 1.0
+    short = max((check.limit or 0.0) / (check.value or math.inf) - 1.0 for check in failed)
     if not 0.0 < short < MEASURED_SHORT:
         return None
     limit = problem.limits.curvature_ratio * (1.0 + 2.0 * short)
@@ -222,7 +243,7 @@ def _closer(angle: Real, measured: Measured, failed: set[str]) -> Real | None:
     """Angles that stand closer where the profile's points are too few; None where more do not help."""
     if failed & UNSOUND:
         return None
-    if failed & {"reproduces_program", "outer_wall_reproduces_program"}:
+    if failed & {"reproduces_program", "outer_wall_reproduces_program", "second_reproduces_program"}:
         return refined(angle, measured.off, REPRODUCED)
     for doubtful in (measured.unsettled, measured.unsteady):
         if doubtful.any():
@@ -326,7 +347,7 @@ def _largest_roller(cam: Cam, largest: float, problem: CamProblem) -> Cam:
     return replace(cam, follower=replace(follower, roller_radius=radius))
 
 
-def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
+def _metrics(problem: CamProblem, cam: Cam, mechanism: CamMechanism, measured: Measured) -> CamMetrics:
     """The measured profile as the answer has it."""
     program = cam.program
     roller = cam.roller_radius > 0.0
@@ -339,6 +360,7 @@ def _metrics(problem: CamProblem, cam: Cam, measured: Measured) -> CamMetrics:
         min_concave_radius=None if math.isinf(measured.concave_radius) else measured.concave_radius,
         curvature_ratio=measured.curvature_ratio if roller else None,
         face_width=None if roller else measured.sweep,
+        second=second_metrics(problem, mechanism),
         overturning_moment=overturning_moment(problem, cam),
         **motion_metrics(problem, program),
     )

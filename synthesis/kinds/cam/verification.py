@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinematics.cam.contact import Contour
-from kinematics.cam.finished import worst
+from kinematics.cam.finished import Worst, worst
 from kinematics.cam.follower import Follower
 from kinematics.errors import DimensionError, ShapeError
 from synthesis.kinds.cam.design import CamMechanism
@@ -129,10 +129,23 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
     except DimensionError:
         # Where points are out of the follower's reach at their own angles, the profile has no contacts to be measured.
         return Verification.of([*checks, NOT_LAID_ON]), None
+    measured = measured_of(found, mechanism.follower.roller_radius or 0.0, off)
+    if touches:
+
+        def measure(angle: Real) -> tuple[Real, Real]:
+            along = contour.follow(follower, angle, mechanism.rotation)
+            return along.s, along.v
+
+        checks += rate_checks(problem, measure, demanded.lift, demanded.tolerance, float(off.max()))
+        checks += _limit_checks(problem, mechanism, measured)
+    return Verification.of(checks), measured
+
+
+def measured_of(found: Worst, roller: float, off: Real) -> Measured:
+    """What the worst places of a profile are under a roller of a radius, 0 for a flat face."""
     convex = 1.0 / found.convex if found.convex > 0.0 else math.inf
     concave = 1.0 / found.concave if found.concave > 0.0 else math.inf
-    roller = mechanism.follower.roller_radius or 0.0
-    measured = Measured(
+    return Measured(
         math.degrees(found.rising),
         math.degrees(found.falling),
         convex,
@@ -146,15 +159,6 @@ def verify(problem: CamProblem, mechanism: CamMechanism) -> tuple[Verification, 
         found.unsettled,
         found.unsteady,
     )
-    if touches:
-
-        def measure(angle: Real) -> tuple[Real, Real]:
-            along = contour.follow(follower, angle, mechanism.rotation)
-            return along.s, along.v
-
-        checks += rate_checks(problem, measure, demanded.lift, demanded.tolerance, float(off.max()))
-        checks += _limit_checks(problem, mechanism, measured)
-    return Verification.of(checks), measured
 
 
 def _groove_checks(

@@ -1,0 +1,42 @@
+"""Conjugate (desmodromic) cams: two on one shaft, each with a roller of one follower, so that one pushes each way.
+
+The second roller is fixed to the first, on the other side of the cam: on the same slide at a distance D, or on a second
+arm at a fixed angle γ from the first. Where the first roller is at s, the second, as its own cam sees it, is at
+s₂ = s_max − s:
+
+    D = d + d₂ + s_max        on a slide: its cam is that of an offset −e, turned by half a turn on the shaft
+    γ = ψ₀ + ψ₀₂ + s_max      on arms: that of a follower of the other sense, with the same pivot
+
+(Norton, *Design of Machinery*, §8.1, §8.7; d, ψ₀ of :mod:`kinematics.cam.follower`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinematics.cam.follower import OscillatingRoller, Roller, TranslatingRoller
+from kinematics.cam.program import Program
+from kinematics.cam.segments import Segment
+
+Complex = NDArray[np.complex128]
+
+
+def opposed(program: Program) -> Program:
+    """What the second roller does: s_max − s, 0 where the first one is highest."""
+    top = program.peaks[0].greatest
+    return Program([Segment(one.name, one.pieces.scaled(one.angle, -1.0, top)) for one in program.segments])
+
+
+def span(first: Roller, second: Roller, top: float) -> float:
+    """D, or γ in radians, from the displacement s_max of the first."""
+    if isinstance(first, TranslatingRoller) and isinstance(second, TranslatingRoller):
+        return first.height + second.height + top
+    assert isinstance(first, OscillatingRoller)
+    assert isinstance(second, OscillatingRoller)
+    return first.start_angle + second.start_angle + top
+
+
+def turned(follower: Roller, points: Complex) -> Complex:
+    """From the second cam's own frame, in which its roller lies on +x, to that of the first, and back."""
+    return -points if isinstance(follower, TranslatingRoller) else points
