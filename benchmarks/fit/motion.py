@@ -6,7 +6,7 @@ Seven positions are added with tolerances: more than a linkage can take exactly.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,7 @@ def statement(rng: np.random.Generator, count: int, tolerated: bool) -> Statemen
     """One task."""
     planted, listed = _planted(rng, count, tolerated)
     swept = planted.joints(planted.spread(STEP))
-    corners = outline(rng, planted)
+    corners = outline(rng, planted.point)
     width = round(float(rng.uniform(4.0, 16.0)), 3)
     bars = {
         "input": np.stack([swept["O2"], swept["A"]], axis=1),
@@ -81,7 +81,7 @@ def _planted(rng: np.random.Generator, count: int, tolerated: bool) -> tuple[Pla
         shares = np.concatenate([[0.0], np.cumsum(gaps) / gaps.sum()])
         inputs = planted.begin + (planted.end - planted.begin) * shares
         inputs[-1] = planted.end
-        listed = positions(planted, inputs)
+        listed = carried(planted.joints(inputs))
         if not tolerated:
             return planted, listed
         _missed(rng, listed)
@@ -113,8 +113,8 @@ def _on_body(zones: Statement | list[Statement]) -> Any:
     return [_on_body(zone) for zone in zones] if isinstance(zones, list) else {**zones, "frame": "body"}
 
 
-def outline(rng: np.random.Generator, planted: PlantedFourbar) -> Complex:
-    """Corners of a bar, a wedge or an angle on the coupler, as shares of the way from A to B."""
+def outline(rng: np.random.Generator, point: complex) -> Complex:
+    """Corners of a bar, a wedge or an angle on the coupler about a point, all as shares of the way from A to B."""
     length, height = rng.uniform(0.5, 1.3), rng.uniform(0.1, 0.35)
     shape = [
         np.array([0.0, length, length + 1j * height, 1j * height]),
@@ -123,12 +123,11 @@ def outline(rng: np.random.Generator, planted: PlantedFourbar) -> Complex:
                   1.6j * height]),
     ][int(rng.integers(3))]  # fmt: skip
     turned = shape * np.exp(1j * rng.uniform(-math.pi, math.pi))
-    return np.asarray(planted.point + turned - turned.mean() * rng.uniform(0.0, 1.0))
+    return np.asarray(point + turned - turned.mean() * rng.uniform(0.0, 1.0))
 
 
-def positions(planted: PlantedFourbar, inputs: Real) -> list[dict[str, Any]]:
-    """Positions of the body at input angles."""
-    at = planted.joints(inputs)
+def carried(at: Mapping[str, Complex]) -> list[dict[str, Any]]:
+    """Positions of the body by the joints of the linkage that carries it."""
     angles = np.degrees(np.unwrap(np.angle(at["B"] - at["A"])))
     return [
         {"x": float(p.real), "y": float(p.imag), "angle": float(angle)}

@@ -8,18 +8,23 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.fit import sliders
 from benchmarks.fit.motion import GROUPS, statement
 from benchmarks.fit.task import generator
 from benchmarks.fit.verdict import violations
 from synthesis.dispatch import solve
 from synthesis.fit.room_margins import margins_of
+from synthesis.kinds.motion import slider_search
+from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.room import sliders_fit
 from synthesis.kinds.motion.room_starts import pairs_in_room
 from synthesis.kinds.motion.steered_fit import Steered, begun, demanded_rows, driven, room_left, room_of
 from synthesis.kinds.motion.steered_room import CHART, ENDS, chart_of
 from synthesis.kinds.motion.steered_rows import ASSEMBLY, OTHERS, STEPS, limits, steered_rows
 from synthesis.kinds.motion.task import MotionTask, Real, motion_task
-from synthesis.kinds.motion.verification import demanded
+from synthesis.kinds.motion.verification import demanded, verify
+from synthesis.proof.room import judged_by_room
 from synthesis.registry import parse_problem
 from tests.campaign import further
 
@@ -133,3 +138,46 @@ def test_a_planted_motion_is_answered_in_its_room(number: int) -> None:
     for design in passed:
         assert violations(stated, design) == []
     assert math.isfinite(passed[0].metrics.quality)
+
+
+@pytest.mark.parametrize("number", further(range(3, 30), [3, 13, 28]))
+def test_a_planted_slider_crank_is_answered_in_its_room(number: int) -> None:
+    """Exact positions, of which the best slider-cranks without the room all meet what is in the way."""
+    stated = sliders.statement(generator(1, number), sliders.GROUPS[number % len(sliders.GROUPS)])
+    result = solve(parse_problem(stated))
+    passed = [design for design in result.designs if design.verification.passed]
+    assert passed
+    assert result.search.candidates == result.search.accepted + sum(result.search.rejected.values())
+    for design in passed:
+        assert "B" in {slide.joint for slide in design.mechanism.skeleton.slides}
+        assert violations(stated, design) == []
+
+
+@pytest.mark.parametrize("over", ["used", "cycle"])
+def test_slider_cranks_that_are_left_out_of_a_room_would_fail_in_it(over: str) -> None:
+    """The sweep says so too, and of the others that some fit."""
+    stated = sliders.statement(generator(1, 3), 2)
+    first = stated["positions"][0]
+    post = {"circle": {"center": [first["x"] + 400.0, first["y"]], "radius": 150.0}}
+    stated["space"] = {"obstacles": [post], "link_width": 8.0, "over": over}
+    problem = parse_problem(stated)
+    assert isinstance(problem, MotionProblem)
+    task, rng = motion_task(problem), np.random.default_rng(5)
+    lines = slider_search.sliders(task, problem.output_side, inverted=False, rng=rng, count=40)
+    links = side_dyads(task, problem, 0, rng, 40).dyads
+    screened = slider_search._screen(problem, task, links, lines, "PR", False, 30.0)
+    i, j = (some[::7][:60] for some in np.nonzero(screened.score))
+    joints = np.stack([links.fixed[i], links.moving[i], lines.points[j]], axis=1)
+    fit = sliders_fit(problem, task, joints, lines.angles[j])
+    told = []
+    for n in range(len(fit)):
+        pair = int(i[n]), int(j[n])
+        design = verify(problem, slider_search._mechanism(problem, task, links, lines, "PR", False, *pair))
+        assert design is not None
+        judged = judged_by_room(problem, design)
+        assert judged is not None
+        checks = {check.name: check.passed for check in judged.verification.checks}
+        told.append(checks["obstacles"])
+    assert not np.any(np.array(told) & ~fit)
+    assert 0 < np.count_nonzero(fit) < len(fit)
+    assert np.count_nonzero(told) >= 0.6 * np.count_nonzero(fit)

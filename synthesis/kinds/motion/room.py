@@ -1,4 +1,4 @@
-"""Which fourbars that carry a body are likely to keep clear of obstacles: looked at in a few positions on their way.
+"""Which linkages that carry a body are likely to keep clear of obstacles: looked at in a few positions on their way.
 
 A kernel that leaves out what plainly does not fit, so that only what may fit is driven and proven. What it passes may
 still fail between the positions; what it drops would fail. What costs least comes first: a few positions before those
@@ -8,6 +8,7 @@ between them, the box before obstacles, and circles around outlines before the o
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -58,6 +59,50 @@ def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[n
     at = positions(linkages, inputs, sign)
     home = positions(linkages, np.angle(a - o2)[:, None], sign)
     spin = np.exp(1j * (at.coupler_angle - home.coupler_angle))
+    return _kept(space, task, _Way(o2, o4[:, None], at.a, at.b, at.p, spin, at.valid))
+
+
+def sliders_fit(problem: MotionProblem, task: MotionTask, joints: Complex, angles: Real) -> NDArray[np.bool_]:
+    """The same of slider-cranks that their crank drives.
+
+    Parameters
+    ----------
+    joints : complex, shape (n, 3)
+        O2, A and the pin B of the slider at the first target, in task coordinates.
+    angles : float, shape (n,)
+        Of the lines on which B slides, radians.
+    """
+    space = problem.space
+    assert space is not None
+    o2, a, b = (np.ascontiguousarray(task.origin + column * task.size) for column in joints.T)
+    point, along = complex(task.origin), np.exp(1j * angles)
+    turned = np.exp(1j * (_inputs(space, task, o2, a) - np.angle(a - o2)[:, None]))
+    at_a = o2[:, None] + (a - o2)[:, None] * turned
+    reach = ((b - a) * np.conj(along)).real
+    off = ((b[:, None] - at_a) * np.conj(along)[:, None]).imag
+    square = np.abs(b - a)[:, None] ** 2 - off**2
+    at_b = at_a + along[:, None] * (np.sign(reach)[:, None] * np.sqrt(np.maximum(square, 0.0)) + 1j * off)
+    spin = (at_b - at_a) / (b - a)[:, None]
+    at_p = at_a + (point - a)[:, None] * spin
+    # No link is behind the slider: a bar without length at B stands for it.
+    return _kept(space, task, _Way(o2, at_b, at_a, at_b, at_p, spin, square >= 0.0))
+
+
+class _Way(NamedTuple):
+    """Linkages at the inputs that are looked at: O2 of shape (n,), O4 of (n, 1) or (n, m), the others of (n, m)."""
+
+    o2: Complex
+    o4: Complex
+    a: Complex
+    b: Complex
+    p: Complex
+    spin: Complex
+    valid: NDArray[np.bool_]
+
+
+def _kept(space: Space, task: MotionTask, way: _Way) -> NDArray[np.bool_]:
+    """Which of them keep within the box and clear of the obstacles."""
+    point = complex(task.origin)
     corners = [zone.outline for zone in space.obstacles]
     starts = np.cumsum([0, *(len(points) for points, _ in corners)])
     middles = np.array([complex(points.mean()) for points, _ in corners], np.complex128)
@@ -65,9 +110,9 @@ def fits(problem: MotionProblem, task: MotionTask, joints: Complex) -> NDArray[n
     outline = (
         np.array([complex(*corner) for corner in space.body.outline]) - point if space.body else np.empty(0, complex)
     )
-    out = np.empty(len(joints), np.bool_)
+    out = np.empty(len(way.o2), np.bool_)
     _look(
-        o2, o4, at.a, at.b, at.p, spin, at.valid, outline,
+        *way, outline,
         np.concatenate([points for points, _ in corners]) if corners else np.empty(0, np.complex128),
         starts, np.array([radius for _, radius in corners]), middles, reaches, _box(space), _coarse_first(LOOKED_AT),
         0.5 * space.link_width, space.clearance - SURE * task.size, SURE * task.size, out,
@@ -124,7 +169,7 @@ def _look(
     slack: float,
     out: NDArray[np.bool_],
 ) -> None:
-    """Fill ``out``: whether each of n linkages keeps clear at m inputs; shapes (n,) and (n, m) of the joints."""
+    """Fill ``out``: whether each of n linkages keeps clear at m inputs; shapes of the joints as in :class:`_Way`."""
     bar, hull, body = np.empty(2, np.complex128), np.empty(3, np.complex128), np.empty(len(outline), np.complex128)
     for n in range(len(o2)):
         free = True
@@ -135,7 +180,8 @@ def _look(
             for k in range(len(outline)):
                 body[k] = p[n, m] + spin[n, m] * outline[k]
             coupler = hull[:2] if len(outline) else hull
-            bar[0], bar[1] = o4[n], o2[n]
+            ground = o4[n, m if o4.shape[1] > 1 else 0]
+            bar[0], bar[1] = ground, o2[n]
             # The other joints of both links are those of the coupler.
             free = _boxed(coupler, half, box, slack) and _boxed(bar, half, box, slack) and _boxed(body, 0.0, box, slack)
             free = free and _clear(coupler, half, corners, starts, radii, middles, reaches, clearance)

@@ -26,6 +26,7 @@ from synthesis.kinds.motion.choices import side_dyads
 from synthesis.kinds.motion.design import MotionResult
 from synthesis.kinds.motion.dyads import Dyads
 from synthesis.kinds.motion.problem import MotionProblem
+from synthesis.kinds.motion.room import affordable, sliders_fit
 from synthesis.kinds.motion.sections import SliderDyad
 from synthesis.kinds.motion.sliders import Sliders, sliders
 from synthesis.kinds.motion.stated_dyads import DyadChoices
@@ -78,6 +79,12 @@ class _Screened(NamedTuple):
 LINKS, SLIDERS = 500, 160
 """Dyads of both sides where both are drawn from families."""
 
+IN_ZONES = 100
+"""Times as many sliders are drawn where they have a zone in a room: those in it are kept, no more than elsewhere."""
+
+LOOKED_AT, AT_ONCE, FITTING = 60_000, 4000, 400
+"""Pairs that are looked at in a room at most, how many at a time, and with how many that fit it is left at that."""
+
 ALONE = 6000
 """Dyads of a side that is drawn where the other is determined."""
 
@@ -89,17 +96,21 @@ def solve_sliders(problem: MotionProblem, kind: Literal["PR", "RP"], progress: P
     progress(0.0, "finding sliders")
     side = int(problem.output_side.dyad == kind)
     stated = (problem.input_side, problem.output_side)[side]
-    dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS)
+    areas = side_areas(problem)[side]
+    inside_of = areas.moving if kind == "PR" else areas.fixed
+    more = IN_ZONES if problem.space is not None and inside_of else 1
+    dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=SLIDERS * more)
     if not len(dyads.points):
         return _none(problem, dyads.reason, complete=dyads.proved)
     progress(0.1, "finding links")
     links = side_dyads(task, problem, 1 - side, rng, LINKS if dyads.sampled else ALONE)
     if not len(links.dyads.fixed):
         return _none(problem, links.reason.replace("the side", "the side with pins"), complete=links.complete)
+    most = SLIDERS if links.sampled else ALONE
     if dyads.sampled and not links.sampled:
-        dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE)
-    areas = side_areas(problem)[side]
-    inside = within(task, areas.moving if kind == "PR" else areas.fixed, dyads.points)
+        dyads = sliders(task, stated, inverted=kind == "RP", rng=rng, count=ALONE * min(more, 10))
+    inside = np.flatnonzero(within(task, inside_of, dyads.points))
+    inside = inside[:most] if more > 1 else inside
     dyads = dyads._replace(points=dyads.points[inside], angles=dyads.angles[inside])
     return slider_linkages(problem, task, links.dyads, dyads, kind, progress)
 
@@ -187,6 +198,8 @@ def slider_linkages(
     screened = _screen(problem, task, links, sliders, kind, driving, wanted)
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
+    sound = int(np.count_nonzero(screened.score))
+    screened = _in_room(problem, task, links, sliders, screened, steers=kind == "PR" and not driving)
     sifting = Sifting[LinkageDesign](problem, DEFECTS | LENGTHS)
     counts = np.bincount(screened.verdict.ravel(), minlength=len(REJECTED))
     for name, count in zip(REJECTED[1:], counts[1:].tolist(), strict=True):
@@ -201,7 +214,7 @@ def slider_linkages(
         lambda pair: verify(problem, _mechanism(problem, task, links, sliders, kind, driving, *pair)),
         enough=problem.max_designs,
     )
-    sifting.reject(OUTRANKED, int(np.count_nonzero(screened.score)) - driven)
+    sifting.reject(OUTRANKED, sound - driven)
     progress(1.0, "verified")
     word = "slider-crank" if kind == "PR" else "inverted slider-crank"
     text = f"{sifting.accepted} distinct {word}s were driven and verified, of {sifting.candidates} pairs of dyads."
@@ -336,6 +349,30 @@ def _driven_by_slider(
         cosine = (crank[..., None] ** 2 + rod[..., None] ** 2 - squares) / (2.0 * crank * rod)[..., None]
     worst = np.abs(cosine).max(axis=-1)
     return np.sqrt(np.maximum(1.0 - worst**2, 0.0)), moved, worst < 1.0
+
+
+def _in_room(
+    problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, *, steers: bool
+) -> _Screened:
+    """Without the pairs that plainly do not fit into a room, and those that are not looked at for it."""
+    if problem.space is None or not problem.space.swept or not steers:
+        return screened
+    score = screened.score.ravel()
+    sound = np.flatnonzero(score > 0.0)
+    best = sound[np.argsort(-score[sound], kind="stable")]
+    # The best ones lie close together: each portion has some of the others.
+    best = best[:: -(-len(best) // LOOKED_AT) or 1]
+    portions = -(-len(best) // AT_ONCE)
+    fitting = np.zeros_like(score)
+    for k in range(affordable(problem.space, portions) if portions else 0):
+        looked = best[k::portions]
+        i, j = np.unravel_index(looked, screened.score.shape)
+        joints = np.stack([links.fixed[i], links.moving[i], sliders.points[j]], axis=1)
+        kept = looked[sliders_fit(problem, task, joints, sliders.angles[j])] if len(looked) else looked
+        fitting[kept] = score[kept]
+        if np.count_nonzero(fitting) >= FITTING:
+            break
+    return screened._replace(score=fitting.reshape(screened.score.shape))
 
 
 def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, count: int) -> list[tuple[int, int]]:
