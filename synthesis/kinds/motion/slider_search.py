@@ -199,7 +199,8 @@ def slider_linkages(
     if limit is None and not screened.score.any():
         screened = _screen(problem, task, links, sliders, kind, driving, 0.0)
     sound = int(np.count_nonzero(screened.score))
-    screened = _in_room(problem, task, links, sliders, screened, steers=kind == "PR" and not driving)
+    if kind == "PR" and not driving and not few:
+        screened = _in_room(problem, task, links, sliders, screened)
     sifting = Sifting[LinkageDesign](problem, DEFECTS | LENGTHS)
     counts = np.bincount(screened.verdict.ravel(), minlength=len(REJECTED))
     for name, count in zip(REJECTED[1:], counts[1:].tolist(), strict=True):
@@ -352,10 +353,13 @@ def _driven_by_slider(
 
 
 def _in_room(
-    problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, *, steers: bool
+    problem: MotionProblem, task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened
 ) -> _Screened:
-    """Without the pairs that plainly do not fit into a room, and those that are not looked at for it."""
-    if problem.space is None or not problem.space.swept or not steers:
+    """Without the pairs that plainly do not fit into a room, and those that are not looked at for it.
+
+    All of them where none fits: what is driven then tells why not.
+    """
+    if problem.space is None or not problem.space.swept:
         return screened
     score = screened.score.ravel()
     sound = np.flatnonzero(score > 0.0)
@@ -372,7 +376,7 @@ def _in_room(
         fitting[kept] = score[kept]
         if np.count_nonzero(fitting) >= FITTING:
             break
-    return screened._replace(score=fitting.reshape(screened.score.shape))
+    return screened._replace(score=fitting.reshape(screened.score.shape)) if fitting.any() else screened
 
 
 def _best(task: MotionTask, links: Dyads, sliders: Sliders, screened: _Screened, count: int) -> list[tuple[int, int]]:
