@@ -205,3 +205,15 @@ def test_a_turned_mirrored_linkage_gets_the_same_weights() -> None:
     for one, other in zip(first.counterweights, second.counterweights, strict=True):
         assert one.mass == pytest.approx(other.mass, rel=1e-9)
         assert one.angle == pytest.approx(-other.angle, rel=1e-9)
+
+
+def test_what_is_balanced_already_is_said_to_be() -> None:
+    problem = problem_of(stated(np.random.default_rng(2), fourbar, counterweights={"radius": 80.0}))
+    design = solve(problem).designs[0]
+    again = problem.model_dump(mode="json", exclude_unset=True)
+    again |= {"mechanism": design.mechanism.model_dump(mode="json"), "dynamics": design.dynamics}
+    result = solve(problem_of(again))
+    assert result.summary == "The linkage is balanced as it is."
+    assert result.search.complete
+    assert result.designs[0].counterweights == []
+    assert result.designs[0].metrics.value < 1e-12

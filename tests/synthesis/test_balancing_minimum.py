@@ -182,3 +182,21 @@ def test_a_conic_program_says_what_it_is() -> None:
     disc = Rows("second_order", np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]), np.array([1.0, 0.0, 0.0]), 3)
     round_one = minimized(np.array([3.0, 4.0]), [disc])
     assert round_one.x == pytest.approx([-0.6, -0.8], abs=1e-6)
+
+
+@pytest.mark.parametrize("disc", [{}, {"density": 7800.0, "thickness": 20.0}])
+def test_gyration_is_limited_where_the_inertia_does_not_count(disc: dict[str, float]) -> None:
+    problem = problem_of(
+        least(
+            np.random.default_rng(6),
+            objective={"shaking_force": 1.0},
+            counterweights={"total_mass": 4.0, "max_gyration": 20.0, **disc},
+        )
+    )
+    result = solve(problem)
+    assert result.designs, result.summary
+    design = result.designs[0]
+    assert {"gyration", "gap"} <= {check.name for check in design.verification.checks}
+    for weight in design.counterweights:
+        about = weight.inertia * 1e6 + weight.mass * weight.radius**2
+        assert about <= weight.mass * 20.0**2 * 1.002

@@ -59,3 +59,14 @@ def test_the_bound_is_the_distance_to_what_can_be_summed_up() -> None:
     square = [np.array([1.0 + 0j]), np.array([1j])]
     assert searched._beyond(3.0 + 0.5j, square) == pytest.approx(2.0, rel=1e-12)
     assert searched._beyond(0.4 + 0.9j, square) == 0.0
+
+
+@pytest.mark.parametrize("most", [3, 72])
+def test_places_that_lie_across_end_soon(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """Nothing that the places to be branched on add is of use, and there are 201^68 branches of that."""
+    monkeypatch.setattr(searched, "QUERIES", 200_000)
+    angles = np.radians([*(0.001 * k for k in range(4)), *(90.0 + 0.001 * k for k in range(68))])
+    places = [np.exp(1j * angle) * np.arange(1.0, 201.0) for angle in angles]
+    found = best_choices(100.0 + 0j, places, most)
+    assert not found.proved
+    assert abs(found.choices[-1].residual) < 1e-12

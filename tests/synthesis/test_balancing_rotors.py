@@ -149,3 +149,25 @@ def test_a_balanced_rotor_needs_nothing() -> None:
     design = solve(problem).designs[0]
     assert design.mechanism.corrections == []
     assert design.verification.passed
+
+
+def test_a_grade_at_bearings_beside_the_planes_proves_nothing() -> None:
+    """A mass beside the only plane: as it is the rotor keeps the grade, and the balanced one does not."""
+    fields = {
+        "masses": [{"mass": 0.1, "radius": 100.0, "angle": 0.0, "z": 0.0}],
+        "planes": [100.0],
+        "bearings": [0.0, 100.0],
+        "rpm": 3000.0,
+        "rotor_mass": 40.0,
+        "max_grade": 80.0,
+    }
+    result = solve(stated(**fields, correction={"radius": 100.0}))
+    assert not result.designs
+    assert not result.search.complete
+    assert result.summary.startswith("No design was found.")
+    holes = {"angles": 4, "radius": 100.0, "step": 0.01, "max_per_hole": 0.2}
+    result = solve(stated(**fields, correction={"holes": holes}))
+    assert [design.metrics.places for design in result.designs] == [0]
+    assert "The least that was found is 0 g·mm" in result.summary
+    assert "its grade is beyond the limit" in result.summary
+    assert not result.search.complete

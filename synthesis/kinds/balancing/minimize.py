@@ -138,6 +138,8 @@ def _limits(
         if stated.max_disc_radius is not None:
             most = min(most, math.pi * areal * (scale * stated.max_disc_radius) ** 2)
     reach = 1.0 if stated.reach is None else scale * stated.reach / size
+    gyration = math.inf if stated.max_gyration is None else scale * stated.max_gyration / size
+    reach = min(reach, gyration)  # no weight is nearer to its joint, by its gyration, than its centre
     counts = np.zeros(PARAMETERS * count)
     for level in levels:
         for part in level.values:
@@ -147,7 +149,7 @@ def _limits(
         np.full(count, most / mass),
         np.full(count, reach),
         np.full(count, disc),
-        np.full(count, math.inf if stated.max_gyration is None else scale * stated.max_gyration / size),
+        np.full(count, gyration),
         math.inf if stated.total_mass is None else stated.total_mass / mass,
         matters[3::PARAMETERS],
         matters[0::PARAMETERS],
@@ -223,7 +225,7 @@ def _lightest(setting: Setting, parameters: Real) -> Real:
         if moment > mass * limits.reach[n]:
             first = first * (mass * limits.reach[n] / moment)
             moment = mass * limits.reach[n]
-        if not limits.carried[n] and not limits.turning[n]:
+        if not limits.carried[n] and not limits.turns(n):
             mass = moment / limits.reach[n]
         least = (moment**2 / mass if mass > 0.0 else 0.0) + mass**2 / limits.disc[n]
         own = mass, *first, max(least, inertia) if limits.turning[n] else least

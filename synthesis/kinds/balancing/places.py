@@ -9,8 +9,7 @@ continuous optimum, the distance to the zonotope of all that its places can sum 
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +17,20 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+
+DIRECTIONS = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False))
+"""Along which sums are bounded."""
 
 GROUP = 100_000
 """Sums that are listed of a half at most."""
 
 QUERIES = 3_000_000
 """Sums that are looked up at most, in some seconds; beyond, what was found is not proved to be the best."""
+
+
+LEFT_OUT = 50
+"""Looked-up sums that take as long as a branch that is left out."""
 
 
 class Choice(NamedTuple):
@@ -69,20 +76,19 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
         if len(at := np.flatnonzero(tail.used == used))
     }
     best: dict[int, Choice] = {}
-    listed = [places[n] for n in (*first, *second)]
+    support = _support([places[n] for n in (*first, *second)])
     asked, complete = 0, True
-    for branch in itertools.product(*(range(len(places[n]) + 1) for n in rest)):
+    for branch in _branches([len(places[n]) for n in rest], most):
         picked = {n: pick - 1 for n, pick in zip(rest, branch, strict=True) if pick}
-        if len(picked) > most:
-            continue
         left = target - sum((complex(places[n][pick]) for n, pick in picked.items()), 0j)
         # A branch uses so many places at least: it is of no use where as few come nearer than it ever can.
         few = [abs(choice.residual) for count, choice in best.items() if count <= len(picked)]
-        if rest and few and _beyond(left, listed) >= min(few):
-            continue
         if asked > QUERIES:
             complete = False
             break
+        asked += LEFT_OUT if rest else 0
+        if rest and few and _outside(left, support) >= min(few):
+            continue
         for used in np.unique(head.used).tolist():
             at = np.flatnonzero(head.used == used)
             wanted = left - head.values[at]
@@ -119,6 +125,16 @@ def _split(places: Sequence[Complex], most: int) -> tuple[list[int], list[int], 
         else:
             rest.append(n)
     return *halves, rest
+
+
+def _branches(sizes: Sequence[int], most: int) -> Iterator[tuple[int, ...]]:
+    """Contributions of places, 0 for none, of which at most some are used; the last place's change first."""
+    if not sizes:
+        yield ()
+        return
+    for pick in range(sizes[0] + 1 if most else 1):
+        for later in _branches(sizes[1:], most - (pick > 0)):
+            yield (pick, *later)
 
 
 def _count(sizes: Sequence[int], most: int) -> int:
@@ -159,8 +175,16 @@ def _beyond(target: complex, places: Sequence[Complex]) -> float:
     The largest distance along a direction is a lower bound, whatever the directions; those of the sides of a zonotope
     of segments from 0 give its distance but for its corners.
     """
-    directions = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False))
-    support = np.zeros(720)
+    return _outside(target, _support(places))
+
+
+def _support(places: Sequence[Complex]) -> Real:
+    """How far the sums reach along each of the directions."""
+    support = np.zeros(len(DIRECTIONS))
     for contributions in places:
-        support += np.maximum(0.0, (np.conj(directions)[:, None] * contributions).real.max(axis=1))
-    return max(0.0, float(((np.conj(directions) * target).real - support).max()))
+        support += np.maximum(0.0, (np.conj(DIRECTIONS)[:, None] * contributions).real.max(axis=1))
+    return support
+
+
+def _outside(target: complex, support: Real) -> float:
+    return max(0.0, float(((np.conj(DIRECTIONS) * target).real - support).max()))

@@ -68,6 +68,10 @@ class Limits(NamedTuple):
     turning: NDArray[np.bool_]
     carried: NDArray[np.bool_]
 
+    def turns(self, n: int) -> bool:
+        """Whether the inertia of a weight counts or is limited."""
+        return bool(self.turning[n]) or math.isfinite(self.gyration[n])
+
 
 class Answer(NamedTuple):
     """Parameters of all weights, the levels by the place of the quantity, and the solution of the program."""
@@ -85,7 +89,7 @@ def best_weights(levels: Sequence[Level], limits: Limits, at: Mapping[str, Seque
     """
     links = len(limits.mass)
     count = PARAMETERS * links
-    discs = [n for n in range(links) if limits.turning[n] and np.isfinite(limits.disc[n])]
+    discs = [n for n in range(links) if limits.turns(n) and np.isfinite(limits.disc[n])]
     total = count + len(levels) + len(discs) + 1
     excess = total - 1
     rows = [
@@ -148,7 +152,7 @@ def _inertias(limits: Limits, total: int, own: Mapping[int, int]) -> list[Rows]:
     rows = []
     for n in range(len(limits.mass)):
         mass, inertia = PARAMETERS * n, PARAMETERS * n + 3
-        if not limits.turning[n]:
+        if not limits.turns(n):
             matrix = np.zeros((1, total))
             matrix[0, inertia] = 1.0
             rows.append(Rows("zero", matrix, np.zeros(1)))

@@ -25,12 +25,19 @@ def solve_balancing(problem: BalancingProblem, progress: Progress) -> BalancingR
     sifting = Sifting[RotorDesign](problem)
     sifting.sift(ways, partial(verify_rotor, problem, rotor))
     progress(1.0, "verified")
-    complete = all(way.proved for way in ways) and not sifting.rejected.keys() - {"grade"}
+    # What leaves least in the planes has the least grade where the grade is of these planes.
+    proving = {"grade"} if _graded_in_planes(problem) else set()
+    complete = all(way.proved for way in ways) and not sifting.rejected.keys() - proving
     return BalancingResult(
         designs=sifting.designs(partial(_ranked, problem)),
         search=sifting.search("rotor", complete=complete),
         summary=_summary(problem, sifting, complete),
     )
+
+
+def _graded_in_planes(problem: BalancingProblem) -> bool:
+    """Whether the bearings are in the planes, or there are none that count."""
+    return problem.supports is None or sorted(problem.supports) == sorted(problem.used_planes)
 
 
 def _ranked(problem: BalancingProblem, designs: list[RotorDesign]) -> list[RotorDesign]:
@@ -48,7 +55,8 @@ def _summary(problem: BalancingProblem, sifting: Sifting[RotorDesign], complete:
     planes = len(problem.used_planes)
     where = "in one plane" if planes == 1 else "in two planes"
     first = _ranked(problem, sifting.passed)[0].metrics
-    least = min(design.metrics.residual_unbalance for design in sifting.passed)
+    least = min(design.metrics.residual_unbalance for design in [*sifting.passed, *sifting.failed])
+    kept = any(design.metrics.residual_unbalance == least for design in sifting.passed)
     if problem.correction is None or problem.correction.placed is None:
         force = " The force is balanced; what the masses do out of the plane is left." if planes == 1 else ""
         return f"Balanced {where}.{force}"
@@ -56,5 +64,5 @@ def _summary(problem: BalancingProblem, sifting: Sifting[RotorDesign], complete:
     proved = "than which no choice of the places leaves less" if first.optimal else "and better choices may exist"
     return (
         f"Balanced {where} by {first.places} masses or holes, up to {first.residual_unbalance:.4g}{unit}. "
-        f"The least that was found is {least:.4g}{unit}, {proved}."
+        f"The least that was found is {least:.4g}{unit}, {proved}{'' if kept else '; its grade is beyond the limit'}."
     )
