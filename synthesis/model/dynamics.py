@@ -55,10 +55,14 @@ class StatedFriction(Statement):
     slides: dict[Annotated[str, Field(pattern="^[0-9]$")], Coefficient] = Field(default={}, max_length=10)
 
 
+LEAST_COEFFICIENT = 1e-6
+"""Coefficients of fluctuation below this are no shaft's: they would be lost in the rounding of its speed."""
+
+
 class StatedFlywheel(Statement):
     """The fluctuation of speed that a flywheel on the input shaft is to leave."""
 
-    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0, allow_inf_nan=False)] = Field(
+    coefficient: Annotated[float, Field(strict=True, ge=LEAST_COEFFICIENT, le=1.0, allow_inf_nan=False)] = Field(
         description="(ω_max − ω_min)/ω_mean."
     )
     existing_inertia: Annotated[NonNegative, INERTIA] = Field(

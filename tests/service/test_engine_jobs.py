@@ -320,6 +320,7 @@ INLINE = {"type": "inline", "throws": [0.0, 180.0, 180.0, 0.0]}
         (engine(4, INLINE, rod=1.0, rod_ratio=None), "/rod"),
         (engine(4, INLINE, rod=9.0), "/rod"),
         (engine(4, INLINE, stroke=-1.0), "/stroke"),
+        (engine(4, INLINE, rod_ratio=1e7), "/rod_ratio"),
         (engine(17, {"type": "inline"}), "/cylinders"),
         (engine(5, INLINE), "/layout/throws"),
         (engine(5, {"type": "vee", "vee_angle": 60.0}), "/cylinders"),

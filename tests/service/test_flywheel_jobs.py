@@ -115,6 +115,7 @@ CRANK = examples("flywheel")[1]["machine"]["mechanism"]
     [
         (example("flywheel") | {"limits": {}}, "/problem/limits"),
         (example("flywheel") | {"coefficient": 0.0}, "/problem/coefficient"),
+        (example("flywheel") | {"coefficient": 1e-30}, "/problem/coefficient"),
         (example("flywheel") | {"speed_rpm": -3.0}, "/problem/speed_rpm"),
         (example("flywheel") | {"density": 1e10}, "/problem/density"),
         (example("flywheel") | {"torque": {"table": [[10.0, 1.0], [5.0, 2.0]]}}, "/problem/torque/table"),

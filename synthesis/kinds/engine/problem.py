@@ -31,6 +31,9 @@ LEAST_ROD = 1.0 + 1e-3
 MOST_COMBINATIONS, MOST_CHOICES = 20_000, 20_000_000
 """Combinations of stated throw angles that are gone through, and choices of firing that they have together."""
 
+MOST_ROD = 1e6
+"""Rod over crank above which it is no engine: its motion is lost in the rounding of the rod."""
+
 BANKS: dict[str, int] = {"inline": 1, "vee": 2, "opposed": 2, "w": 3}
 """Rows of cylinders by type of layout; a radial engine has a star of them instead."""
 
@@ -254,6 +257,9 @@ class EngineProblem(StatedProblem):
         elif self.rod_length < LEAST_ROD * self.crank:
             path = "/rod" if self.rod is not None else "/rod_ratio"
             found.append(Contradiction(path, "the rod must be longer than the crank's radius"))
+        elif self.rod_length > MOST_ROD * self.crank:
+            path = "/rod" if self.rod is not None else "/rod_ratio"
+            found.append(Contradiction(path, f"the rod is more than {MOST_ROD:g} times as long as the crank's radius"))
         for path, layout in self.layouts:
             found += self._layout_faults(path, layout)
         return found + self._force_faults() + self._firing_faults()
