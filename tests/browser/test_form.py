@@ -25,19 +25,15 @@ def show(page, problem):
     page.evaluate(OPEN_ALL)
 
 
-LEFT_TO_JSON = {("flywheel", 1): 1}
-"""Fields without a control, by kind and example: a mechanism is any that an analysis takes."""
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_field_of_a_kind_has_its_control(kept_studio, kind):
-    """No field but a mechanism is left to the JSON; each number has its unit beside it, where it has one."""
+    """No field is left to the JSON alone; each number has its unit beside it, where it has one."""
     page = kept_studio.page
     page.select_option("#kind", kind)
     for n, _ in enumerate(examples(kind)):
         page.select_option("#example", str(n))
         page.evaluate(OPEN_ALL)
-        assert page.inner_text("#fields").count("Stated in the JSON") == LEFT_TO_JSON.get((kind, n), 0)
+        assert page.inner_text("#fields").count("Stated in the JSON") == 0
     names = set(KINDS[kind].problem.model_fields) - {"kind"}
     assert {name for name in names if page.locator(at(name)).count() == 0} == set()
     unlabelled = page.locator("#fields :is(input, select):not([aria-label])").evaluate_all(
