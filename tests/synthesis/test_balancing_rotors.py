@@ -171,3 +171,24 @@ def test_a_grade_at_bearings_beside_the_planes_proves_nothing() -> None:
     assert "The least that was found is 0 g·mm" in result.summary
     assert "its grade is beyond the limit" in result.summary
     assert not result.search.complete
+
+
+def test_many_places_are_used_where_they_reach_the_unbalance() -> None:
+    """More choices than can be listed: those towards the unbalance come first, and nearly nothing is left."""
+    holes = {"angles": 72, "radius": 800.0, "step": 0.01, "max_per_hole": 2.0, "max_places": 2}
+    masses = [{"mass": 1.0, "radius": 1000.0, "angle": 113.4}]
+    result = solve(stated(masses=masses, correction={"holes": holes}))
+    assert result.designs[0].metrics.residual_unbalance < 1e-2 * result.designs[0].metrics.initial_unbalance
+
+
+@pytest.mark.parametrize("field", [{"goal": "minimize"}, {"motion": {"speed_rpm": 300.0}}])
+def test_a_rotor_has_nothing_of_a_linkage(field: dict[str, Any]) -> None:
+    fields = {"kind": "balancing", "object": "rotor", "masses": [{"mass": 1.0, "radius": 10.0, "angle": 0.0}]}
+    problem = BalancingProblem.model_validate({**fields, **field})
+    assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]
+
+
+@pytest.mark.parametrize("field", [{"planes": [0.0, 100.0]}, {"rank_by": "places"}, {"units": "consistent"}])
+def test_a_linkage_has_nothing_of_a_rotor(field: dict[str, Any]) -> None:
+    problem = BalancingProblem.model_validate({**examples("balancing")[2], **field})
+    assert [fault.path for fault in problem.contradictions()] == [f"/{next(iter(field))}"]

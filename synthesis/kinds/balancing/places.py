@@ -30,7 +30,7 @@ QUERIES = 3_000_000
 
 
 LEFT_OUT = 50
-"""Looked-up sums that take as long as a branch that is left out."""
+"""Looked-up sums that take as long as what a branch takes besides."""
 
 
 class Choice(NamedTuple):
@@ -68,13 +68,18 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
     most : int
         Most places that are used.
     """
-    first, second, rest = _split(places, most)
+    first, second, rest = _split(range(len(places)), places, most)
+    if rest:
+        # Not all can be listed: those that reach farthest towards the target are.
+        reach = [float((target.conjugate() * place).real.max()) for place in places]
+        first, second, rest = _split(sorted(range(len(places)), key=lambda n: -reach[n]), places, most)
     head, tail = _sums([places[n] for n in first], most), _sums([places[n] for n in second], most)
     trees = {
         used: (cKDTree(np.stack([tail.values.real, tail.values.imag], axis=1)[at]), at)
         for used in np.unique(tail.used).tolist()
         if len(at := np.flatnonzero(tail.used == used))
     }
+    groups = [(used, np.flatnonzero(head.used == used)) for used in np.unique(head.used).tolist()]
     best: dict[int, Choice] = {}
     support = _support([places[n] for n in (*first, *second)])
     asked, complete = 0, True
@@ -89,8 +94,9 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
         asked += LEFT_OUT if rest else 0
         if rest and few and _outside(left, support) >= min(few):
             continue
-        for used in np.unique(head.used).tolist():
-            at = np.flatnonzero(head.used == used)
+        for used, at in groups:
+            if len(picked) + used > most:
+                break
             wanted = left - head.values[at]
             points = np.stack([wanted.real, wanted.imag], axis=1)
             for more, (tree, among) in trees.items():
@@ -113,11 +119,11 @@ def best_choices(target: complex, places: Sequence[Complex], most: int) -> Chose
     return Chosen(front, bound, complete)
 
 
-def _split(places: Sequence[Complex], most: int) -> tuple[list[int], list[int], list[int]]:
-    """Places of the two halves, and those beyond; every second one is the other half's."""
+def _split(order: Sequence[int], places: Sequence[Complex], most: int) -> tuple[list[int], list[int], list[int]]:
+    """Places of the two halves, and those beyond, in an order; every second one is the other half's."""
     halves: tuple[list[int], list[int]] = ([], [])
     rest: list[int] = []
-    for n in range(len(places)):
+    for n in order:
         for half in sorted(halves, key=len):
             if _count([len(places[k]) for k in (*half, n)], most) <= GROUP:
                 half.append(n)

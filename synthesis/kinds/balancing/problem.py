@@ -29,8 +29,11 @@ FOURBAR: dict[str, Any] = {
 }
 """A fourbar with masses, of the examples."""
 
-OF_ROTORS = ("masses", "bearing_readings", "influence", "rpm", "bearings", "rotor_mass", "max_grade", "correction")
-OF_LINKAGES = ("mechanism", "dynamics", "counterweights", "objective", "caps")
+OF_ROTORS = (
+    *("masses", "bearing_readings", "influence", "rpm", "planes", "bearings", "rotor_mass", "max_grade", "correction"),
+    *("units", "rank_by"),
+)
+OF_LINKAGES = ("goal", "mechanism", "motion", "dynamics", "counterweights", "objective", "caps")
 OF_EXACT = ("radius", "mass")
 OF_MINIMIZED = ("reach", "max_mass", "total_mass", "max_gyration", "max_disc_radius")
 
